@@ -21,10 +21,7 @@ struct Angle {
     double deg() const { return rad * 180 / std::numbers::pi; }
     bool isUnknown() const { return std::isnan(rad); }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"rad", "rad", "angle, NaN when unknown"}, self.rad);
-    }
+    static void describe(auto& self, auto& visit) { visit({"rad", "rad", "angle, NaN when unknown"}, self.rad); }
 };
 
 constexpr double radians(double degrees) { return degrees * std::numbers::pi / 180; }

@@ -45,24 +45,22 @@ struct DepthMap {
         return remissions.empty() || remissions.size() == cells ? nullptr
                                                                 : "has other numbers of remissions than of distances";
     }
-    template <class Visit>
-    void forEachStamp(Visit&& visit) {
+    void forEachStamp(auto&& visit) {
         for (Time& stamp : timestamps) visit(stamp);
     }
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the map was true in the world"}, self.time);
-        visit(Field{"timestamps", "us", "of rows, columns or cells; empty: `time` for all"}, self.timestamps);
-        visit(Field{"vertical_projection", "1", "0 polar, 1 planar"}, self.vertical_projection);
-        visit(Field{"horizontal_projection", "1", "0 polar, 1 planar"}, self.horizontal_projection);
-        visit(Field{"vertical_interval", "rad", "of each row or of the outermost two, positive down"},
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the map was true in the world"}, self.time);
+        visit({"timestamps", "us", "of rows, columns or cells; empty: `time` for all"}, self.timestamps);
+        visit({"vertical_projection", "1", "0 polar, 1 planar"}, self.vertical_projection);
+        visit({"horizontal_projection", "1", "0 polar, 1 planar"}, self.horizontal_projection);
+        visit({"vertical_interval", "rad", "of each row or of the outermost two, positive down"},
               self.vertical_interval);
-        visit(Field{"horizontal_interval", "rad", "of each column or of the outermost two, positive to port"},
+        visit({"horizontal_interval", "rad", "of each column or of the outermost two, positive to port"},
               self.horizontal_interval);
-        visit(Field{"vertical_size", "1", "rows"}, self.vertical_size);
-        visit(Field{"horizontal_size", "1", "columns"}, self.horizontal_size);
-        visit(Field{"distances", "m", "row by row; infinite: nothing in range"}, self.distances);
-        visit(Field{"remissions", "1", "strength of each return, or none"}, self.remissions);
+        visit({"vertical_size", "1", "rows"}, self.vertical_size);
+        visit({"horizontal_size", "1", "columns"}, self.horizontal_size);
+        visit({"distances", "m", "row by row; infinite: nothing in range"}, self.distances);
+        visit({"remissions", "1", "strength of each return, or none"}, self.remissions);
     }
 };
 using DepthMapPtr = std::shared_ptr<const DepthMap>;

@@ -3,8 +3,8 @@
 //
 //     struct Sample {
 //         double range = 0;
-//         template <class Self, class V> static void describe(Self& self, V& visit) {
-//             visit(Field{"range", "m", "slant range", 0, 500}, self.range);
+//         static void describe(auto& self, auto& visit) {
+//             visit({"range", "m", "slant range", 0, 500}, self.range);
 //         }
 //     };
 #include <cstdint>
@@ -55,8 +55,7 @@ struct EnumTable;
 
 /** The value of a key that has moved to another task. Any value in a file is an error with the doc of the field. */
 struct MovedTo {
-    template <class Self, class V>
-    static void describe(Self&, V&) {}
+    static void describe(auto&, auto&) {}
 };
 
 /** A described struct that validates its fields together: `void check(types::Diagnostics&) const`. */

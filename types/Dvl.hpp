@@ -44,19 +44,18 @@ struct Dvl {
                    ? nullptr
                    : "has other numbers of ranges or velocities than of beams";
     }
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "at which the velocity holds"}, self.time);
-        visit(Field{"velocity", "m/s", "of the instrument over the bottom"}, self.velocity);
-        visit(Field{"cov_velocity", "m^2/s^2", "covariance of velocity"}, self.cov_velocity);
-        visit(Field{"altitude", "m", "over the bottom, along the axis of the instrument"}, self.altitude);
-        visit(Field{"speed_of_sound", "m/s", "that the instrument takes for its ranges and velocities"},
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "at which the velocity holds"}, self.time);
+        visit({"velocity", "m/s", "of the instrument over the bottom"}, self.velocity);
+        visit({"cov_velocity", "m^2/s^2", "covariance of velocity"}, self.cov_velocity);
+        visit({"altitude", "m", "over the bottom, along the axis of the instrument"}, self.altitude);
+        visit({"speed_of_sound", "m/s", "that the instrument takes for its ranges and velocities"},
               self.speed_of_sound);
-        visit(Field{"beam_directions", "1", "unit vectors"}, self.beam_directions);
-        visit(Field{"beam_ranges", "m", "along each beam; NaN: a lost beam"}, self.beam_ranges);
-        visit(Field{"beam_velocities", "m/s", "of the instrument along each beam, positive towards the bottom"},
+        visit({"beam_directions", "1", "unit vectors"}, self.beam_directions);
+        visit({"beam_ranges", "m", "along each beam; NaN: a lost beam"}, self.beam_ranges);
+        visit({"beam_velocities", "m/s", "of the instrument along each beam, positive towards the bottom"},
               self.beam_velocities);
-        visit(Field{"beam_velocity_variances", "m^2/s^2", "of each beam's velocity"}, self.beam_velocity_variances);
+        visit({"beam_velocity_variances", "m^2/s^2", "of each beam's velocity"}, self.beam_velocity_variances);
     }
 };
 using DvlPtr = std::shared_ptr<const Dvl>;

@@ -16,10 +16,9 @@ struct ImageAttribute {
     static constexpr const char* type_name = "/base/samples/frame/frame_attrib_t";
     std::string data;
     std::string name;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"data_", "", "value"}, self.data);
-        visit(Field{"name_", "", "key"}, self.name);
+    static void describe(auto& self, auto& visit) {
+        visit({"data_", "", "value"}, self.data);
+        visit({"name_", "", "key"}, self.name);
     }
 };
 
@@ -27,10 +26,9 @@ struct ImageSize {
     static constexpr const char* type_name = "/base/samples/frame/frame_size_t";
     uint16_t width = 0;
     uint16_t height = 0;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"width", "1", "pixels in a row"}, self.width);
-        visit(Field{"height", "1", "rows"}, self.height);
+    static void describe(auto& self, auto& visit) {
+        visit({"width", "1", "pixels in a row"}, self.width);
+        visit({"height", "1", "rows"}, self.height);
     }
 };
 
@@ -56,22 +54,18 @@ struct Image {
         return row_size >= uint64_t{size.width} * pixel_size && image.size() >= uint64_t{size.height} * row_size;
     }
 
-    template <class Visit>
-    void forEachStamp(Visit&& visit) {
-        visit(received_time);
-    }
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the picture was true in the world"}, self.time);
-        visit(Field{"received_time", "us", "when it reached this system"}, self.received_time);
-        visit(Field{"image", "1", "pixels"}, self.image);
-        visit(Field{"attributes", "", "keys and values"}, self.attributes);
-        visit(Field{"size", "1", "width and height"}, self.size);
-        visit(Field{"data_depth", "bit", "effective bits per channel"}, self.data_depth);
-        visit(Field{"pixel_size", "B", "size of a pixel"}, self.pixel_size);
-        visit(Field{"row_size", "B", "size of a row"}, self.row_size);
-        visit(Field{"frame_mode", "1", "1 grey, 2 RGB, 4 BGR, others as in Rock"}, self.frame_mode);
-        visit(Field{"frame_status", "1", "0 empty, 1 valid, 2 invalid"}, self.frame_status);
+    void forEachStamp(auto&& visit) { visit(received_time); }
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the picture was true in the world"}, self.time);
+        visit({"received_time", "us", "when it reached this system"}, self.received_time);
+        visit({"image", "1", "pixels"}, self.image);
+        visit({"attributes", "", "keys and values"}, self.attributes);
+        visit({"size", "1", "width and height"}, self.size);
+        visit({"data_depth", "bit", "effective bits per channel"}, self.data_depth);
+        visit({"pixel_size", "B", "size of a pixel"}, self.pixel_size);
+        visit({"row_size", "B", "size of a row"}, self.row_size);
+        visit({"frame_mode", "1", "1 grey, 2 RGB, 4 BGR, others as in Rock"}, self.frame_mode);
+        visit({"frame_status", "1", "0 empty, 1 valid, 2 invalid"}, self.frame_status);
     }
 };
 using ImagePtr = std::shared_ptr<const Image>;

@@ -17,12 +17,11 @@ struct ImuSensors {
     glm::dvec3 gyro{Pose::unknown};
     glm::dvec3 mag{Pose::unknown};
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the reading was true in the world"}, self.time);
-        visit(Field{"acc", "m/s^2", "specific force: at rest +g upwards"}, self.acc);
-        visit(Field{"gyro", "rad/s", "angular rate"}, self.gyro);
-        visit(Field{"mag", "T", "magnetic field"}, self.mag);
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the reading was true in the world"}, self.time);
+        visit({"acc", "m/s^2", "specific force: at rest +g upwards"}, self.acc);
+        visit({"gyro", "rad/s", "angular rate"}, self.gyro);
+        visit({"mag", "T", "magnetic field"}, self.mag);
     }
 };
 
@@ -41,19 +40,15 @@ struct Imu {
     glm::dvec3 linear_acceleration{Pose::unknown};
     glm::dmat3 cov_linear_acceleration = Pose::unknownMatrix();
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the reading was true in the world"}, self.time);
-        visit(Field{"orientation", "1", "unit quaternion that turns the unit's vectors into the world"},
-              self.orientation);
-        visit(Field{"cov_orientation", "rad^2", "covariance of orientation, axis-angle in the unit"},
-              self.cov_orientation);
-        visit(Field{"angular_velocity", "rad/s", "angular rate, in the unit"}, self.angular_velocity);
-        visit(Field{"cov_angular_velocity", "rad^2/s^2", "covariance of the angular rate"}, self.cov_angular_velocity);
-        visit(Field{"linear_acceleration", "m/s^2", "specific force, in the unit: at rest +g upwards"},
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the reading was true in the world"}, self.time);
+        visit({"orientation", "1", "unit quaternion that turns the unit's vectors into the world"}, self.orientation);
+        visit({"cov_orientation", "rad^2", "covariance of orientation, axis-angle in the unit"}, self.cov_orientation);
+        visit({"angular_velocity", "rad/s", "angular rate, in the unit"}, self.angular_velocity);
+        visit({"cov_angular_velocity", "rad^2/s^2", "covariance of the angular rate"}, self.cov_angular_velocity);
+        visit({"linear_acceleration", "m/s^2", "specific force, in the unit: at rest +g upwards"},
               self.linear_acceleration);
-        visit(Field{"cov_linear_acceleration", "m^2/s^4", "covariance of the specific force"},
-              self.cov_linear_acceleration);
+        visit({"cov_linear_acceleration", "m^2/s^4", "covariance of the specific force"}, self.cov_linear_acceleration);
     }
 };
 

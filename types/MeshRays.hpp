@@ -64,8 +64,7 @@ inline std::optional<TriangleMet> meetTriangle(const glm::dvec3& way, const glm:
 
 /** Calls `use` for the clusters of a mesh for which `mayMeet` accepts the box and the boxes of all nodes above. Ends
  *  when `use` returns true, and returns that. */
-template <class MayMeet, class Use>
-bool anyCluster(const Mesh& mesh, const MayMeet& mayMeet, const Use& use) {
+bool anyCluster(const Mesh& mesh, const auto& mayMeet, const auto& use) {
     const auto among = [&](std::span<const Cluster> clusters) {
         return std::ranges::any_of(
             clusters, [&](const Cluster& cluster) { return mayMeet(cluster.centre, cluster.half) && use(cluster); });
@@ -105,9 +104,8 @@ struct TrianglesOnLine {
 };
 
 /** Applies TrianglesOnLine::any to all triangles of a mesh. Tests only clusters whose boxes the line meets. */
-template <class Use>
 bool anyTriangleMet(const Mesh& mesh, const glm::dmat4& world_from_object, const glm::dvec3& from,
-                    const glm::dvec3& way, const Use& use) {
+                    const glm::dvec3& way, const auto& use) {
     const TrianglesOnLine line{mesh, world_from_object, from, way};
     const auto mayMeet = [&](const glm::dvec3& centre, const glm::dvec3& half) {
         const WorldBox box(world_from_object, centre, half);

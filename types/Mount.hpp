@@ -17,12 +17,11 @@ struct Mount {
         return about({0, 0, 1}, yaw_deg) * about({0, 1, 0}, pitch_deg) * about({1, 0, 0}, roll_deg);
     }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"position", "m", "of the sensor in the body"}, self.position);
-        visit(Field{"roll_deg", "deg", "about x", -360, 360}, self.roll_deg);
-        visit(Field{"pitch_deg", "deg", "about y, positive looks down", -360, 360}, self.pitch_deg);
-        visit(Field{"yaw_deg", "deg", "about z, positive turns to port", -360, 360}, self.yaw_deg);
+    static void describe(auto& self, auto& visit) {
+        visit({"position", "m", "of the sensor in the body"}, self.position);
+        visit({"roll_deg", "deg", "about x", -360, 360}, self.roll_deg);
+        visit({"pitch_deg", "deg", "about y, positive looks down", -360, 360}, self.pitch_deg);
+        visit({"yaw_deg", "deg", "about z, positive turns to port", -360, 360}, self.yaw_deg);
     }
 };
 

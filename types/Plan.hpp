@@ -11,10 +11,9 @@ struct Omission {
     std::string name;
     std::string reason;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"name", "", "what is not simulated"}, self.name);
-        visit(Field{"reason", "", "reason or bound that allows it"}, self.reason);
+    static void describe(auto& self, auto& visit) {
+        visit({"name", "", "what is not simulated"}, self.name);
+        visit({"reason", "", "reason or bound that allows it"}, self.reason);
     }
 };
 
@@ -30,17 +29,16 @@ struct Plan {
     double predicted_error = 0;        ///< rel_l2_tvg; NaN: not predicted [1].
     std::string device;                ///< The device that renders, with its driver; empty before the first ping.
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"features", "", "compiled into what renders"}, self.features);
-        visit(Field{"passes", "", "run for each ping, in order"}, self.passes);
-        visit(Field{"omitted", "", "what is omitted, and why"}, self.omitted);
-        visit(Field{"notices", "", "warnings and choices"}, self.notices);
-        visit(Field{"rows", "1", "rows of samples over the elevation aperture"}, self.rows);
-        visit(Field{"columns_per_beam", "1", "columns of samples"}, self.columns_per_beam);
-        visit(Field{"slabs", "1", "perspective images that make up the fan; 0: rays"}, self.slabs);
-        visit(Field{"predicted_error", "1", "rel_l2_tvg; NaN: not predicted"}, self.predicted_error);
-        visit(Field{"device", "", "what renders, with its driver"}, self.device);
+    static void describe(auto& self, auto& visit) {
+        visit({"features", "", "compiled into what renders"}, self.features);
+        visit({"passes", "", "run for each ping, in order"}, self.passes);
+        visit({"omitted", "", "what is omitted, and why"}, self.omitted);
+        visit({"notices", "", "warnings and choices"}, self.notices);
+        visit({"rows", "1", "rows of samples over the elevation aperture"}, self.rows);
+        visit({"columns_per_beam", "1", "columns of samples"}, self.columns_per_beam);
+        visit({"slabs", "1", "perspective images that make up the fan; 0: rays"}, self.slabs);
+        visit({"predicted_error", "1", "rel_l2_tvg; NaN: not predicted"}, self.predicted_error);
+        visit({"device", "", "what renders, with its driver"}, self.device);
     }
 };
 

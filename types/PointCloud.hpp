@@ -35,11 +35,10 @@ struct PointCloud {
         return colors.empty() || colors.size() == points.size() ? nullptr
                                                                 : "has other numbers of points than of colours";
     }
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the points were true"}, self.time);
-        visit(Field{"points", "m", "x, y, z"}, self.points);
-        visit(Field{"colors", "1", "red, green, blue, alpha of each point, or none"}, self.colors);
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the points were true"}, self.time);
+        visit({"points", "m", "x, y, z"}, self.points);
+        visit({"colors", "1", "red, green, blue, alpha of each point, or none"}, self.colors);
     }
 };
 using PointCloudPtr = std::shared_ptr<const PointCloud>;

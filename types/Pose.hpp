@@ -42,21 +42,18 @@ struct Pose {
         return transform;
     }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the state was true in the world"}, self.time);
-        visit(Field{"sourceFrame", "", "the body whose state this is"}, self.source_frame);
-        visit(Field{"targetFrame", "", "the frame in which it is given"}, self.target_frame);
-        visit(Field{"position", "m", "origin of the body in the target frame"}, self.position);
-        visit(Field{"cov_position", "m^2", "covariance of position"}, self.cov_position);
-        visit(Field{"orientation", "1", "unit quaternion that turns body vectors into the target frame"},
-              self.orientation);
-        visit(Field{"cov_orientation", "rad^2", "covariance of orientation, axis-angle in the body"},
-              self.cov_orientation);
-        visit(Field{"velocity", "m/s", "of the body, in the target frame"}, self.velocity);
-        visit(Field{"cov_velocity", "m^2/s^2", "covariance of velocity"}, self.cov_velocity);
-        visit(Field{"angular_velocity", "rad/s", "axis-angle rate, in the body"}, self.angular_velocity);
-        visit(Field{"cov_angular_velocity", "rad^2/s^2", "covariance of angular velocity"}, self.cov_angular_velocity);
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the state was true in the world"}, self.time);
+        visit({"sourceFrame", "", "the body whose state this is"}, self.source_frame);
+        visit({"targetFrame", "", "the frame in which it is given"}, self.target_frame);
+        visit({"position", "m", "origin of the body in the target frame"}, self.position);
+        visit({"cov_position", "m^2", "covariance of position"}, self.cov_position);
+        visit({"orientation", "1", "unit quaternion that turns body vectors into the target frame"}, self.orientation);
+        visit({"cov_orientation", "rad^2", "covariance of orientation, axis-angle in the body"}, self.cov_orientation);
+        visit({"velocity", "m/s", "of the body, in the target frame"}, self.velocity);
+        visit({"cov_velocity", "m^2/s^2", "covariance of velocity"}, self.cov_velocity);
+        visit({"angular_velocity", "rad/s", "axis-angle rate, in the body"}, self.angular_velocity);
+        visit({"cov_angular_velocity", "rad^2/s^2", "covariance of angular velocity"}, self.cov_angular_velocity);
     }
 };
 

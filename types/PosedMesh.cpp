@@ -20,8 +20,7 @@ struct FloatBox {
 };
 
 /** Takes a box, rounded up, so that centre +- half holds all of it. */
-template <class Part>
-void setBox(Part& part, const FloatBox& box) {
+void setBox(auto& part, const FloatBox& box) {
     part.centre = box.low + (box.high - box.low) / 2.0f;
     const glm::vec3 half = glm::max(box.high - part.centre, part.centre - box.low);
     for (int axis = 0; axis < 3; ++axis)
@@ -29,8 +28,7 @@ void setBox(Part& part, const FloatBox& box) {
 }
 
 /** A vertex before joints move it: what the file has plus its morph targets. */
-template <class Vector>
-glm::dvec3 morphed(const Vector& base, std::span<const MorphPose> morphs, const Deformation& deformation, size_t vertex,
+glm::dvec3 morphed(const auto& base, std::span<const MorphPose> morphs, const Deformation& deformation, size_t vertex,
                    std::vector<glm::vec3> MorphTarget::*list) {
     glm::dvec3 sum(base);
     for (size_t k = 0; k < morphs.size(); ++k) {

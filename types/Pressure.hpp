@@ -12,10 +12,9 @@ struct Pressure {
     float pascal = std::numeric_limits<float>::quiet_NaN();
     Time time;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"pascal", "Pa", "of air and water; NaN: unknown"}, self.pascal);
-        visit(Field{"time", "us", "when the reading was true in the world"}, self.time);
+    static void describe(auto& self, auto& visit) {
+        visit({"pascal", "Pa", "of air and water; NaN: unknown"}, self.pascal);
+        visit({"time", "us", "when the reading was true in the world"}, self.time);
     }
 };
 

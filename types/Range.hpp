@@ -21,13 +21,12 @@ struct Range {
 
     bool isKnown() const { return std::isfinite(range); }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the range was true in the world"}, self.time);
-        visit(Field{"range", "m", "to the first return; NaN: there is none"}, self.range);
-        visit(Field{"range_min", "m", "min range of returns"}, self.range_min);
-        visit(Field{"range_max", "m", "max range of returns"}, self.range_max);
-        visit(Field{"field_of_view", "rad", "opening of the beam"}, self.field_of_view);
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the range was true in the world"}, self.time);
+        visit({"range", "m", "to the first return; NaN: there is none"}, self.range);
+        visit({"range_min", "m", "min range of returns"}, self.range_min);
+        visit({"range_max", "m", "max range of returns"}, self.range_max);
+        visit({"field_of_view", "rad", "opening of the beam"}, self.field_of_view);
     }
 };
 

@@ -70,8 +70,7 @@ constexpr size_t sampleIndex() {
 }
 
 /** Calls `use(std::type_identity<T>{})` for each type of the list. */
-template <class Use>
-void forEachSampleType(Use&& use) {
+void forEachSampleType(auto&& use) {
     [&]<class... T>(std::type_identity<std::tuple<T...>>) {
         (use(std::type_identity<T>{}), ...);
     }(std::type_identity<SampleTypes>{});

@@ -60,22 +60,20 @@ struct Sonar {
     double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
 
     /** Calls `visit` for the stamps other than `time`. */
-    template <class Visit>
-    void forEachStamp(Visit&& visit) {
+    void forEachStamp(auto&& visit) {
         for (Time& stamp : timestamps) visit(stamp);
     }
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the ping was true in the world"}, self.time);
-        visit(Field{"timestamps", "us", "start of each beam's acquisition; empty: `time` for all"}, self.timestamps);
-        visit(Field{"bin_duration", "us", "one-way travel time through one bin"}, self.bin_duration);
-        visit(Field{"beam_width", "rad", "opening of one beam across the fan"}, self.beam_width);
-        visit(Field{"beam_height", "rad", "opening of one beam along the device's z axis"}, self.beam_height);
-        visit(Field{"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
-        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
-        visit(Field{"bin_count", "1", "bins per beam"}, self.bin_count);
-        visit(Field{"beam_count", "1", "beams"}, self.beam_count);
-        visit(Field{"bins", "1", "linear echo strength, beam-first; NaN when unknown"}, self.bins);
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the ping was true in the world"}, self.time);
+        visit({"timestamps", "us", "start of each beam's acquisition; empty: `time` for all"}, self.timestamps);
+        visit({"bin_duration", "us", "one-way travel time through one bin"}, self.bin_duration);
+        visit({"beam_width", "rad", "opening of one beam across the fan"}, self.beam_width);
+        visit({"beam_height", "rad", "opening of one beam along the device's z axis"}, self.beam_height);
+        visit({"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
+        visit({"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit({"bin_count", "1", "bins per beam"}, self.bin_count);
+        visit({"beam_count", "1", "beams"}, self.beam_count);
+        visit({"bins", "1", "linear echo strength, beam-first; NaN when unknown"}, self.bins);
     }
 };
 using SonarPtr = std::shared_ptr<const Sonar>;

@@ -35,24 +35,21 @@ struct SonarElements {
     const char* diagnostic() const;
 
     /** Calls `visit` for the lists with a number for each sample, with the type of the numbers in files. */
-    template <class Self, class Visit>
-    static void forEachArray(Self& self, Visit&& visit) {
+    static void forEachArray(auto& self, auto&& visit) {
         visit("in_phase", self.in_phase, std::type_identity<float>{});
         visit("quadrature", self.quadrature, std::type_identity<float>{});
     }
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the ping was true in the world"}, self.time);
-        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
-        visit(Field{"wavelength", "m", "of the carrier"}, self.wavelength);
-        visit(Field{"first_range", "m", "slant range of the first sample"}, self.first_range);
-        visit(Field{"sample_spacing", "m", "slant range from one sample to the next"}, self.sample_spacing);
-        visit(Field{"sample_count", "1", "samples of each element"}, self.sample_count);
-        visit(Field{"positions", "m", "of each element from the array's middle, positive to port"}, self.positions);
-        visit(Field{"weights", "1", "of each element where the sonar forms its own beams; their sum is 1"},
-              self.weights);
-        visit(Field{"in_phase", "1/m", "real part of the field, element by element"}, self.in_phase);
-        visit(Field{"quadrature", "1/m", "imaginary part of the field, element by element"}, self.quadrature);
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the ping was true in the world"}, self.time);
+        visit({"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit({"wavelength", "m", "of the carrier"}, self.wavelength);
+        visit({"first_range", "m", "slant range of the first sample"}, self.first_range);
+        visit({"sample_spacing", "m", "slant range from one sample to the next"}, self.sample_spacing);
+        visit({"sample_count", "1", "samples of each element"}, self.sample_count);
+        visit({"positions", "m", "of each element from the array's middle, positive to port"}, self.positions);
+        visit({"weights", "1", "of each element where the sonar forms its own beams; their sum is 1"}, self.weights);
+        visit({"in_phase", "1/m", "real part of the field, element by element"}, self.in_phase);
+        visit({"quadrature", "1/m", "imaginary part of the field, element by element"}, self.quadrature);
     }
 };
 using SonarElementsPtr = std::shared_ptr<const SonarElements>;

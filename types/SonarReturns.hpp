@@ -35,8 +35,7 @@ struct SonarReturns {
     const char* diagnostic() const;
 
     /** Calls `visit` for the lists with a number for each beam, with the type of the numbers in files. */
-    template <class Self, class Visit>
-    static void forEachArray(Self& self, Visit&& visit) {
+    static void forEachArray(auto& self, auto&& visit) {
         constexpr std::type_identity<float> number;
         visit("first_range", self.first_range, number);
         visit("first_level", self.first_level, number);
@@ -45,16 +44,15 @@ struct SonarReturns {
         visit("strongest_level", self.strongest_level, number);
         visit("strongest_elevation", self.strongest_elevation, number);
     }
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the ping was true in the world"}, self.time);
-        visit(Field{"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
-        visit(Field{"first_range", "m", "slant range of the nearest bin that shows an object"}, self.first_range);
-        visit(Field{"first_level", "dB", "10 log10 of that bin"}, self.first_level);
-        visit(Field{"first_elevation", "rad", "from which its echo comes, positive up"}, self.first_elevation);
-        visit(Field{"strongest_range", "m", "slant range of the bin with the greatest echo"}, self.strongest_range);
-        visit(Field{"strongest_level", "dB", "10 log10 of that bin"}, self.strongest_level);
-        visit(Field{"strongest_elevation", "rad", "from which its echo comes; NaN: of no object in the beam"},
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the ping was true in the world"}, self.time);
+        visit({"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
+        visit({"first_range", "m", "slant range of the nearest bin that shows an object"}, self.first_range);
+        visit({"first_level", "dB", "10 log10 of that bin"}, self.first_level);
+        visit({"first_elevation", "rad", "from which its echo comes, positive up"}, self.first_elevation);
+        visit({"strongest_range", "m", "slant range of the bin with the greatest echo"}, self.strongest_range);
+        visit({"strongest_level", "dB", "10 log10 of that bin"}, self.strongest_level);
+        visit({"strongest_elevation", "rad", "from which its echo comes; NaN: of no object in the beam"},
               self.strongest_elevation);
     }
 };

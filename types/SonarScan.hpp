@@ -20,15 +20,14 @@ struct SonarBeam {
     float beamwidth_vertical = unknown;
     std::vector<uint8_t> beam;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the beam was true in the world"}, self.time);
-        visit(Field{"bearing", "rad", "centre of the beam, 0 ahead, positive to port"}, self.bearing);
-        visit(Field{"sampling_interval", "s", "two-way travel time through one bin"}, self.sampling_interval);
-        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
-        visit(Field{"beamwidth_horizontal", "rad", "opening of the beam across"}, self.beamwidth_horizontal);
-        visit(Field{"beamwidth_vertical", "rad", "opening along the device's z axis"}, self.beamwidth_vertical);
-        visit(Field{"beam", "1", "echo strength of each bin, 255 is full scale"}, self.beam);
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the beam was true in the world"}, self.time);
+        visit({"bearing", "rad", "centre of the beam, 0 ahead, positive to port"}, self.bearing);
+        visit({"sampling_interval", "s", "two-way travel time through one bin"}, self.sampling_interval);
+        visit({"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit({"beamwidth_horizontal", "rad", "opening of the beam across"}, self.beamwidth_horizontal);
+        visit({"beamwidth_vertical", "rad", "opening along the device's z axis"}, self.beamwidth_vertical);
+        visit({"beam", "1", "echo strength of each bin, 255 is full scale"}, self.beam);
     }
 };
 
@@ -51,26 +50,24 @@ struct SonarScan {
     bool memory_layout_column = true;
     bool polar_coordinates = true;
 
-    template <class Visit>
-    void forEachStamp(Visit&& visit) {
+    void forEachStamp(auto&& visit) {
         for (Time& stamp : time_beams) visit(stamp);
     }
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the scan was true in the world"}, self.time);
-        visit(Field{"data", "1", "echo strengths, 255 is full scale"}, self.data);
-        visit(Field{"time_beams", "us", "start of each beam; 0: the beam is not set"}, self.time_beams);
-        visit(Field{"number_of_beams", "1", "beams"}, self.number_of_beams);
-        visit(Field{"number_of_bins", "1", "bins per beam"}, self.number_of_bins);
-        visit(Field{"start_bearing", "rad", "centre of the first beam, the one farthest to port"}, self.start_bearing);
-        visit(Field{"angular_resolution", "rad", "from one beam to the next, above 0"}, self.angular_resolution);
-        visit(Field{"sampling_interval", "s", "two-way travel time through one bin"}, self.sampling_interval);
-        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
-        visit(Field{"beamwidth_horizontal", "rad", "opening of one beam across the fan"}, self.beamwidth_horizontal);
-        visit(Field{"beamwidth_vertical", "rad", "opening along the device's z axis"}, self.beamwidth_vertical);
-        visit(Field{"memory_layout_column", "", "true: bin after bin, each of all beams; false: beam after beam"},
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the scan was true in the world"}, self.time);
+        visit({"data", "1", "echo strengths, 255 is full scale"}, self.data);
+        visit({"time_beams", "us", "start of each beam; 0: the beam is not set"}, self.time_beams);
+        visit({"number_of_beams", "1", "beams"}, self.number_of_beams);
+        visit({"number_of_bins", "1", "bins per beam"}, self.number_of_bins);
+        visit({"start_bearing", "rad", "centre of the first beam, the one farthest to port"}, self.start_bearing);
+        visit({"angular_resolution", "rad", "from one beam to the next, above 0"}, self.angular_resolution);
+        visit({"sampling_interval", "s", "two-way travel time through one bin"}, self.sampling_interval);
+        visit({"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit({"beamwidth_horizontal", "rad", "opening of one beam across the fan"}, self.beamwidth_horizontal);
+        visit({"beamwidth_vertical", "rad", "opening along the device's z axis"}, self.beamwidth_vertical);
+        visit({"memory_layout_column", "", "true: bin after bin, each of all beams; false: beam after beam"},
               self.memory_layout_column);
-        visit(Field{"polar_coordinates", "", "true: beams and bins; false: a picture"}, self.polar_coordinates);
+        visit({"polar_coordinates", "", "true: beams and bins; false: a picture"}, self.polar_coordinates);
     }
 };
 

@@ -25,18 +25,17 @@ struct SonarSettings {
     uint32_t bin_count = 0;
     uint32_t beam_count = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the ping was asked for"}, self.time);
-        visit(Field{"range", "m", "slant range at which the last bin ends"}, self.range);
-        visit(Field{"frequency_khz", "kHz", "of the sonar"}, self.frequency_khz);
-        visit(Field{"speed_of_sound", "m/s", "by which the sonar turns time into range"}, self.speed_of_sound);
-        visit(Field{"gain_db", "dB", "of the receiver, after its TVG"}, self.gain_db);
-        visit(Field{"bearing", "rad", "of a scanning sonar's head, 0 ahead, positive to port"}, self.bearing);
-        visit(Field{"field_of_view", "rad", "from the first beam to the last"}, self.field_of_view);
-        visit(Field{"beam_height", "rad", "of a beam, in elevation"}, self.beam_height);
-        visit(Field{"bin_count", "1", "of a beam; 0: as it is"}, self.bin_count);
-        visit(Field{"beam_count", "1", "0: as it is"}, self.beam_count);
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the ping was asked for"}, self.time);
+        visit({"range", "m", "slant range at which the last bin ends"}, self.range);
+        visit({"frequency_khz", "kHz", "of the sonar"}, self.frequency_khz);
+        visit({"speed_of_sound", "m/s", "by which the sonar turns time into range"}, self.speed_of_sound);
+        visit({"gain_db", "dB", "of the receiver, after its TVG"}, self.gain_db);
+        visit({"bearing", "rad", "of a scanning sonar's head, 0 ahead, positive to port"}, self.bearing);
+        visit({"field_of_view", "rad", "from the first beam to the last"}, self.field_of_view);
+        visit({"beam_height", "rad", "of a beam, in elevation"}, self.beam_height);
+        visit({"bin_count", "1", "of a beam; 0: as it is"}, self.bin_count);
+        visit({"beam_count", "1", "0: as it is"}, self.beam_count);
     }
 };
 

@@ -51,8 +51,7 @@ struct SonarTruth {
     const char* diagnostic() const;
 
     /** Calls `visit` for the lists with a number for each bin, with the type of the numbers in files. */
-    template <class Self, class Visit>
-    static void forEachArray(Self& self, Visit&& visit) {
+    static void forEachArray(auto& self, auto&& visit) {
         visit("elevation", self.elevation, std::type_identity<float>{});
         visit("object", self.object, std::type_identity<int32_t>{});
         visit("share", self.share, std::type_identity<float>{});
@@ -61,29 +60,24 @@ struct SonarTruth {
         visit("path", self.path, std::type_identity<uint8_t>{});
         visit("shadow", self.shadow, std::type_identity<bool>{});
     }
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"time", "us", "when the ping was true in the world"}, self.time);
-        visit(Field{"bin_duration", "us", "one-way travel time through one bin"}, self.bin_duration);
-        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
-        visit(Field{"bin_count", "1", "bins per beam"}, self.bin_count);
-        visit(Field{"beam_count", "1", "beams"}, self.beam_count);
-        visit(Field{"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
-        visit(Field{"objects", "", "names of all objects of the scene"}, self.objects);
-        visit(Field{"elevation", "rad", "from which the strongest object's echo comes, positive up"}, self.elevation);
-        visit(Field{"object", "1", "that returns most of the bin's energy: index into `objects`; -1: none"},
-              self.object);
-        visit(Field{"share", "1", "of that object, or with path 6 of the water, in the bin's energy", 0, 1},
-              self.share);
-        visit(Field{"hits", "1", "samples whose echo lies in the bin"}, self.hits);
-        visit(Field{"grazing", "rad", "angle between the sound and the object's surface, pi/2: square to it"},
-              self.grazing);
-        visit(Field{"path", "1",
-                    "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, "
-                    "5: rung in a wall, 6: of the water itself"},
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "us", "when the ping was true in the world"}, self.time);
+        visit({"bin_duration", "us", "one-way travel time through one bin"}, self.bin_duration);
+        visit({"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit({"bin_count", "1", "bins per beam"}, self.bin_count);
+        visit({"beam_count", "1", "beams"}, self.beam_count);
+        visit({"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
+        visit({"objects", "", "names of all objects of the scene"}, self.objects);
+        visit({"elevation", "rad", "from which the strongest object's echo comes, positive up"}, self.elevation);
+        visit({"object", "1", "that returns most of the bin's energy: index into `objects`; -1: none"}, self.object);
+        visit({"share", "1", "of that object, or with path 6 of the water, in the bin's energy", 0, 1}, self.share);
+        visit({"hits", "1", "samples whose echo lies in the bin"}, self.hits);
+        visit({"grazing", "rad", "angle between the sound and the object's surface, pi/2: square to it"}, self.grazing);
+        visit({"path", "1",
+               "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, "
+               "5: rung in a wall, 6: of the water itself"},
               self.path);
-        visit(Field{"shadow", "", "1: no echo of a surface, although nearer than the beam's last such echo"},
-              self.shadow);
+        visit({"shadow", "", "1: no echo of a surface, although nearer than the beam's last such echo"}, self.shadow);
     }
 };
 using SonarTruthPtr = std::shared_ptr<const SonarTruth>;

@@ -20,9 +20,8 @@ struct Time {
     friend Time operator+(Time a, Time b) { return {a.microseconds + b.microseconds}; }
     friend Time operator-(Time a, Time b) { return {a.microseconds - b.microseconds}; }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"microseconds", "us", "since the epoch, or a duration"}, self.microseconds);
+    static void describe(auto& self, auto& visit) {
+        visit({"microseconds", "us", "since the epoch, or a duration"}, self.microseconds);
     }
 };
 

@@ -15,20 +15,18 @@ struct BeamLaw {
     std::optional<int> nbar;
     std::string file;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"weighting", "", "of the aperture; absent: uniform (Harris 1978, Taylor 1955, Dolph 1946)"},
+    static void describe(auto& self, auto& visit) {
+        visit({"weighting", "", "of the aperture; absent: uniform (Harris 1978, Taylor 1955, Dolph 1946)"},
               self.weighting);
-        visit(Field{"width_deg", "deg", "one way, where the power is half", 0.01, 180}, self.width_deg);
-        visit(Field{"aperture_m", "m", "instead: length of the array, or diameter of a piston; needs frequency_khz",
-                    1e-4, 100},
+        visit({"width_deg", "deg", "one way, where the power is half", 0.01, 180}, self.width_deg);
+        visit({"aperture_m", "m", "instead: length of the array, or diameter of a piston; needs frequency_khz", 1e-4,
+               100},
               self.aperture_m);
-        visit(Field{"sidelobe_db", "dB", "of taylor and dolph: highest sidelobe below the axis, either sign; else -30",
-                    -100, 100},
+        visit({"sidelobe_db", "dB", "of taylor and dolph: highest sidelobe below the axis, either sign; else -30", -100,
+               100},
               self.sidelobe_db);
-        visit(Field{"nbar", "1", "of taylor: number of sidelobes of equal height; else 4", 2, 100}, self.nbar);
-        visit(Field{"file", "", "instead: CSV file with angle_deg,level_db"}, self.file);
+        visit({"nbar", "1", "of taylor: number of sidelobes of equal height; else 4", 2, 100}, self.nbar);
+        visit({"file", "", "instead: CSV file with angle_deg,level_db"}, self.file);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

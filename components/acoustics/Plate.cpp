@@ -40,8 +40,7 @@ Complex impedanceOf(const Fluid& fluid, double slowness) {
 constexpr double min_rest = 1e-3;  ///< Below this share of all returns, the rest is added to the last return [1].
 
 /** Returns the terms of a series of the given sum; `term(k)` is the k-th term. */
-template <class Term>
-std::vector<double> termsOf(double sum, size_t max_count, const Term& term) {
+std::vector<double> termsOf(double sum, size_t max_count, const auto& term) {
     std::vector<double> terms;
     double rest = sum;
     while (terms.empty() || (rest > min_rest * sum && terms.size() < max_count)) {

@@ -12,12 +12,10 @@ enum class PulseWindow { None, Hann, Hamming, Taylor };
 struct RingDownConfig {
     std::optional<double> level_db, decay_db_per_m;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"level_db", "dB", "at range 0, relative to the source at 1 m", -3000, 300}, self.level_db);
-        visit(Field{"decay_db_per_m", "dB/m", "per metre of slant range; 54.6 f / (Q c) for a resonance f of quality Q",
-                    0.01, 1e6},
+    static void describe(auto& self, auto& visit) {
+        visit({"level_db", "dB", "at range 0, relative to the source at 1 m", -3000, 300}, self.level_db);
+        visit({"decay_db_per_m", "dB/m", "per metre of slant range; 54.6 f / (Q c) for a resonance f of quality Q",
+               0.01, 1e6},
               self.decay_db_per_m);
     }
     void check(types::Diagnostics& diagnostics) const;
@@ -33,20 +31,16 @@ struct PulseConfig {
     std::optional<PulseWindow> window;
     std::optional<RingDownConfig> ring_down;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"bandwidth_khz", "kHz", "of a chirp, compressed by a matched filter", 1e-3, 1e5},
-              self.bandwidth_khz);
-        visit(Field{"window", "", "of the matched filter; absent: none (Harris 1978; taylor: -30 dB, nbar 4)"},
-              self.window);
-        visit(Field{"duration_us", "us", "instead: of a tone", 0.1, 1e7}, self.duration_us);
-        visit(Field{"chirp_us", "us",
-                    "duration of a chirp, which shifts the range of moving targets; needs motion_in_ping and "
-                    "frequency_khz; absent: nothing is shifted",
-                    0.1, 1e7},
+    static void describe(auto& self, auto& visit) {
+        visit({"bandwidth_khz", "kHz", "of a chirp, compressed by a matched filter", 1e-3, 1e5}, self.bandwidth_khz);
+        visit({"window", "", "of the matched filter; absent: none (Harris 1978; taylor: -30 dB, nbar 4)"}, self.window);
+        visit({"duration_us", "us", "instead: of a tone", 0.1, 1e7}, self.duration_us);
+        visit({"chirp_us", "us",
+               "duration of a chirp, which shifts the range of moving targets; needs motion_in_ping and "
+               "frequency_khz; absent: nothing is shifted",
+               0.1, 1e7},
               self.chirp_us);
-        visit(Field{"ring_down", "", "the transmitter's ringing in the first bins; absent: none"}, self.ring_down);
+        visit({"ring_down", "", "the transmitter's ringing in the first bins; absent: none"}, self.ring_down);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

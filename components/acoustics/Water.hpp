@@ -19,17 +19,15 @@ struct Water {
     SoundSpeedLaw sound_speed_law = SoundSpeedLaw::Leroy;
     std::optional<std::string> profile{};  ///< File with the speed of sound over depth, which bends the rays.
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"temperature_celsius", "degC", "temperature", -6, 50}, self.temperature_celsius);
-        visit(Field{"salinity_psu", "psu", "practical salinity, 0 for fresh water", 0, 50}, self.salinity_psu);
-        visit(Field{"depth", "m", "depth below the surface", 0, 12000}, self.depth);
-        visit(Field{"ph", "1", "acidity", 6, 10}, self.ph);
-        visit(Field{"latitude_deg", "deg", "latitude, for pressure at depth", -90, 90}, self.latitude_deg);
-        visit(Field{"sound_speed_law", "", "computes the speed of sound (Leroy, Robinson and Goldsmith 2008)"},
+    static void describe(auto& self, auto& visit) {
+        visit({"temperature_celsius", "degC", "temperature", -6, 50}, self.temperature_celsius);
+        visit({"salinity_psu", "psu", "practical salinity, 0 for fresh water", 0, 50}, self.salinity_psu);
+        visit({"depth", "m", "depth below the surface", 0, 12000}, self.depth);
+        visit({"ph", "1", "acidity", 6, 10}, self.ph);
+        visit({"latitude_deg", "deg", "latitude, for pressure at depth", -90, 90}, self.latitude_deg);
+        visit({"sound_speed_law", "", "computes the speed of sound (Leroy, Robinson and Goldsmith 2008)"},
               self.sound_speed_law);
-        visit(Field{"profile", "", "CSV file with depth_m,sound_speed_m_s, which bends the rays; absent: straight"},
+        visit({"profile", "", "CSV file with depth_m,sound_speed_m_s, which bends the rays; absent: straight"},
               self.profile);
     }
 };

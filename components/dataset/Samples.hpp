@@ -1,13 +1,11 @@
 #pragma once
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "components/dataset/Sweep.hpp"
 #include "types/Extent.hpp"
-#include "types/Geometry.hpp"
 #include "types/Pose.hpp"
 
 namespace insonify::dataset {

@@ -33,14 +33,12 @@ struct Axis {
      *  millionths, so that processors that differ in the last bit of a logarithm draw the same. */
     double draw(uint64_t random) const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"from", "", "first of `count` steps", -1e7, 1e7}, self.from);
-        visit(Field{"to", "", "last of `count` steps", -1e7, 1e7}, self.to);
-        visit(Field{"count", "1", "steps", 1, 1e6}, self.count);
-        visit(Field{"uniform", "", "drawn uniformly: [min, max]", -1e7, 1e7}, self.uniform);
-        visit(Field{"normal", "", "drawn from a normal law: [mean, deviation]", -1e7, 1e7}, self.normal);
+    static void describe(auto& self, auto& visit) {
+        visit({"from", "", "first of `count` steps", -1e7, 1e7}, self.from);
+        visit({"to", "", "last of `count` steps", -1e7, 1e7}, self.to);
+        visit({"count", "1", "steps", 1, 1e6}, self.count);
+        visit({"uniform", "", "drawn uniformly: [min, max]", -1e7, 1e7}, self.uniform);
+        visit({"normal", "", "drawn from a normal law: [mean, deviation]", -1e7, 1e7}, self.normal);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -50,8 +48,7 @@ struct PoseAxes {
     Axis x, y, z, roll_deg, pitch_deg, yaw_deg;
 
     /** Calls visit(name, unit, axis) for each axis, in the order in which a grid nests: the last varies fastest. */
-    template <class Self, class V>
-    static void forEach(Self& self, V&& visit) {
+    static void forEach(auto& self, auto&& visit) {
         visit("x", "m", self.x);
         visit("y", "m", self.y);
         visit("z", "m", self.z);
@@ -72,15 +69,13 @@ struct TrajectoryPoses {
     std::optional<pose::SeaMotionConfig> motion = {};
     int line = 0, column = 0;  ///< Its place in the sweep.
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz, relative to the sweep"}, self.file);
-        visit(Field{"count", "1", "poses, evenly from `from` to `to`", 1, 1e6}, self.count);
-        visit(Field{"period", "s", "instead: time between two poses", 1e-3, 1e6}, self.period);
-        visit(Field{"from", "s", "time of the first; absent: the start of the trajectory", 0, 1e10}, self.from);
-        visit(Field{"to", "s", "time of the last; absent: the end of the trajectory", 0, 1e10}, self.to);
-        visit(Field{"motion", "", "of the carrier on waves, on top of the trajectory; absent: none"}, self.motion);
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz, relative to the sweep"}, self.file);
+        visit({"count", "1", "poses, evenly from `from` to `to`", 1, 1e6}, self.count);
+        visit({"period", "s", "instead: time between two poses", 1e-3, 1e6}, self.period);
+        visit({"from", "s", "time of the first; absent: the start of the trajectory", 0, 1e10}, self.from);
+        visit({"to", "s", "time of the last; absent: the end of the trajectory", 0, 1e10}, self.to);
+        visit({"motion", "", "of the carrier on waves, on top of the trajectory; absent: none"}, self.motion);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -95,15 +90,13 @@ struct LinesConfig {
 
     double duration() const { return period * (count - 1); }  ///< Time from the first to the last line [s].
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"count", "1", "lines of a sample", 2, 10000}, self.count);
-        visit(Field{"period", "s", "between two lines", 1e-3, 1e3}, self.period);
-        visit(Field{"speed", "m/s", "straight ahead by the pose's heading; with a trajectory absent, as it has its own",
-                    0, 100},
+    static void describe(auto& self, auto& visit) {
+        visit({"count", "1", "lines of a sample", 2, 10000}, self.count);
+        visit({"period", "s", "between two lines", 1e-3, 1e3}, self.period);
+        visit({"speed", "m/s", "straight ahead by the pose's heading; with a trajectory absent, as it has its own", 0,
+               100},
               self.speed);
-        visit(Field{"motion", "", "of the carrier on waves, on top of the straight way; absent: none"}, self.motion);
+        visit({"motion", "", "of the carrier on waves, on top of the straight way; absent: none"}, self.motion);
     }
 };
 
@@ -120,31 +113,26 @@ struct ObjectGroup {
     std::vector<uint32_t> count;
     int line = 0, column = 0;  ///< Its place in the sweep.
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"names", "", "nodes of the scene; a * matches any letters"}, self.names);
-        visit(Field{"x", "m", "area: [min, max], north in the world, ahead of the vehicle", -1e7, 1e7}, self.x);
-        visit(Field{"y", "m", "area: [min, max], west in the world, to port of the vehicle", -1e7, 1e7}, self.y);
-        visit(Field{"z", "m", "height of the node's origin: [min, max]; absent: as in the file, or on the ground", -1e5,
-                    1e5},
-              self.z);
+    static void describe(auto& self, auto& visit) {
+        visit({"names", "", "nodes of the scene; a * matches any letters"}, self.names);
+        visit({"x", "m", "area: [min, max], north in the world, ahead of the vehicle", -1e7, 1e7}, self.x);
+        visit({"y", "m", "area: [min, max], west in the world, to port of the vehicle", -1e7, 1e7}, self.y);
         visit(
-            Field{"ground", "", "instead of z: node on whose highest surface they are placed; a * matches any letters"},
-            self.ground);
-        visit(
-            Field{"yaw_deg", "deg", "turn about the vertical, in addition to that in the file: [min, max]", -360, 360},
-            self.yaw_deg);
-        visit(Field{"roll_deg", "deg", "before yaw_deg, turn about the world's x axis: [min, max]", -360, 360},
+            {"z", "m", "height of the node's origin: [min, max]; absent: as in the file, or on the ground", -1e5, 1e5},
+            self.z);
+        visit({"ground", "", "instead of z: node on whose highest surface they are placed; a * matches any letters"},
+              self.ground);
+        visit({"yaw_deg", "deg", "turn about the vertical, in addition to that in the file: [min, max]", -360, 360},
+              self.yaw_deg);
+        visit({"roll_deg", "deg", "before yaw_deg, turn about the world's x axis: [min, max]", -360, 360},
               self.roll_deg);
-        visit(Field{"pitch_deg", "deg", "between the two, turn about the y axis: [min, max]", -360, 360},
-              self.pitch_deg);
-        visit(Field{"any_turn", "", "instead of the three: turned any way, each equally likely"}, self.any_turn);
-        visit(Field{"scale", "1", "factor of the size in the file: [min, max], drawn for each", 1e-3, 1e3}, self.scale);
-        visit(Field{"frame", "", "of the area: world, or vehicle, by its place and heading"}, self.frame);
-        visit(Field{"gap", "m", "between upright cylinders about them", 0, 1e4}, self.gap);
-        visit(Field{"avoid", "", "nodes whose boxes they keep clear of"}, self.avoid);
-        visit(Field{"count", "1", "number of them that are present: [min, max]; absent: all", 0, 1e6}, self.count);
+        visit({"pitch_deg", "deg", "between the two, turn about the y axis: [min, max]", -360, 360}, self.pitch_deg);
+        visit({"any_turn", "", "instead of the three: turned any way, each equally likely"}, self.any_turn);
+        visit({"scale", "1", "factor of the size in the file: [min, max], drawn for each", 1e-3, 1e3}, self.scale);
+        visit({"frame", "", "of the area: world, or vehicle, by its place and heading"}, self.frame);
+        visit({"gap", "m", "between upright cylinders about them", 0, 1e4}, self.gap);
+        visit({"avoid", "", "nodes whose boxes they keep clear of"}, self.avoid);
+        visit({"count", "1", "number of them that are present: [min, max]; absent: all", 0, 1e6}, self.count);
     }
     bool tilts() const { return any_turn || !roll_deg.empty() || !pitch_deg.empty(); }
     void check(types::Diagnostics& diagnostics) const;
@@ -157,12 +145,10 @@ struct Split {
     /** Returns the part of a sample. It depends only on the sample's number, not on the number of samples. */
     Part of(uint64_t seed, uint64_t index) const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"train", "1", "share of the samples for training", 0, 1}, self.train);
-        visit(Field{"val", "1", "for validation", 0, 1}, self.val);
-        visit(Field{"test", "1", "for tests", 0, 1}, self.test);
+    static void describe(auto& self, auto& visit) {
+        visit({"train", "1", "share of the samples for training", 0, 1}, self.train);
+        visit({"val", "1", "for validation", 0, 1}, self.val);
+        visit({"test", "1", "for tests", 0, 1}, self.test);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -175,14 +161,12 @@ struct AnnotationConfig {
     bool shadows = false;
     bool ghosts = false;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"min_share", "1", "min share of a bin's energy that comes from its object", 0, 1}, self.min_share);
-        visit(Field{"min_level", "1", "min grey level of an annotated pixel", 0, 255}, self.min_level);
-        visit(Field{"min_pixels", "1", "min pixels of an annotated object", 1, 1e6}, self.min_pixels);
-        visit(Field{"shadows", "", "annotates the shadow of each object as well, in a class of its own"}, self.shadows);
-        visit(Field{"ghosts", "", "annotates echoes by the water surface or other mirrors, in the class ghost"},
+    static void describe(auto& self, auto& visit) {
+        visit({"min_share", "1", "min share of a bin's energy that comes from its object", 0, 1}, self.min_share);
+        visit({"min_level", "1", "min grey level of an annotated pixel", 0, 255}, self.min_level);
+        visit({"min_pixels", "1", "min pixels of an annotated object", 1, 1e6}, self.min_pixels);
+        visit({"shadows", "", "annotates the shadow of each object as well, in a class of its own"}, self.shadows);
+        visit({"ghosts", "", "annotates echoes by the water surface or other mirrors, in the class ghost"},
               self.ghosts);
     }
 };

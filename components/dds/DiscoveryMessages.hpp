@@ -8,8 +8,6 @@
 
 namespace insonify::dds {
 
-using types::Field;
-
 /** Identifier of 16 bytes since ROS 2 Iron, 24 in Humble and before. */
 template <size_t size>
 struct Gid {
@@ -18,10 +16,7 @@ struct Gid {
     std::array<uint8_t, size> data{};
 
     friend bool operator==(const Gid&, const Gid&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"data"}, self.data);
-    }
+    static void describe(auto& self, auto& visit) { visit({"data"}, self.data); }
 };
 
 template <size_t gid_size>
@@ -32,12 +27,11 @@ struct NodeEntitiesInfo {
     std::vector<Gid<gid_size>> reader_gid_seq, writer_gid_seq;
 
     friend bool operator==(const NodeEntitiesInfo&, const NodeEntitiesInfo&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"node_namespace"}, self.node_namespace);
-        visit(Field{"node_name"}, self.node_name);
-        visit(Field{"reader_gid_seq"}, self.reader_gid_seq);
-        visit(Field{"writer_gid_seq"}, self.writer_gid_seq);
+    static void describe(auto& self, auto& visit) {
+        visit({"node_namespace"}, self.node_namespace);
+        visit({"node_name"}, self.node_name);
+        visit({"reader_gid_seq"}, self.reader_gid_seq);
+        visit({"writer_gid_seq"}, self.writer_gid_seq);
     }
 };
 
@@ -50,10 +44,9 @@ struct ParticipantEntitiesInfo {
     std::vector<NodeEntitiesInfo<gid_size>> node_entities_info_seq;
 
     friend bool operator==(const ParticipantEntitiesInfo&, const ParticipantEntitiesInfo&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"gid"}, self.gid);
-        visit(Field{"node_entities_info_seq"}, self.node_entities_info_seq);
+    static void describe(auto& self, auto& visit) {
+        visit({"gid"}, self.gid);
+        visit({"node_entities_info_seq"}, self.node_entities_info_seq);
     }
 };
 

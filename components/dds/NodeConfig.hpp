@@ -18,18 +18,16 @@ struct NodeConfig {
     ros::WorldFrame world_frame = ros::WorldFrame::Enu;
     int gid_size = 16;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"domain", "1", "DDS domain; absent: ROS_DOMAIN_ID, or 0", 0, highest_domain}, self.domain);
-        visit(Field{"node_name", "", "name of the ROS 2 node, /auv/sonar with a namespace; empty: the task's"},
+    static void describe(auto& self, auto& visit) {
+        visit({"domain", "1", "DDS domain; absent: ROS_DOMAIN_ID, or 0", 0, highest_domain}, self.domain);
+        visit({"node_name", "", "name of the ROS 2 node, /auv/sonar with a namespace; empty: the task's"},
               self.node_name);
-        visit(Field{"world_frame", "",
-                    "axes of poses on the wire: ours (x north, y west, z up), x east, y north, z up, or x north, y "
-                    "east, z down"},
+        visit({"world_frame", "",
+               "axes of poses on the wire: ours (x north, y west, z up), x east, y north, z up, or x north, y "
+               "east, z down"},
               self.world_frame);
-        visit(Field{"gid_size", "B", "size of identifiers in ros_discovery_info: 16, or 24 for ROS 2 Humble and before",
-                    16, 24},
+        visit({"gid_size", "B", "size of identifiers in ros_discovery_info: 16, or 24 for ROS 2 Humble and before", 16,
+               24},
               self.gid_size);
     }
     void check(types::Diagnostics& diagnostics) const {
@@ -46,8 +44,7 @@ struct NodeConfig {
 
 /** Throws types::ConfigError with the diagnostics of a configuration whose names have been resolved for the
  *  deployment. */
-template <class Config>
-void refuseWrong(const Config& named) {
+void refuseWrong(const auto& named) {
     types::Diagnostics diagnostics;
     named.check(diagnostics);
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);

@@ -7,8 +7,6 @@
 
 namespace insonify::dds {
 
-using types::Field;
-
 /** rcl_interfaces/msg/ParameterType. */
 enum class ParameterType : uint8_t {
     NotSet,
@@ -36,18 +34,17 @@ struct ParameterValue {
     std::vector<double> double_array_value;
     std::vector<std::string> string_array_value;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"type"}, self.type);
-        visit(Field{"bool_value"}, self.bool_value);
-        visit(Field{"integer_value"}, self.integer_value);
-        visit(Field{"double_value"}, self.double_value);
-        visit(Field{"string_value"}, self.string_value);
-        visit(Field{"byte_array_value"}, self.byte_array_value);
-        visit(Field{"bool_array_value"}, self.bool_array_value);
-        visit(Field{"integer_array_value"}, self.integer_array_value);
-        visit(Field{"double_array_value"}, self.double_array_value);
-        visit(Field{"string_array_value"}, self.string_array_value);
+    static void describe(auto& self, auto& visit) {
+        visit({"type"}, self.type);
+        visit({"bool_value"}, self.bool_value);
+        visit({"integer_value"}, self.integer_value);
+        visit({"double_value"}, self.double_value);
+        visit({"string_value"}, self.string_value);
+        visit({"byte_array_value"}, self.byte_array_value);
+        visit({"bool_array_value"}, self.bool_array_value);
+        visit({"integer_array_value"}, self.integer_array_value);
+        visit({"double_array_value"}, self.double_array_value);
+        visit({"string_array_value"}, self.string_array_value);
     }
 };
 
@@ -57,10 +54,9 @@ struct Parameter {
     std::string name;
     ParameterValue value;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"name"}, self.name);
-        visit(Field{"value"}, self.value);
+    static void describe(auto& self, auto& visit) {
+        visit({"name"}, self.name);
+        visit({"value"}, self.value);
     }
 };
 
@@ -70,10 +66,9 @@ struct SetParametersResult {
     bool successful = false;
     std::string reason;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"successful"}, self.successful);
-        visit(Field{"reason"}, self.reason);
+    static void describe(auto& self, auto& visit) {
+        visit({"successful"}, self.successful);
+        visit({"reason"}, self.reason);
     }
 };
 
@@ -85,11 +80,10 @@ struct ParameterRange {
     Number from_value = 0, to_value = 0;
     Step step = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"from_value"}, self.from_value);
-        visit(Field{"to_value"}, self.to_value);
-        visit(Field{"step"}, self.step);
+    static void describe(auto& self, auto& visit) {
+        visit({"from_value"}, self.from_value);
+        visit({"to_value"}, self.to_value);
+        visit({"step"}, self.step);
     }
 };
 
@@ -103,16 +97,15 @@ struct ParameterDescriptor {
     std::vector<ParameterRange<double, double>> floating_point_range;
     std::vector<ParameterRange<int64_t, uint64_t>> integer_range;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"name"}, self.name);
-        visit(Field{"type"}, self.type);
-        visit(Field{"description"}, self.description);
-        visit(Field{"additional_constraints"}, self.additional_constraints);
-        visit(Field{"read_only"}, self.read_only);
-        visit(Field{"dynamic_typing"}, self.dynamic_typing);
-        visit(Field{"floating_point_range"}, self.floating_point_range);
-        visit(Field{"integer_range"}, self.integer_range);
+    static void describe(auto& self, auto& visit) {
+        visit({"name"}, self.name);
+        visit({"type"}, self.type);
+        visit({"description"}, self.description);
+        visit({"additional_constraints"}, self.additional_constraints);
+        visit({"read_only"}, self.read_only);
+        visit({"dynamic_typing"}, self.dynamic_typing);
+        visit({"floating_point_range"}, self.floating_point_range);
+        visit({"integer_range"}, self.integer_range);
     }
 };
 
@@ -123,10 +116,7 @@ struct OneField {
     static constexpr const char* type_hash = "";
     T field;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"field"}, self.field);
-    }
+    static void describe(auto& self, auto& visit) { visit({"field"}, self.field); }
 };
 
 struct ListParametersRequest {
@@ -135,10 +125,9 @@ struct ListParametersRequest {
     std::vector<std::string> prefixes;
     uint64_t depth = 0;  ///< Max number of words after the prefix; 0: any.
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"prefixes"}, self.prefixes);
-        visit(Field{"depth"}, self.depth);
+    static void describe(auto& self, auto& visit) {
+        visit({"prefixes"}, self.prefixes);
+        visit({"depth"}, self.depth);
     }
 };
 
@@ -147,10 +136,9 @@ struct ListParametersResponse {
     static constexpr const char* type_hash = "";
     std::vector<std::string> names, prefixes;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"names"}, self.names);
-        visit(Field{"prefixes"}, self.prefixes);
+    static void describe(auto& self, auto& visit) {
+        visit({"names"}, self.names);
+        visit({"prefixes"}, self.prefixes);
     }
 };
 

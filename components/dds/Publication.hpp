@@ -48,8 +48,7 @@ concept Fills = requires(const T& sample, const ros::MessageOptions& options, Me
 };
 
 /** Names the frames of a message given in the world frame: a pose, points. */
-template <class Message>
-void nameFrames(const TopicOptions& options, Message& message) {
+void nameFrames(const TopicOptions& options, auto& message) {
     if constexpr (requires { message.header; }) nameFrame(message.header.frame_id, options.world_frame_id, "map");
     if constexpr (requires { message.child_frame_id; }) {
         nameFrame(message.child_frame_id, options.child_frame_id, "base_link");

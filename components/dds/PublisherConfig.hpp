@@ -25,13 +25,11 @@ struct TopicOut {
     std::optional<std::string> child_frame_id;
     ros::SonarOptions sonar = withoutFrame();
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"port", "", "input port that a connection leads to"}, self.port);
-        visit(Field{"topic", "", "as in ROS: /auv/sonar"}, self.topic);
-        visit(Field{"type", "", "type of the ROS message"}, self.type);
-        visit(Field{"child_frame_id", "", "the body of an Odometry; absent: what its pose names, or base_link"},
+    static void describe(auto& self, auto& visit) {
+        visit({"port", "", "input port that a connection leads to"}, self.port);
+        visit({"topic", "", "as in ROS: /auv/sonar"}, self.topic);
+        visit({"type", "", "type of the ROS message"}, self.type);
+        visit({"child_frame_id", "", "the body of an Odometry; absent: what its pose names, or base_link"},
               self.child_frame_id);
         ros::SonarOptions::describe(self.sonar, visit);
     }
@@ -42,10 +40,9 @@ struct StaticTransforms {
     std::string topic = "/tf_static";
     std::string frame_id = "base_link";
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"topic", "", "as in ROS"}, self.topic);
-        visit(types::Field{"frame_id", "", "frame of the body that carries the sonars"}, self.frame_id);
+    static void describe(auto& self, auto& visit) {
+        visit({"topic", "", "as in ROS"}, self.topic);
+        visit({"frame_id", "", "frame of the body that carries the sonars"}, self.frame_id);
     }
 };
 
@@ -69,25 +66,22 @@ struct PublisherConfig {
     bool parameter_services = false;
     NodeConfig node;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"topics", "", "what is sent; a port may have several"}, self.topics);
-        visit(Field{"frame_id", "", "frame of pings and pictures; a topic may have its own"}, self.frame_id);
-        visit(Field{"world_frame_id", "",
-                    "world frame of poses; a topic may have its own; absent: the frame that the poses name, or map"},
+    static void describe(auto& self, auto& visit) {
+        visit({"topics", "", "what is sent; a port may have several"}, self.topics);
+        visit({"frame_id", "", "frame of pings and pictures; a topic may have its own"}, self.frame_id);
+        visit({"world_frame_id", "",
+               "world frame of poses; a topic may have its own; absent: the frame that the poses name, or map"},
               self.world_frame_id);
-        visit(Field{"reliability", "", "readers that request reliable receive nothing from a best_effort writer"},
+        visit({"reliability", "", "readers that request reliable receive nothing from a best_effort writer"},
               self.reliability);
-        visit(Field{"tf_static", "",
-                    "publishes the transforms from the body to the frames of pings, from the scene's mount; absent: "
-                    "not published"},
+        visit({"tf_static", "",
+               "publishes the transforms from the body to the frames of pings, from the scene's mount; absent: "
+               "not published"},
               self.tf_static);
-        visit(Field{"depth", "1", "messages kept for readers that are behind", 1, 1000}, self.depth);
-        visit(
-            Field{"parameter_services", "",
-                  "whether nodes with rmw_cyclonedds_cpp may list, get, set and describe the properties of all tasks"},
-            self.parameter_services);
+        visit({"depth", "1", "messages kept for readers that are behind", 1, 1000}, self.depth);
+        visit({"parameter_services", "",
+               "whether nodes with rmw_cyclonedds_cpp may list, get, set and describe the properties of all tasks"},
+              self.parameter_services);
         NodeConfig::describe(self.node, visit);
     }
     std::string frameOf(const TopicOut& topic) const {

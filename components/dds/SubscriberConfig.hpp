@@ -20,15 +20,13 @@ struct TopicIn {
     PoseType type = PoseType::Odometry;
     StampFrom stamp = StampFrom::Message;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"topic", "", "as in ROS: /auv/odometry"}, self.topic);
-        visit(Field{"port", "", "output port that connections lead from"}, self.port);
-        visit(Field{"type", "", "type of the ROS message"}, self.type);
-        visit(Field{"stamp", "",
-                    "time of a pose: its message's, or that of its arrival, for a sender whose clock is not ours (a "
-                    "simulator's, a bag's)"},
+    static void describe(auto& self, auto& visit) {
+        visit({"topic", "", "as in ROS: /auv/odometry"}, self.topic);
+        visit({"port", "", "output port that connections lead from"}, self.port);
+        visit({"type", "", "type of the ROS message"}, self.type);
+        visit({"stamp", "",
+               "time of a pose: its message's, or that of its arrival, for a sender whose clock is not ours (a "
+               "simulator's, a bag's)"},
               self.stamp);
     }
 };
@@ -39,13 +37,10 @@ struct SubscriberConfig {
     Reliability reliability = Reliability::BestEffort;
     int depth = 1;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"topics", "", "topics that are read"}, self.topics);
-        visit(Field{"reliability", "", "reliable receives nothing from best-effort writers"}, self.reliability);
-        visit(Field{"depth", "1", "messages that wait to be taken; 1: only the newest is handed on", 1, 1000},
-              self.depth);
+    static void describe(auto& self, auto& visit) {
+        visit({"topics", "", "topics that are read"}, self.topics);
+        visit({"reliability", "", "reliable receives nothing from best-effort writers"}, self.reliability);
+        visit({"depth", "1", "messages that wait to be taken; 1: only the newest is handed on", 1, 1000}, self.depth);
         NodeConfig::describe(self.node, visit);
     }
     /** Resolves the names of topics and the node in a deployment. @param task the name of the reading task */

@@ -1,7 +1,6 @@
 #pragma once
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "components/dds/Endpoints.hpp"
 #include "components/dds/SubscriberConfig.hpp"

@@ -1,5 +1,4 @@
 #pragma once
-#include <set>
 #include <string>
 #include <vector>
 
@@ -13,11 +12,9 @@ struct FrameOut {
     std::string port = "pose";
     std::string frame_id = "base_link";
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"port", "", "output port that connections lead from"}, self.port);
-        visit(Field{"frame_id", "", "frame of the body"}, self.frame_id);
+    static void describe(auto& self, auto& visit) {
+        visit({"port", "", "output port that connections lead from"}, self.port);
+        visit({"frame_id", "", "frame of the body"}, self.frame_id);
     }
 };
 
@@ -31,19 +28,17 @@ struct TransformConfig {
 
     TransformConfig();  // not inline: g++ 12 warns that its texts are uninitialized
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"frames", "", "frames whose poses are published"}, self.frames);
-        visit(Field{"world_frame_id", "", "reference frame of the poses; its axes are those of world_frame"},
+    static void describe(auto& self, auto& visit) {
+        visit({"frames", "", "frames whose poses are published"}, self.frames);
+        visit({"world_frame_id", "", "reference frame of the poses; its axes are those of world_frame"},
               self.world_frame_id);
-        visit(Field{"topic", "", "topic of moving transforms"}, self.topic);
-        visit(Field{"static_topic", "", "topic of static transforms"}, self.static_topic);
-        visit(Field{"stamp", "",
-                    "time of a transform: its message's, or that of its arrival, for a sender whose clock is not ours "
-                    "(a simulator's, a bag's)"},
+        visit({"topic", "", "topic of moving transforms"}, self.topic);
+        visit({"static_topic", "", "topic of static transforms"}, self.static_topic);
+        visit({"stamp", "",
+               "time of a transform: its message's, or that of its arrival, for a sender whose clock is not ours "
+               "(a simulator's, a bag's)"},
               self.stamp);
-        visit(Field{"reliability", "", "of moving transforms; reliable receives nothing from best-effort writers"},
+        visit({"reliability", "", "of moving transforms; reliable receives nothing from best-effort writers"},
               self.reliability);
         NodeConfig::describe(self.node, visit);
     }

@@ -124,8 +124,7 @@ void TransformTask::add(const ros::TransformStamped& transform, bool is_static) 
     if (is_stamped && !is_static) ros::fineStamps().note(stamp);
 }
 
-template <class Output>
-void TransformTask::report(Output& output) {
+void TransformTask::report(auto& output) {
     auto& kept = output.kept;
     auto [placed, diagnostic] = tree_.newest(config->world_frame_id, kept.frame_id, now());
     if (placed && diagnostic.empty())

@@ -48,8 +48,7 @@ private:
 
     void take(Reader& reader, bool is_static);
     void add(const ros::TransformStamped& transform, bool is_static);
-    template <class Output>
-    void report(Output& output);
+    void report(auto& output);
 
     std::optional<Node> node_;
     std::unique_ptr<Reader> moving_, fixed_;

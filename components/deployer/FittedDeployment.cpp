@@ -1,7 +1,6 @@
 #include "components/deployer/FittedDeployment.hpp"
 
 #include <map>
-#include <set>
 #include <sstream>
 
 #include "components/deployer/DeploymentFile.hpp"

@@ -12,7 +12,6 @@
 #include "components/output/SideScanFile.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/sonar/SideScanTask.hpp"
-#include "types/Angle.hpp"
 #include "types/Range.hpp"
 
 namespace insonify::deployer {

@@ -1,13 +1,11 @@
 #pragma once
 #include <map>
-#include <string>
 #include <vector>
 
 #include "components/deployer/Json.hpp"
 #include "components/log/Reader.hpp"
 #include "types/Mount.hpp"
 #include "types/Pose.hpp"
-#include "types/Range.hpp"
 
 namespace insonify::deployer {
 

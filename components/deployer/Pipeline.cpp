@@ -20,8 +20,7 @@ namespace {
 using framework::Deployment;
 using framework::DeploymentSpec;
 
-template <class Ports>
-bool carriesPings(const Ports& ports) {
+bool carriesPings(const auto& ports) {
     for (const auto* port : ports)
         if (port->typeName() == types::Sonar::type_name) return true;
     return false;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <set>
 
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"

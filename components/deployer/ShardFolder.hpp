@@ -1,7 +1,6 @@
 #pragma once
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "components/command/Json.hpp"
 #include "components/command/Shard.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "components/command/Sha256.hpp"
 #include "components/deployer/Pipeline.hpp"

@@ -1,6 +1,5 @@
 #include "components/deployer/StreamMeaning.hpp"
 
-#include <optional>
 #include <set>
 
 #include "components/deployer/ReplaySpec.hpp"

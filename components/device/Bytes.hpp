@@ -33,8 +33,7 @@ void write(Bytes& bytes, size_t at, T value) {
 }
 
 /** Appends a number. Not inlined, because g++ 12 then warns falsely about consecutive numbers. */
-template <class T>
-[[gnu::noinline]] void append(Bytes& bytes, T value) {
+[[gnu::noinline]] void append(Bytes& bytes, auto value) {
     bytes.resize(bytes.size() + sizeof value);
     write(bytes, bytes.size() - sizeof value, value);
 }

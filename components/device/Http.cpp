@@ -28,8 +28,7 @@ Bytes bytesOf(const std::ostringstream& stream) {
     return {text.begin(), text.end()};
 }
 
-template <class Message>
-Bytes serialised(Message& message) {
+Bytes serialised(auto& message) {
     message.prepare_payload();
     std::ostringstream stream;
     stream << message;
@@ -45,8 +44,7 @@ bool take(std::string_view& text, char c) {
 }
 
 /** Parses a number at the front of a text, in the C locale, not the host's. */
-template <class Number>
-bool take(std::string_view& text, Number& number, size_t max_characters) {
+bool take(std::string_view& text, auto& number, size_t max_characters) {
     const char* const end = text.data() + std::min(max_characters, text.size());
     const auto [stop, error] = std::from_chars(text.data(), end, number);
     text.remove_prefix(static_cast<size_t>(stop - text.data()));

@@ -21,17 +21,14 @@ struct MicronDevice {
     double boot_time = 0.5;        ///< From power-on or reboot to the first mtAlive [s].
     double centring_time = 3;      ///< From then until the motor has found its centre [s].
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"serial_number", "1", "reported to drivers", 0, 65535}, self.serial_number);
-        visit(Field{"frequency_khz", "kHz", "for head commands without a frequency", 100, 2000}, self.frequency_khz);
-        visit(Field{"speed_of_sound", "m/s", "converts the times of scan lines to the sonar's range", 1000, 2000},
+    static void describe(auto& self, auto& visit) {
+        visit({"serial_number", "1", "reported to drivers", 0, 65535}, self.serial_number);
+        visit({"frequency_khz", "kHz", "for head commands without a frequency", 100, 2000}, self.frequency_khz);
+        visit({"speed_of_sound", "m/s", "converts the times of scan lines to the sonar's range", 1000, 2000},
               self.speed_of_sound);
-        visit(Field{"boot_time", "s", "from power-on or reboot to the head's first mtAlive", 0, 60}, self.boot_time);
-        visit(
-            Field{"centring_time", "s", "then, until the motor has found its centre; no line is scanned before", 0, 60},
-            self.centring_time);
+        visit({"boot_time", "s", "from power-on or reboot to the head's first mtAlive", 0, 60}, self.boot_time);
+        visit({"centring_time", "s", "then, until the motor has found its centre; no line is scanned before", 0, 60},
+              self.centring_time);
     }
 };
 

@@ -14,14 +14,12 @@ struct MicronConfig {
     std::string serial;
     MicronDevice device;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
+    static void describe(auto& self, auto& visit) {
         visit(listen_address, self.address);
-        visit(Field{"port", "1", "TCP port; 0: a free port, named in a notice", 0, 65535}, self.port);
-        visit(Field{"serial", "",
-                    "the file that drivers open as a serial line, relative to the run's output folder; "
-                    "empty: none"},
+        visit({"port", "1", "TCP port; 0: a free port, named in a notice", 0, 65535}, self.port);
+        visit({"serial", "",
+               "the file that drivers open as a serial line, relative to the run's output folder; "
+               "empty: none"},
               self.serial);
         MicronDevice::describe(self.device, visit);
     }

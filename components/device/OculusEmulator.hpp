@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <map>
@@ -7,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "components/device/AskedPings.hpp"
 #include "components/device/OculusMessages.hpp"
@@ -55,21 +53,19 @@ struct OculusConfig {
     double pressure_bar = 1.5;
     std::string device_address;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"model", "", "sets frequencies, ranges and angles"}, self.model);
-        visit(Field{"serial_number", "1", "of the device, in its status and pings", 1, 65535}, self.serial_number);
-        visit(Field{"bin_count", "1", "of a beam; fewer where bins would be finer than the model's", 1, 65535},
+    static void describe(auto& self, auto& visit) {
+        visit({"model", "", "sets frequencies, ranges and angles"}, self.model);
+        visit({"serial_number", "1", "of the device, in its status and pings", 1, 65535}, self.serial_number);
+        visit({"bin_count", "1", "of a beam; fewer where bins would be finer than the model's", 1, 65535},
               self.bin_count);
-        visit(Field{"code_bits", "1", "of the receiver's codes of amplitude: its output code, law sqrt", 8, 16},
+        visit({"code_bits", "1", "of the receiver's codes of amplitude: its output code, law sqrt", 8, 16},
               self.code_bits);
-        visit(Field{"gain_min_db", "dB", "of the receiver at a gain of 0 %", -200, 200}, self.gain_min_db);
-        visit(Field{"gain_max_db", "dB", "of the receiver at a gain of 100 %", -200, 200}, self.gain_max_db);
-        visit(Field{"temperature_celsius", "degC", "of the water, as the device reports it", -5, 60},
+        visit({"gain_min_db", "dB", "of the receiver at a gain of 0 %", -200, 200}, self.gain_min_db);
+        visit({"gain_max_db", "dB", "of the receiver at a gain of 100 %", -200, 200}, self.gain_max_db);
+        visit({"temperature_celsius", "degC", "of the water, as the device reports it", -5, 60},
               self.temperature_celsius);
-        visit(Field{"pressure_bar", "bar", "of the water, as the device reports it", 0, 1200}, self.pressure_bar);
-        visit(Field{"device_address", "", "IPv4 address in its status, to which drivers connect; empty: `address`"},
+        visit({"pressure_bar", "bar", "of the water, as the device reports it", 0, 1200}, self.pressure_bar);
+        visit({"device_address", "", "IPv4 address in its status, to which drivers connect; empty: `address`"},
               self.device_address);
     }
 };

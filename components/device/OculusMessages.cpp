@@ -8,14 +8,12 @@
 namespace insonify::device {
 namespace {
 
-template <class Header, class Visit>
-void visitHeader(Header& header, Visit& visit) {
+void visitHeader(auto& header, auto& visit) {
     uint16_t mark = oculus_mark;
     visit(mark, header.source, header.destination, header.id, header.version, header.payload_size, header.part);
 }
 
-template <class Fire, class Visit>
-void visitFire(Fire& fire, Visit& visit) {
+void visitFire(auto& fire, auto& visit) {
     visitHeader(fire.header, visit);
     visit(fire.mode, fire.rate, fire.network_speed, fire.gamma, fire.flags, fire.range, fire.gain_percent,
           fire.speed_of_sound, fire.salinity);
@@ -23,8 +21,7 @@ void visitFire(Fire& fire, Visit& visit) {
     visit(fire.extended_flags, fire.reserved);
 }
 
-template <class Result, class Visit>
-void visitResult(Result& result, Visit& visit) {
+void visitResult(auto& result, auto& visit) {
     visitFire(result.fire, visit);
     const bool version2 = result.fire.isVersion2();
     visit(result.number, result.status, result.frequency_hz, result.temperature_celsius, result.pressure_bar);
@@ -36,15 +33,13 @@ void visitResult(Result& result, Visit& visit) {
     visit(result.image_offset, result.image_size, result.message_size);
 }
 
-template <class Status, class Visit>
-void visitStatus(Status& status, Visit& visit) {
+void visitStatus(auto& status, auto& visit) {
     visitHeader(status.header, visit);
     visit(status.device_id, status.device_type, status.part, status.status, status.versions, status.address,
           status.mask, status.connected, status.mac, status.temperatures, status.pressure_bar);
 }
 
-template <class Config, class Visit>
-void visitUserConfig(Config& config, Visit& visit) {
+void visitUserConfig(auto& config, auto& visit) {
     visitHeader(config.header, visit);
     visit(config.address, config.mask, config.dhcp);
 }

@@ -14,13 +14,11 @@ namespace {
 constexpr uint32_t file_mark = 0x11223344, item_mark = 0xaabbccdd;
 constexpr size_t max_recorded_payload = size_t{1} << 28;
 
-template <class Header, class Visit>
-void visitFileHeader(Header& header, Visit&& visit) {
+void visitFileHeader(auto& header, auto&& visit) {
     visit(header.source, header.version, header.encryption, header.unused, header.key, header.time);
 }
 
-template <class Item, class Size, class Visit>
-void visitItem(Item& item, Size&& payload_size, Visit&& visit) {
+void visitItem(auto& item, auto&& payload_size, auto&& visit) {
     visit(item.type, item.version, item.unused_a, item.time, item.compression, item.unused_b, item.original_size,
           payload_size, item.unused_c);
 }

@@ -20,20 +20,17 @@ struct OculusTaskConfig {
     std::optional<std::string> record;
     OculusConfig device;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
+    static void describe(auto& self, auto& visit) {
         visit(listen_address, self.address);
-        visit(Field{"port", "1", "TCP port; drivers expect 52100; 0: a free port, named in a notice", 0, 65535},
-              self.port);
-        visit(Field{"status_address", "",
-                    "destination of the status each second; a network's broadcast address, as "
-                    "192.168.2.255; 127.255.255.255: this machine"},
+        visit({"port", "1", "TCP port; drivers expect 52100; 0: a free port, named in a notice", 0, 65535}, self.port);
+        visit({"status_address", "",
+               "destination of the status each second; a network's broadcast address, as "
+               "192.168.2.255; 127.255.255.255: this machine"},
               self.status_address);
-        visit(Field{"status_port", "1", "UDP port of the status; drivers expect 52102", 1, 65535}, self.status_port);
-        visit(Field{"record", "",
-                    "file (.oculus) of the maker's viewer for the pings that are sent, relative to the output "
-                    "folder; absent: none"},
+        visit({"status_port", "1", "UDP port of the status; drivers expect 52102", 1, 65535}, self.status_port);
+        visit({"record", "",
+               "file (.oculus) of the maker's viewer for the pings that are sent, relative to the output "
+               "folder; absent: none"},
               self.record);
         OculusConfig::describe(self.device, visit);
     }

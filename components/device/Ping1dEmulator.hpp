@@ -10,11 +10,9 @@ struct Ping1dConfig {
     double max_range = 100;
     int profile_samples = 200;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"max_range", "m", "end of the scan, at most", 1, 1000}, self.max_range);
-        visit(Field{"profile_samples", "1", "of a profile", 10, 1200}, self.profile_samples);
+    static void describe(auto& self, auto& visit) {
+        visit({"max_range", "m", "end of the scan, at most", 1, 1000}, self.max_range);
+        visit({"profile_samples", "1", "of a profile", 10, 1200}, self.profile_samples);
     }
 };
 

@@ -10,10 +10,7 @@ struct Ping1dValue {
     static constexpr uint16_t message = Id;
     T value = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.value);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.value); }
 };
 
 using Ping1dSetDeviceId = Ping1dValue<1000, uint8_t>;
@@ -41,10 +38,7 @@ struct Ping1dScan {
     static constexpr uint16_t message = Id;
     uint32_t start = 0, length = 0;  ///< [mm]
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.start, self.length);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.start, self.length); }
 };
 using Ping1dSetRange = Ping1dScan<1001>;
 using Ping1dRange = Ping1dScan<1204>;
@@ -54,10 +48,7 @@ struct Ping1dFirmwareVersion {
     uint8_t type = 1, model = 1;
     uint16_t major = 0, minor = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.type, self.model, self.major, self.minor);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.type, self.model, self.major, self.minor); }
 };
 
 struct Ping1dGeneralInfo {
@@ -65,8 +56,7 @@ struct Ping1dGeneralInfo {
     uint16_t major = 0, minor = 0, voltage_5 = 0, ping_interval = 0;
     uint8_t gain = 0, mode_auto = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         visit(self.major, self.minor, self.voltage_5, self.ping_interval, self.gain, self.mode_auto);
     }
 };
@@ -76,10 +66,7 @@ struct Ping1dDistanceSimple {
     uint32_t distance = 0;   ///< [mm]
     uint8_t confidence = 0;  ///< [%]
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.distance, self.confidence);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.distance, self.confidence); }
 };
 
 /** The result of a ping, and its settings. */
@@ -91,8 +78,7 @@ struct Ping1dMeasurement {
     uint32_t start = 0, length = 0;  ///< Start and length of the scan [mm].
     uint32_t gain = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         visit(self.distance, self.confidence, self.transmit_duration, self.ping_number, self.start, self.length,
               self.gain);
     }
@@ -102,10 +88,7 @@ struct Ping1dDistance {
     static constexpr uint16_t message = 1212;
     Ping1dMeasurement measurement;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        Ping1dMeasurement::describe(self.measurement, visit);
-    }
+    static void describe(auto& self, auto& visit) { Ping1dMeasurement::describe(self.measurement, visit); }
 };
 
 struct Ping1dProfile {
@@ -113,8 +96,7 @@ struct Ping1dProfile {
     Ping1dMeasurement measurement;
     Bytes data;  ///< Echoes at even steps through the scan, nearest first.
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         Ping1dMeasurement::describe(self.measurement, visit);
         visit(self.data);
     }

@@ -9,8 +9,7 @@ struct Ping1dTaskConfig {
     PingEnds ends{9090};
     Ping1dConfig device;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         PingEnds::describe(self.ends, visit);
         Ping1dConfig::describe(self.device, visit);
     }

@@ -16,15 +16,13 @@ struct Ping360Config {
     double ahead = 200;
     std::vector<double> gain_db = {0, 10, 20};
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"seconds_per_gradian", "s", "time of the head per gradian; a turn has 400", 0, 1},
+    static void describe(auto& self, auto& visit) {
+        visit({"seconds_per_gradian", "s", "time of the head per gradian; a turn has 400", 0, 1},
               self.seconds_per_gradian);
-        visit(Field{"overhead", "s", "between the last echo and the answer", 0, 10}, self.overhead);
-        visit(Field{"ahead", "gradian", "angle of the head that is ahead; the maker's viewer shows 200 there", 0, 399},
+        visit({"overhead", "s", "between the last echo and the answer", 0, 10}, self.overhead);
+        visit({"ahead", "gradian", "angle of the head that is ahead; the maker's viewer shows 200 there", 0, 399},
               self.ahead);
-        visit(Field{"gain_db", "dB", "of the receiver at gain settings 0, 1 and 2"}, self.gain_db);
+        visit({"gain_db", "dB", "of the receiver at gain settings 0, 1 and 2"}, self.gain_db);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

@@ -28,10 +28,7 @@ struct Ping360SetDeviceId {
     static constexpr uint16_t message = 2000;
     uint8_t device_id = 0, reserved = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.device_id, self.reserved);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.device_id, self.reserved); }
 };
 
 /** The sonar's state, and its echoes. */
@@ -42,8 +39,7 @@ struct Ping360DeviceData {
     Ping360Acoustics acoustics;
     Bytes data;  ///< Nearest first; empty: no ping was sent.
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         auto& a = self.acoustics;
         visit(self.mode, a.gain, self.angle, a.transmit_duration, a.sample_period, a.frequency_khz, a.samples,
               self.data);
@@ -59,8 +55,7 @@ struct Ping360AutoDeviceData {
     Ping360Sector sector;
     Bytes data;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         auto& a = self.acoustics;
         auto& s = self.sector;
         visit(self.mode, a.gain, self.angle, a.transmit_duration, a.sample_period, a.frequency_khz, s.start, s.stop,
@@ -72,10 +67,7 @@ struct Ping360Reset {
     static constexpr uint16_t message = 2600;
     uint8_t bootloader = 0, reserved = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.bootloader, self.reserved);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.bootloader, self.reserved); }
 };
 
 /** Turns the head and pings there. */
@@ -86,8 +78,7 @@ struct Ping360Transducer {
     Ping360Acoustics acoustics;
     uint8_t transmit = 0, reserved = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         auto& a = self.acoustics;
         visit(self.mode, a.gain, self.angle, a.transmit_duration, a.sample_period, a.frequency_khz, a.samples,
               self.transmit, self.reserved);
@@ -101,8 +92,7 @@ struct Ping360AutoTransmit {
     Ping360Acoustics acoustics;
     Ping360Sector sector;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         auto& a = self.acoustics;
         auto& s = self.sector;
         visit(self.mode, a.gain, a.transmit_duration, a.sample_period, a.frequency_khz, a.samples, s.start, s.stop,
@@ -113,10 +103,7 @@ struct Ping360AutoTransmit {
 struct Ping360MotorOff {
     static constexpr uint16_t message = 2903;
 
-    template <class Self, class V>
-    static void describe(Self& /*self*/, V& visit) {
-        visit();
-    }
+    static void describe(auto& /*self*/, auto& visit) { visit(); }
 };
 
 }  // namespace insonify::device

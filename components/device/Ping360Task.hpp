@@ -13,12 +13,10 @@ struct Ping360Discovery {
     std::string ip = "127.0.0.1";
     std::string mac = "02-00-00-00-03-60";
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"port", "1", "UDP port on which \"Discovery\" is answered; 0: a free port", 0, 65535}, self.port);
-        visit(Field{"ip", "", "address in the answer, for drivers; viewers ignore 127.0.0.1"}, self.ip);
-        visit(Field{"mac", "", "hardware address in the answer"}, self.mac);
+    static void describe(auto& self, auto& visit) {
+        visit({"port", "1", "UDP port on which \"Discovery\" is answered; 0: a free port", 0, 65535}, self.port);
+        visit({"ip", "", "address in the answer, for drivers; viewers ignore 127.0.0.1"}, self.ip);
+        visit({"mac", "", "hardware address in the answer"}, self.mac);
     }
     void check(types::Diagnostics& diagnostics) const;
     std::string answer() const;
@@ -29,11 +27,9 @@ struct Ping360TaskConfig {
     std::optional<Ping360Discovery> discovery;
     Ping360Config device;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         PingEnds::describe(self.ends, visit);
-        visit(types::Field{"discovery", "",
-                           "answers programs that search for the device; absent: drivers must know its address"},
+        visit({"discovery", "", "answers programs that search for the device; absent: drivers must know its address"},
               self.discovery);
         Ping360Config::describe(self.device, visit);
     }

@@ -111,8 +111,7 @@ protected:
     virtual void forget(PingClient client) = 0;
     virtual void proceed(types::Time now) = 0;
 
-    template <class Message>
-    void send(PingClient client, const Message& message, bool stream = false) {
+    void send(PingClient client, const auto& message, bool stream = false) {
         add({client, pingBytes(message, id_), stream});
     }
     void acknowledge(PingClient client, uint16_t message) { send(client, PingAck{message}); }

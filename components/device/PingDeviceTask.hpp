@@ -16,14 +16,12 @@ struct PingEnds {
 
     explicit PingEnds(int at) : port(at) {}
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
+    static void describe(auto& self, auto& visit) {
         visit(listen_address, self.address);
-        visit(Field{"port", "1", "of UDP, and of TCP; 0: free ports, named in a notice", 0, 65535}, self.port);
-        visit(Field{"serial", "",
-                    "a serial line as well: the file that drivers open, made when the task is configured, relative to "
-                    "the run's output folder; empty: none"},
+        visit({"port", "1", "of UDP, and of TCP; 0: free ports, named in a notice", 0, 65535}, self.port);
+        visit({"serial", "",
+               "a serial line as well: the file that drivers open, made when the task is configured, relative to "
+               "the run's output folder; empty: none"},
               self.serial);
     }
 };

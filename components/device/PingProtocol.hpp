@@ -114,10 +114,7 @@ struct PingAck {
     static constexpr uint16_t message = 1;
     uint16_t acked = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.acked);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.acked); }
 };
 
 struct PingNack {
@@ -125,20 +122,14 @@ struct PingNack {
     uint16_t nacked = 0;
     std::string text;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.nacked, self.text);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.nacked, self.text); }
 };
 
 struct PingText {
     static constexpr uint16_t message = 3;
     std::string text;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.text);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.text); }
 };
 
 enum class PingDeviceType : uint8_t { Unknown = 0, Ping1d = 1, Ping360 = 2 };
@@ -148,8 +139,7 @@ struct PingDeviceInformation {
     uint8_t type = 0;  ///< PingDeviceType, or a later type.
     uint8_t revision = 0, major = 0, minor = 0, patch = 0, reserved = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         visit(self.type, self.revision, self.major, self.minor, self.patch, self.reserved);
     }
 };
@@ -158,10 +148,7 @@ struct PingProtocolVersion {
     static constexpr uint16_t message = 5;
     uint8_t major = 1, minor = 0, patch = 0, reserved = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.major, self.minor, self.patch, self.reserved);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.major, self.minor, self.patch, self.reserved); }
 };
 
 /** Requests a message. */
@@ -169,20 +156,14 @@ struct PingGeneralRequest {
     static constexpr uint16_t message = 6;
     uint16_t requested = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.requested);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.requested); }
 };
 
 struct PingSetDeviceId {
     static constexpr uint16_t message = 100;
     uint8_t device_id = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(self.device_id);
-    }
+    static void describe(auto& self, auto& visit) { visit(self.device_id); }
 };
 
 }  // namespace insonify::device

@@ -2,8 +2,6 @@
 // SeaNet, the protocol of Tritech's sonars and their drivers over a serial line or TCP.
 #include <optional>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "components/device/Framer.hpp"
 

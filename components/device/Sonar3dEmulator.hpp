@@ -3,7 +3,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "components/device/AskedPings.hpp"
 #include "components/device/Http.hpp"
@@ -23,22 +22,19 @@ struct Sonar3dDevice {
     int multicast_port = 4747;
     bool compressed = true;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"longest_range", "m", "max range of the API", 1, 65}, self.longest_range);
-        visit(Field{"low_frequency_khz", "kHz", "of the mode of 90 x 40 degrees, 5 pings a second", 10, 10000},
+    static void describe(auto& self, auto& visit) {
+        visit({"longest_range", "m", "max range of the API", 1, 65}, self.longest_range);
+        visit({"low_frequency_khz", "kHz", "of the mode of 90 x 40 degrees, 5 pings a second", 10, 10000},
               self.low_frequency_khz);
-        visit(Field{"high_frequency_khz", "kHz", "of the mode of 40 x 40 degrees, 20 pings a second", 10, 10000},
+        visit({"high_frequency_khz", "kHz", "of the mode of 40 x 40 degrees, 20 pings a second", 10, 10000},
               self.high_frequency_khz);
-        visit(Field{"temperature_celsius", "degC", "in the housing, and of the water for the automatic speed of sound",
-                    -2, 40},
+        visit({"temperature_celsius", "degC", "in the housing, and of the water for the automatic speed of sound", -2,
+               40},
               self.temperature_celsius);
-        visit(Field{"multicast_address", "", "group that images are sent to unless the client sets another"},
+        visit({"multicast_address", "", "group that images are sent to unless the client sets another"},
               self.multicast_address);
-        visit(Field{"multicast_port", "1", "of the group", 1, 65535}, self.multicast_port);
-        visit(Field{"compressed", "", "whether images are RIP2, as of release 1.6; else RIP1, as before"},
-              self.compressed);
+        visit({"multicast_port", "1", "of the group", 1, 65535}, self.multicast_port);
+        visit({"compressed", "", "whether images are RIP2, as of release 1.6; else RIP1, as before"}, self.compressed);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

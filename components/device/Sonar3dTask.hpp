@@ -14,11 +14,9 @@ struct Sonar3dDeviceConfig {
     int port = 80;
     Sonar3dDevice device;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
+    static void describe(auto& self, auto& visit) {
         visit(listen_address, self.address);
-        visit(Field{"port", "1", "TCP port of the HTTP API; 0: a free port, named in a notice", 0, 65535}, self.port);
+        visit({"port", "1", "TCP port of the HTTP API; 0: a free port, named in a notice", 0, 65535}, self.port);
         Sonar3dDevice::describe(self.device, visit);
     }
     void check(types::Diagnostics& diagnostics) const { device.check(diagnostics); }

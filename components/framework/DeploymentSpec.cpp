@@ -10,8 +10,6 @@
 namespace insonify::framework {
 namespace {
 
-using types::Field;
-
 enum class Schedule { Lockstep, Realtime };
 enum class Scheduler { Other, Fifo };
 
@@ -24,17 +22,16 @@ struct ActivityKeys {
     std::optional<int> priority;
     std::vector<uint32_t> cpus;
     std::optional<double> deadline, watchdog;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"period", "s", "time between two cycles", 1e-6, 1e6}, self.period);
-        visit(Field{"trigger", "", "input ports whose samples run a cycle"}, self.trigger);
-        visit(Field{"scheduler", "", "in realtime, the system's scheduler of the thread"}, self.scheduler);
-        visit(Field{"priority", "1", "with scheduler: fifo", 1, 99}, self.priority);
-        visit(Field{"cpus", "", "in realtime, processors that the thread may run on", 0, 1023}, self.cpus);
-        visit(Field{"deadline", "s", "max time from a sample's stamp to its writing; later samples count as late", 1e-6,
-                    1e6},
-              self.deadline);
-        visit(Field{"watchdog", "s", "in realtime, max duration of a cycle before it is reported", 1e-3, 1e6},
+    static void describe(auto& self, auto& visit) {
+        visit({"period", "s", "time between two cycles", 1e-6, 1e6}, self.period);
+        visit({"trigger", "", "input ports whose samples run a cycle"}, self.trigger);
+        visit({"scheduler", "", "in realtime, the system's scheduler of the thread"}, self.scheduler);
+        visit({"priority", "1", "with scheduler: fifo", 1, 99}, self.priority);
+        visit({"cpus", "", "in realtime, processors that the thread may run on", 0, 1023}, self.cpus);
+        visit(
+            {"deadline", "s", "max time from a sample's stamp to its writing; later samples count as late", 1e-6, 1e6},
+            self.deadline);
+        visit({"watchdog", "s", "in realtime, max duration of a cycle before it is reported", 1e-3, 1e6},
               self.watchdog);
     }
     void check(types::Diagnostics& diagnostics) const {
@@ -59,17 +56,16 @@ struct TaskKeys {
     std::vector<std::string> ignored_properties;
     PropertyFiles property_files;
     YAML::Node properties{YAML::NodeType::Undefined};
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"type", "", "registered type of the task"}, self.type);
-        visit(Field{"activity", "", "when it runs"}, self.activity);
-        visit(Field{"aliases", "", "other names of ports and properties, with their targets"}, self.aliases);
-        visit(Field{"copies", "", "properties whose value another property also gets: its path"}, self.copies);
-        visit(Field{"switches", "", "booleans: the block that true inserts and false removes"}, self.switches);
-        visit(Field{"ignored_properties", "", "names in its configuration that are not used here and omitted"},
+    static void describe(auto& self, auto& visit) {
+        visit({"type", "", "registered type of the task"}, self.type);
+        visit({"activity", "", "when it runs"}, self.activity);
+        visit({"aliases", "", "other names of ports and properties, with their targets"}, self.aliases);
+        visit({"copies", "", "properties whose value another property also gets: its path"}, self.copies);
+        visit({"switches", "", "booleans: the block that true inserts and false removes"}, self.switches);
+        visit({"ignored_properties", "", "names in its configuration that are not used here and omitted"},
               self.ignored_properties);
-        visit(Field{"property_files", "", "its configuration in Rock's files"}, self.property_files);
-        visit(Field{"properties", "", "its configuration"}, self.properties);
+        visit({"property_files", "", "its configuration in Rock's files"}, self.property_files);
+        visit({"properties", "", "its configuration"}, self.properties);
     }
     void check(types::Diagnostics& diagnostics) const {
         if (type.empty()) diagnostics.push_back({"", "has no type; a task needs one, such as type: scene::SceneTask"});
@@ -80,11 +76,10 @@ struct PolicyKeys {
     ConnPolicy::Type type = ConnPolicy::Data;
     std::optional<uint32_t> size;
     bool init = false;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"type", "", "how samples wait"}, self.type);
-        visit(Field{"size", "1", "capacity of a buffer", 1, 1e6}, self.size);
-        visit(Field{"init", "1", "hand over the writer's last sample on connecting"}, self.init);
+    static void describe(auto& self, auto& visit) {
+        visit({"type", "", "how samples wait"}, self.type);
+        visit({"size", "1", "capacity of a buffer", 1, 1e6}, self.size);
+        visit({"init", "1", "hand over the writer's last sample on connecting"}, self.init);
     }
     void check(types::Diagnostics& diagnostics) const {
         if (type == ConnPolicy::Data && size)
@@ -96,11 +91,10 @@ struct PolicyKeys {
 struct ConnectionKeys {
     std::string from, to;
     PolicyKeys policy;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"from", "", "output port, task.port"}, self.from);
-        visit(Field{"to", "", "input port, task.port"}, self.to);
-        visit(Field{"policy", "", "how samples wait"}, self.policy);
+    static void describe(auto& self, auto& visit) {
+        visit({"from", "", "output port, task.port"}, self.from);
+        visit({"to", "", "input port, task.port"}, self.to);
+        visit({"policy", "", "how samples wait"}, self.policy);
     }
     void check(types::Diagnostics& diagnostics) const {
         for (const auto& [key, path] : {std::pair("from", from), std::pair("to", to)})
@@ -121,21 +115,20 @@ struct DocumentKeys {
     std::vector<std::string> libraries;
     YAML::Node tasks{YAML::NodeType::Undefined};
     YAML::Node connections{YAML::NodeType::Undefined};
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"schedule", "", "simulated time or the wall clock"}, self.schedule);
-        visit(Field{"start_time", "s", "start of simulated time", 0, 4e9}, self.start_time);
-        visit(Field{"seed", "1", "a task without a seed gets a hash of this one and its name"}, self.seed);
-        visit(Field{"watchdog", "s", "in realtime, max duration of a cycle before it is reported", 1e-3, 1e6},
+    static void describe(auto& self, auto& visit) {
+        visit({"schedule", "", "simulated time or the wall clock"}, self.schedule);
+        visit({"start_time", "s", "start of simulated time", 0, 4e9}, self.start_time);
+        visit({"seed", "1", "a task without a seed gets a hash of this one and its name"}, self.seed);
+        visit({"watchdog", "s", "in realtime, max duration of a cycle before it is reported", 1e-3, 1e6},
               self.watchdog);
-        visit(Field{"lock_memory", "", "in realtime, all memory stays resident"}, self.lock_memory);
-        visit(Field{"namespace", "", "namespace of ROS 2 topics and nodes whose names have no leading slash, /auv1"},
+        visit({"lock_memory", "", "in realtime, all memory stays resident"}, self.lock_memory);
+        visit({"namespace", "", "namespace of ROS 2 topics and nodes whose names have no leading slash, /auv1"},
               self.ros_namespace);
-        visit(Field{"frame_prefix", "", "prefix of ROS 2 frames except those of the world, auv1 for auv1/base_link"},
+        visit({"frame_prefix", "", "prefix of ROS 2 frames except those of the world, auv1 for auv1/base_link"},
               self.frame_prefix);
-        visit(Field{"libraries", "", "shared objects with more task types"}, self.libraries);
-        visit(Field{"tasks", "", "by name"}, self.tasks);
-        visit(Field{"connections", "", "from, to, policy"}, self.connections);
+        visit({"libraries", "", "shared objects with more task types"}, self.libraries);
+        visit({"tasks", "", "by name"}, self.tasks);
+        visit({"connections", "", "from, to, policy"}, self.connections);
     }
     void check(types::Diagnostics& diagnostics) const {
         types::RosNames names;

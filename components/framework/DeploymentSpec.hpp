@@ -17,10 +17,9 @@ namespace insonify::framework {
 struct PropertyFiles {
     std::vector<std::string> files;
     std::vector<std::string> sections{"default"};
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"files", "", "files of sections, --- name:x"}, self.files);
-        visit(types::Field{"sections", "", "those that apply, in order"}, self.sections);
+    static void describe(auto& self, auto& visit) {
+        visit({"files", "", "files of sections, --- name:x"}, self.files);
+        visit({"sections", "", "those that apply, in order"}, self.sections);
     }
 };
 

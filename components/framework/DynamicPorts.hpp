@@ -110,8 +110,7 @@ public:
     }
     /** Makes a port of the first type for which `is(std::type_identity<T>{})`; null if there is none. The port does not
      *  move. */
-    template <class Is>
-    Output* makeFirst(const std::string& name, const std::string& doc, const Is& is) {
+    Output* makeFirst(const std::string& name, const std::string& doc, const auto& is) {
         const bool made = ((is(std::type_identity<T>{}) && (make<T>(name, doc), true)) || ...);
         return made ? &outputs_.back() : nullptr;
     }

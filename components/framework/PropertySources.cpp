@@ -19,8 +19,7 @@ YAML::Node with(const YAML::Node& block, const std::string& key, const YAML::Nod
 }
 
 /** The same for the value at a dotted path, with the result of `change`. */
-template <class Change>
-YAML::Node changedAt(const YAML::Node& block, const std::string& path, const Change& change) {
+YAML::Node changedAt(const YAML::Node& block, const std::string& path, const auto& change) {
     if (path.empty()) return change(block);
     const auto [key, rest] = splitPort(path);
     return with(block, key, changedAt(child(block, key), rest, change));

@@ -28,8 +28,7 @@ public:
     /** Allocates the samples that readers in step with the writer need, as copies of the first filled sample, so that
      *  later samples of that size allocate nothing. `prepare` reserves capacity that a copy does not have. Does nothing
      *  when the pool already has that many samples. */
-    template <class Prepare>
-    void stock(const T& filled, const Prepare& prepare) {
+    void stock(const T& filled, const auto& prepare) {
         while (samples_.size() < stocked) prepare(*samples_.emplace_back(std::make_shared<T>(filled)));
     }
     void stock(const T& filled) {

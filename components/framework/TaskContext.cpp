@@ -133,8 +133,7 @@ void TaskContext::error(const std::string& why) {
 
 // -- transitions ------------------------------------------------------------------------------------------------------
 
-template <class Transition>
-Outcome TaskContext::transition(const char* verb, Transition&& work) {
+Outcome TaskContext::transition(const char* verb, auto&& work) {
     Outcome outcome;
     activity_->call([&] {
         if (transition_) {

@@ -197,8 +197,7 @@ protected:
 private:
     using Hook = void (TaskContext::*)();
 
-    template <class Transition>
-    Outcome transition(const char* verb, Transition&& work);
+    Outcome transition(const char* verb, auto&& work);
     Outcome configureNow();
     Outcome startNow();
     Outcome stopNow();

@@ -35,8 +35,7 @@ std::vector<const TaskContext*> writersOf(const InputPortBase& port) {
 }
 
 /** Calls `use` with each task that a port's samples come from, nearest first, until it returns true. */
-template <class Use>
-void forEachUpstream(const InputPortBase& port, const Use& use) {
+void forEachUpstream(const InputPortBase& port, const auto& use) {
     std::vector<const TaskContext*> waiting = writersOf(port);
     for (size_t i = 0; i < waiting.size(); ++i) {
         if (use(*waiting[i])) return;

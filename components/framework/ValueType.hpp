@@ -3,7 +3,6 @@
 // once behind one interface, and functions that know only that interface do all the work.
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
 #include <map>

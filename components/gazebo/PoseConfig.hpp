@@ -1,5 +1,4 @@
 #pragma once
-#include <set>
 #include <string>
 #include <vector>
 
@@ -15,13 +14,10 @@ struct BodyConfig {
     std::string entity;
     std::string odometry;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"port", "", "output port of the poses"}, self.port);
-        visit(Field{"entity", "", "the model of this name, of the world's poses; empty: odometry is given"},
-              self.entity);
-        visit(Field{"odometry", "", "topic of the body's Odometry, /model/rov/odometry; empty: entity is given"},
+    static void describe(auto& self, auto& visit) {
+        visit({"port", "", "output port of the poses"}, self.port);
+        visit({"entity", "", "the model of this name, of the world's poses; empty: odometry is given"}, self.entity);
+        visit({"odometry", "", "topic of the body's Odometry, /model/rov/odometry; empty: entity is given"},
               self.odometry);
     }
 };
@@ -35,17 +31,15 @@ struct PoseConfig {
 
     PoseConfig();  // not inline: g++ 12 would warn that its strings are uninitialized
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"bodies", "", "bodies whose poses are read"}, self.bodies);
-        visit(Field{"world", "", "name of Gazebo's world, whose poses are on /world/NAME/pose/info"}, self.world);
-        visit(Field{"pose_topic", "", "another topic of poses; empty: that of the world"}, self.pose_topic);
-        visit(Field{"world_frame", "",
-                    "axes of Gazebo's world: as_is, those of the scene, as when both read the same SDF file; enu or "
-                    "ned, if x of the scene is north"},
+    static void describe(auto& self, auto& visit) {
+        visit({"bodies", "", "bodies whose poses are read"}, self.bodies);
+        visit({"world", "", "name of Gazebo's world, whose poses are on /world/NAME/pose/info"}, self.world);
+        visit({"pose_topic", "", "another topic of poses; empty: that of the world"}, self.pose_topic);
+        visit({"world_frame", "",
+               "axes of Gazebo's world: as_is, those of the scene, as when both read the same SDF file; enu or "
+               "ned, if x of the scene is north"},
               self.world_frame);
-        visit(Field{"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
+        visit({"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
     }
     void check(types::Diagnostics& diagnostics) const;
     /** Returns the topic of the entities' poses. */

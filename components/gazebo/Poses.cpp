@@ -28,8 +28,7 @@ std::optional<types::Time> stampOf(const wire::Header& header) {
     return types::Time{seconds * 1'000'000 + header.stamp().nsec() / 1000};
 }
 
-template <class Message>
-bool parse(std::string_view bytes, Message& message) {
+bool parse(std::string_view bytes, auto& message) {
     return bytes.size() < size_t{1} << 31 && message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
 }
 

@@ -8,8 +8,7 @@
 namespace insonify::gpu {
 namespace {
 
-template <class Create>
-GLuint created(Create create) {
+GLuint created(auto create) {
     GLuint id = 0;
     create(id);
     return id;

@@ -24,8 +24,7 @@ std::string withIncludes(std::string_view text) {
     return result;
 }
 
-template <class Get, class GetLog>
-std::string buildLog(GLuint id, Get get, GetLog getLog) {
+std::string buildLog(GLuint id, auto get, auto getLog) {
     GLint length = 0;
     get(id, GL_INFO_LOG_LENGTH, &length);
     std::string text(static_cast<size_t>(length), '\0');

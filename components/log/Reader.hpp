@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "components/log/Stream.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::log {
 
@@ -64,8 +63,7 @@ public:
         });
     }
     /** Calls `use(ref)` for each sample of the stream, in order. */
-    template <class Use>
-    void forEachRef(const std::string& stream, Use&& use) const {
+    void forEachRef(const std::string& stream, auto&& use) const {
         const size_t index = indexOf(stream);
         for (const SampleRef& at : samples_)
             if (at.stream == index) use(at);

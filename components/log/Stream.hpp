@@ -1,7 +1,6 @@
 #pragma once
 // The contents of a log, independent of its format.
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <stdexcept>

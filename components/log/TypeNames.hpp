@@ -1,6 +1,5 @@
 #pragma once
 // Rock's names of samples' types, in logs of either format.
-#include <cstdint>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>

@@ -61,13 +61,10 @@ public:
 struct McapStream {
     std::optional<std::string> topic, frame_id, child_frame_id;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"topic", "", "as in ROS, /auv/sonar; absent: /task/port"}, self.topic);
-        visit(Field{"frame_id", "", "of its messages; absent: the sonar's, or the frame in the poses"}, self.frame_id);
-        visit(Field{"child_frame_id", "", "the body of an Odometry; absent: the body in its pose"},
-              self.child_frame_id);
+    static void describe(auto& self, auto& visit) {
+        visit({"topic", "", "as in ROS, /auv/sonar; absent: /task/port"}, self.topic);
+        visit({"frame_id", "", "of its messages; absent: the sonar's, or the frame in the poses"}, self.frame_id);
+        visit({"child_frame_id", "", "the body of an Odometry; absent: the body in its pose"}, self.child_frame_id);
     }
 };
 
@@ -77,15 +74,13 @@ struct McapConfig : ros::MessageOptions {
     std::map<std::string, McapStream> streams;  ///< By name, "task.port".
     types::RosNames names;                      ///< Namespace and frame prefix of the deployment; not a key.
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         MessageOptions::describe(self, visit);
-        visit(types::Field{"transforms", "",
-                           "/tf from poses, /tf_static from the mounts of the pings' sonars, /clock from the stamps of "
-                           "both"},
+        visit({"transforms", "",
+               "/tf from poses, /tf_static from the mounts of the pings' sonars, /clock from the stamps of "
+               "both"},
               self.transforms);
-        visit(types::Field{"streams", "", "topics and frames of single streams, by the stream's name: task.port"},
-              self.streams);
+        visit({"streams", "", "topics and frames of single streams, by the stream's name: task.port"}, self.streams);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

@@ -47,8 +47,7 @@ public:
     LogThread& operator=(const LogThread&) = delete;
 
     /** Adds a sample of a stream, received at that time. Throws std::runtime_error once the file has failed. */
-    template <class Sample>
-    void push(size_t stream, types::Time received, Sample sample) {
+    void push(size_t stream, types::Time received, auto sample) {
         Entry& entry = freeEntry();
         entry.stream = stream;
         entry.received = received;

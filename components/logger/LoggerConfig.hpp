@@ -36,28 +36,26 @@ struct LoggerConfig {
     std::map<std::string, std::string> metadata;
     log::McapConfig mcap;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"file", "",
-                    "log to write, relative to --out: NAME.0.log, or NAME.0.mcap for ROS 2 messages; an old one is "
-                    "replaced"},
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "",
+               "log to write, relative to --out: NAME.0.log, or NAME.0.mcap for ROS 2 messages; an old one is "
+               "replaced"},
               self.file);
-        visit(Field{"property_file", "",
-                    "log of all tasks' properties, in the folder of `file`, with a stream for each; empty: none"},
+        visit({"property_file", "",
+               "log of all tasks' properties, in the folder of `file`, with a stream for each; empty: none"},
               self.property_file);
-        visit(Field{"max_file_size", "B", "above this size the log continues in NAME.1.log and so on", 1e6, 1e15},
+        visit({"max_file_size", "B", "above this size the log continues in NAME.1.log and so on", 1e6, 1e15},
               self.max_file_size);
-        visit(Field{"max_file_duration", "s", "after this time the log continues in NAME.1.log and so on", 0.1, 1e9},
+        visit({"max_file_duration", "s", "after this time the log continues in NAME.1.log and so on", 0.1, 1e9},
               self.max_file_duration);
-        visit(Field{"flush_period", "s", "at most this much is lost when the process is killed", 0.001, 1},
+        visit({"flush_period", "s", "at most this much is lost when the process is killed", 0.001, 1},
               self.flush_period);
-        visit(Field{"queue", "1", "max samples waiting for the file, in addition to the ports' buffers", 1, 65536},
+        visit({"queue", "1", "max samples waiting for the file, in addition to the ports' buffers", 1, 65536},
               self.queue);
-        visit(Field{"record", "", "false: samples are skipped until it is true again; may be set while running"},
+        visit({"record", "", "false: samples are skipped until it is true again; may be set while running"},
               self.record);
-        visit(Field{"metadata", "", "keys and values in the metadata of every stream"}, self.metadata);
-        visit(Field{"mcap", "", "how samples become ROS 2 messages, for a log that ends in .mcap"}, self.mcap);
+        visit({"metadata", "", "keys and values in the metadata of every stream"}, self.metadata);
+        visit({"mcap", "", "how samples become ROS 2 messages, for a log that ends in .mcap"}, self.mcap);
     }
     void check(types::Diagnostics& diagnostics) const {
         const auto isLog = [](const std::filesystem::path& path) {

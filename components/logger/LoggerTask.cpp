@@ -93,10 +93,7 @@ std::string roundingText(const framework::InputPortBase& port, const types::Sona
         framework::streamNameOf(port.channels().front()->source()).path(), us, off);
 }
 
-template <class T>
-std::string roundingText(const framework::InputPortBase& /*port*/, const T& /*sample*/) {
-    return "";
-}
+std::string roundingText(const framework::InputPortBase& /*port*/, const auto& /*sample*/) { return ""; }
 
 }  // namespace
 

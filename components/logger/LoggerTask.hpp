@@ -78,8 +78,7 @@ private:
     /** Returns the metadata of the log's next stream, with the current plans. */
     log::Metadata streamMetadata(const framework::StreamName& stream);
     /** Adds what is known of the sonar whose pings an input takes. */
-    template <class Input>
-    log::Metadata metadataOf(const Input& input);
+    log::Metadata metadataOf(const auto& input);
     /** Returns the first stream of poses in the log that the pings of a port depend on; empty: none. */
     std::string bodyOf(const framework::InputPortBase& port) const;
     /** Returns the frames that several sonars claim in an MCAP file. */

@@ -1,6 +1,5 @@
 #include "components/logger/PropertyLog.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace insonify::logger {

@@ -16,8 +16,7 @@ struct Heartbeat {
     uint32_t custom_mode = 0;
     uint8_t type = 0, autopilot = 0, base_mode = 0, system_status = 0, version = 3;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         visit(self.custom_mode, self.type, self.autopilot, self.base_mode, self.system_status, self.version);
     }
 };
@@ -31,8 +30,7 @@ struct AttitudeQuaternion {
     float w = 1, x = 0, y = 0, z = 0;
     float roll_speed = 0, pitch_speed = 0, yaw_speed = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         visit(self.time_boot_ms, self.w, self.x, self.y, self.z, self.roll_speed, self.pitch_speed, self.yaw_speed);
     }
 };
@@ -44,8 +42,7 @@ struct LocalPositionNed {
     uint32_t time_boot_ms = 0;
     float x = 0, y = 0, z = 0, vx = 0, vy = 0, vz = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         visit(self.time_boot_ms, self.x, self.y, self.z, self.vx, self.vy, self.vz);
     }
 };
@@ -58,8 +55,7 @@ struct VisionPositionEstimate {
     uint64_t usec = 0;
     float x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         visit(self.usec, self.x, self.y, self.z, self.roll, self.pitch, self.yaw);
     }
 };
@@ -73,8 +69,7 @@ struct CommandLong {
     uint16_t command = 0;
     uint8_t target_system = 0, target_component = 0, confirmation = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         for (auto& parameter : self.parameters) visit(parameter);
         visit(self.command, self.target_system, self.target_component, self.confirmation);
     }

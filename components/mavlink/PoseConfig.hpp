@@ -24,16 +24,14 @@ struct BodyConfig {
     int system_id = 1;
     std::optional<int> component_id = {};
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"port", "", "output port of the poses"}, self.port);
-        visit(Field{"source", "",
-                    "estimate: ATTITUDE_QUATERNION with LOCAL_POSITION_NED, of an autopilot; vision: "
-                    "VISION_POSITION_ESTIMATE"},
+    static void describe(auto& self, auto& visit) {
+        visit({"port", "", "output port of the poses"}, self.port);
+        visit({"source", "",
+               "estimate: ATTITUDE_QUATERNION with LOCAL_POSITION_NED, of an autopilot; vision: "
+               "VISION_POSITION_ESTIMATE"},
               self.source);
-        visit(Field{"system_id", "", "of the vehicle", 1, 255}, self.system_id);
-        visit(Field{"component_id", "", "of the sender; absent: any, one at a time", 1, 255}, self.component_id);
+        visit({"system_id", "", "of the vehicle", 1, 255}, self.system_id);
+        visit({"component_id", "", "of the sender; absent: any, one at a time", 1, 255}, self.component_id);
     }
 };
 
@@ -41,10 +39,7 @@ struct BodyConfig {
 struct RequestConfig {
     double rate = 20;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"rate", "Hz", "of each message", 2, 1000}, self.rate);
-    }
+    static void describe(auto& self, auto& visit) { visit({"rate", "Hz", "of each message", 2, 1000}, self.rate); }
 };
 
 struct PoseConfig {
@@ -54,18 +49,14 @@ struct PoseConfig {
     glm::dvec3 origin{0};
     std::optional<RequestConfig> request = {};
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
-              self.address);
-        visit(Field{"port", "1", "of UDP; 0: any free port, printed in a notice", 0, 65535}, self.port);
-        visit(Field{"bodies", "", "bodies whose poses are read"}, self.bodies);
-        visit(Field{"origin", "m", "position of the messages' origin in the world: x north, y west, z up"},
-              self.origin);
-        visit(Field{"request", "",
-                    "requests messages that a vehicle does not send, by SET_MESSAGE_INTERVAL; absent: nothing is ever "
-                    "sent"},
+    static void describe(auto& self, auto& visit) {
+        visit({"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"}, self.address);
+        visit({"port", "1", "of UDP; 0: any free port, printed in a notice", 0, 65535}, self.port);
+        visit({"bodies", "", "bodies whose poses are read"}, self.bodies);
+        visit({"origin", "m", "position of the messages' origin in the world: x north, y west, z up"}, self.origin);
+        visit({"request", "",
+               "requests messages that a vehicle does not send, by SET_MESSAGE_INTERVAL; absent: nothing is ever "
+               "sent"},
               self.request);
     }
     void check(types::Diagnostics& diagnostics) const {

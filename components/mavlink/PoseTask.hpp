@@ -1,5 +1,4 @@
 #pragma once
-#include <atomic>
 #include <map>
 #include <memory>
 #include <string>
@@ -49,8 +48,7 @@ private:
     void request(types::Time now);
     void requestFor(const Body& body, device::Client client, types::Time now);
     /** Sends a message as a ground station. */
-    template <class Message>
-    void send(const Message& message, device::Client client);
+    void send(const auto& message, device::Client client);
 
     std::unique_ptr<device::Network> network_;
     types::ThrottledWarning drops_{"message", "dropped"}, others_{"message", "of others ignored"};

@@ -33,8 +33,7 @@ public:
     explicit VisualMeshes(types::Geometry& geometry) : geometry_(geometry) {}
 
     /** Returns the mesh of a key and material. Calls `make()` for the first visual with them. */
-    template <class Make>
-    Placing shape(const std::string& key, const Look& look, Make make) {
+    Placing shape(const std::string& key, const Look& look, auto make) {
         const auto [known, is_new] = shapes_.try_emplace({key, look}, -1);
         if (is_new) known->second = add(make(), key, look);
         return {known->second};

@@ -13,15 +13,12 @@ struct GaugeErrors {
     double drift_time = 3600;
     double resolution = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"noise", "Pa", "deviation, from measurement to measurement", 0, 1e7}, self.noise);
-        visit(Field{"offset", "Pa", "constant", -1e7, 1e7}, self.offset);
-        visit(Field{"drift_deviation", "Pa", "deviation of an offset that wanders about 0", 0, 1e7},
-              self.drift_deviation);
-        visit(Field{"drift_time", "s", "correlation time of the drift", 1e-3, 1e9}, self.drift_time);
-        visit(Field{"resolution", "Pa", "of the readings; 0: continuous", 0, 1e7}, self.resolution);
+    static void describe(auto& self, auto& visit) {
+        visit({"noise", "Pa", "deviation, from measurement to measurement", 0, 1e7}, self.noise);
+        visit({"offset", "Pa", "constant", -1e7, 1e7}, self.offset);
+        visit({"drift_deviation", "Pa", "deviation of an offset that wanders about 0", 0, 1e7}, self.drift_deviation);
+        visit({"drift_time", "s", "correlation time of the drift", 1e-3, 1e9}, self.drift_time);
+        visit({"resolution", "Pa", "of the readings; 0: continuous", 0, 1e7}, self.resolution);
     }
 };
 
@@ -34,19 +31,16 @@ struct PressureConfig {
     std::optional<double> max_pressure{};
     GaugeErrors errors{};
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
+    static void describe(auto& self, auto& visit) {
         SensorConfig::describe(self.sensor, visit, "of the gauge in the body",
                                "between measurements; 0: a measurement per pose");
-        visit(Field{"water_surface", "m", "its height in the world", -1e5, 1e5}, self.water_surface);
-        visit(Field{"latitude_deg", "deg", "of the world, for gravity", -90, 90}, self.latitude_deg);
-        visit(
-            Field{"density", "kg/m^3", "of water of constant density; absent: UNESCO's standard ocean (1983)", 1, 1e5},
-            self.density);
-        visit(Field{"atmosphere", "Pa", "pressure of the air at the surface", 0, 1e7}, self.atmosphere);
-        visit(Field{"max_pressure", "Pa", "max reading; absent: unlimited", 1, 1e12}, self.max_pressure);
-        visit(Field{"errors", "", "of the gauge; absent: none"}, self.errors);
+        visit({"water_surface", "m", "its height in the world", -1e5, 1e5}, self.water_surface);
+        visit({"latitude_deg", "deg", "of the world, for gravity", -90, 90}, self.latitude_deg);
+        visit({"density", "kg/m^3", "of water of constant density; absent: UNESCO's standard ocean (1983)", 1, 1e5},
+              self.density);
+        visit({"atmosphere", "Pa", "pressure of the air at the surface", 0, 1e7}, self.atmosphere);
+        visit({"max_pressure", "Pa", "max reading; absent: unlimited", 1, 1e12}, self.max_pressure);
+        visit({"errors", "", "of the gauge; absent: none"}, self.errors);
     }
 };
 

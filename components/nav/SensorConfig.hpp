@@ -15,15 +15,13 @@ struct SensorConfig {
     uint64_t randomSeed() const { return seed.value_or(1); }
 
     /** Describes the keys of all sensors, with a sensor's descriptions of its mount and its period. */
-    template <class Self, class V>
-    static void describe(Self& self, V& visit, const char* mount, const char* period) {
-        using types::Field;
-        visit(Field{"mount", "", mount}, self.mount);
-        visit(Field{"seed", "1",
-                    "of the random numbers: the same seed and poses give the same errors; absent: a hash of the "
-                    "deployment's seed and the task's name"},
+    static void describe(auto& self, auto& visit, const char* mount, const char* period) {
+        visit({"mount", "", mount}, self.mount);
+        visit({"seed", "1",
+               "of the random numbers: the same seed and poses give the same errors; absent: a hash of the "
+               "deployment's seed and the task's name"},
               self.seed);
-        visit(Field{"period", "s", period, 0, 1e6}, self.period);
+        visit({"period", "s", period, 0, 1e6}, self.period);
     }
 };
 

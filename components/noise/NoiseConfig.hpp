@@ -18,19 +18,16 @@ struct SpeckleConfig {
     double mean = 0.4;
     double deviation = 0.15;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"law", "",
-                    "rayleigh: exponential factor on intensity; gamma: mean of several; k: exponential of gamma "
-                    "distributed mean (Jakeman and Pusey 1976); gaussian: normal factor, clamped at 0 (Cerqueira et "
-                    "al. 2017)"},
+    static void describe(auto& self, auto& visit) {
+        visit({"law", "",
+               "rayleigh: exponential factor on intensity; gamma: mean of several; k: exponential of gamma "
+               "distributed mean (Jakeman and Pusey 1976); gaussian: normal factor, clamped at 0 (Cerqueira et "
+               "al. 2017)"},
               self.law);
-        visit(Field{"looks", "1", "law gamma: number of exponential factors that are averaged", 1, 1e4}, self.looks);
-        visit(Field{"shape", "1", "law k: 1 to 20 on sea floors; larger values approach rayleigh", 1e-3, 1e6},
-              self.shape);
-        visit(Field{"mean", "1", "of the gaussian factor", 0, 1e6}, self.mean);
-        visit(Field{"deviation", "1", "standard deviation of the gaussian factor", 0, 1e6}, self.deviation);
+        visit({"looks", "1", "law gamma: number of exponential factors that are averaged", 1, 1e4}, self.looks);
+        visit({"shape", "1", "law k: 1 to 20 on sea floors; larger values approach rayleigh", 1e-3, 1e6}, self.shape);
+        visit({"mean", "1", "of the gaussian factor", 0, 1e6}, self.mean);
+        visit({"deviation", "1", "standard deviation of the gaussian factor", 0, 1e6}, self.deviation);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -42,17 +39,15 @@ struct AmbientConfig {
     double frequency_khz = 750;
     double shipping = 0.5;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"level_db", "dB", "mean intensity in a bin, relative to the source", -3000, 300}, self.level_db);
-        visit(Field{"wind_m_s", "m/s", "instead: speed of the wind, for Coates' formula", 0, 100}, self.wind_m_s);
-        visit(Field{"directivity_index_db", "dB", "of the receiver; reduces the noise by this", 0, 100},
+    static void describe(auto& self, auto& visit) {
+        visit({"level_db", "dB", "mean intensity in a bin, relative to the source", -3000, 300}, self.level_db);
+        visit({"wind_m_s", "m/s", "instead: speed of the wind, for Coates' formula", 0, 100}, self.wind_m_s);
+        visit({"directivity_index_db", "dB", "of the receiver; reduces the noise by this", 0, 100},
               self.directivity_index_db);
-        visit(Field{"bandwidth_khz", "kHz", "of the receiver", 1e-3, 1e4}, self.bandwidth_khz);
-        visit(Field{"source_level_db", "dB re 1 uPa m", "of the sonar", -300, 400}, self.source_level_db);
-        visit(Field{"frequency_khz", "kHz", "of the sonar", 1e-3, 1e4}, self.frequency_khz);
-        visit(Field{"shipping", "1", "activity of ships, whose noise is below 1 kHz", 0, 1}, self.shipping);
+        visit({"bandwidth_khz", "kHz", "of the receiver", 1e-3, 1e4}, self.bandwidth_khz);
+        visit({"source_level_db", "dB re 1 uPa m", "of the sonar", -300, 400}, self.source_level_db);
+        visit({"frequency_khz", "kHz", "of the sonar", 1e-3, 1e4}, self.frequency_khz);
+        visit({"shipping", "1", "activity of ships, whose noise is below 1 kHz", 0, 1}, self.shipping);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -60,9 +55,8 @@ struct AmbientConfig {
 struct AdditiveConfig {
     double level_db = -60;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"level_db", "dB", "mean of the added noise, 10 log10 on the scale of the bins", -3000, 300},
+    static void describe(auto& self, auto& visit) {
+        visit({"level_db", "dB", "mean of the added noise, 10 log10 on the scale of the bins", -3000, 300},
               self.level_db);
     }
 };
@@ -72,16 +66,14 @@ struct FilterConfig {
     int looks = 1;
     std::optional<double> correlation_bins = {}, correlation_beams = {};
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"looks", "1", "independent intensities that are averaged in each bin", 1, 256}, self.looks);
-        visit(Field{"correlation_bins", "1",
-                    "bins in range over which the correlation of intensities falls to 1/e; absent: bins are "
-                    "independent",
-                    0.1, 16},
+    static void describe(auto& self, auto& visit) {
+        visit({"looks", "1", "independent intensities that are averaged in each bin", 1, 256}, self.looks);
+        visit({"correlation_bins", "1",
+               "bins in range over which the correlation of intensities falls to 1/e; absent: bins are "
+               "independent",
+               0.1, 16},
               self.correlation_bins);
-        visit(Field{"correlation_beams", "1", "the same across beams; absent: beams are independent", 0.1, 16},
+        visit({"correlation_beams", "1", "the same across beams; absent: beams are independent", 0.1, 16},
               self.correlation_beams);
     }
 };
@@ -96,22 +88,19 @@ struct NoiseConfig {
 
     bool isNone() const { return !speckle && !ambient && !additive; }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"seed", "1",
-                    "of the random numbers: the same seed and ping times give the same noise; absent: a hash of the "
-                    "deployment's seed and the task's name"},
+    static void describe(auto& self, auto& visit) {
+        visit({"seed", "1",
+               "of the random numbers: the same seed and ping times give the same noise; absent: a hash of the "
+               "deployment's seed and the task's name"},
               self.seed);
-        visit(Field{"speckle", "", "multiplicative noise; absent: none"}, self.speckle);
-        visit(Field{"ambient", "",
-                    "noise of the sea (Coates 1990), the same at every range before any gain; absent: none"},
+        visit({"speckle", "", "multiplicative noise; absent: none"}, self.speckle);
+        visit({"ambient", "", "noise of the sea (Coates 1990), the same at every range before any gain; absent: none"},
               self.ambient);
-        visit(Field{"additive", "", "exponentially distributed background, for model cerqueira2017; absent: none"},
+        visit({"additive", "", "exponentially distributed background, for model cerqueira2017; absent: none"},
               self.additive);
-        visit(Field{"filter", "",
-                    "the receiver's filter and averaging of looks, applied to speckle (rayleigh, k) and noise; absent: "
-                    "one look, independent in each bin"},
+        visit({"filter", "",
+               "the receiver's filter and averaging of looks, applied to speckle (rayleigh, k) and noise; absent: "
+               "one look, independent in each bin"},
               self.filter);
     }
     void check(types::Diagnostics& diagnostics) const {

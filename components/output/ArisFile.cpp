@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "components/output/ArisBeams.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::output {
 namespace {

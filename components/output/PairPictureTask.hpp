@@ -14,10 +14,9 @@ struct PairConfig : PictureConfig {
 
     PairConfig() { width = 2048; }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         PictureConfig::describe(self, visit);
-        visit(types::Field{"timeout", "s", "max wait of a ping for its matching sample, in the samples' time", 0, 1e6},
+        visit({"timeout", "s", "max wait of a ping for its matching sample, in the samples' time", 0, 1e6},
               self.timeout);
     }
     /** Checks also that both pictures together have at least twice the min width. */

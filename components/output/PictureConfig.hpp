@@ -26,24 +26,20 @@ struct DisplayConfig {
 
     double maxCode() const { return std::exp2(code_bits) - 1; }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(
-            Field{"width", "1",
-                  "width of the picture in pixels; an odd width is rounded up to even; the height follows", 256, 8192},
-            self.width);
-        visit(Field{"dynamic_range_db", "dB", "between the darkest and the brightest colour", 1, 300},
+    static void describe(auto& self, auto& visit) {
+        visit({"width", "1", "width of the picture in pixels; an odd width is rounded up to even; the height follows",
+               256, 8192},
+              self.width);
+        visit({"dynamic_range_db", "dB", "between the darkest and the brightest colour", 1, 300},
               self.dynamic_range_db);
-        visit(Field{"reference_db", "dB",
-                    "level of the brightest colour, 10 log10 of a bin; absent: follows the echoes", -3000, 3000},
+        visit({"reference_db", "dB", "level of the brightest colour, 10 log10 of a bin; absent: follows the echoes",
+               -3000, 3000},
               self.reference_db);
-        visit(Field{"colour_map", "", "colours from weak to strong"}, self.colour_map);
-        visit(
-            Field{"scale", "",
-                  "content of the bins: linear intensities, decibel, or code, shown unchanged from 0 to the max code"},
-            self.scale);
-        visit(Field{"code_bits", "1", "bits of a code, if scale is code", 1, 32}, self.code_bits);
+        visit({"colour_map", "", "colours from weak to strong"}, self.colour_map);
+        visit({"scale", "",
+               "content of the bins: linear intensities, decibel, or code, shown unchanged from 0 to the max code"},
+              self.scale);
+        visit({"code_bits", "1", "bits of a code, if scale is code", 1, 32}, self.code_bits);
     }
     /** Reports a reference level of codes, which have none. */
     void check(types::Diagnostics& diagnostics) const;
@@ -55,12 +51,10 @@ struct RecordingConfig {
     std::optional<std::string> video;
     std::optional<double> video_rate;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"file", "", "PNG files, numbered from 0: fan_%06d.png; absent: none"}, self.file);
-        visit(Field{"video", "", "video file, .avi (MJPG) or .mp4 (mp4v); absent: none"}, self.video);
-        visit(Field{"video_rate", "Hz", "pictures a second in the video; absent: that of the pings", 0.01, 1000},
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "", "PNG files, numbered from 0: fan_%06d.png; absent: none"}, self.file);
+        visit({"video", "", "video file, .avi (MJPG) or .mp4 (mp4v); absent: none"}, self.video);
+        visit({"video_rate", "Hz", "pictures a second in the video; absent: that of the pings", 0.01, 1000},
               self.video_rate);
     }
     /** Reports an invalid pattern in `file` and an unknown kind of `video`. */
@@ -71,11 +65,9 @@ struct RecordingConfig {
 struct PictureConfig : DisplayConfig, RecordingConfig {
     uint32_t every = 1;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         RecordingConfig::describe(self, visit);
-        visit(types::Field{"every", "1", "pings from one picture to the next; the first ping has one", 1, 1e6},
-              self.every);
+        visit({"every", "1", "pings from one picture to the next; the first ping has one", 1, 1e6}, self.every);
         DisplayConfig::describe(self, visit);
     }
     void check(types::Diagnostics& diagnostics) const {

@@ -23,24 +23,22 @@ struct PlainConfig {
 
     DisplayConfig display() const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"shape", "",
-                    "fan: as in the water, ahead is up; polar: a column for each beam; waterfall: a row for "
-                    "each line of "
-                    "a side-scan, the newest on top, port left; range: a pixel for each beam of a 3-D sonar, nearest "
-                    "brightest"},
+    static void describe(auto& self, auto& visit) {
+        visit({"shape", "",
+               "fan: as in the water, ahead is up; polar: a column for each beam; waterfall: a row for "
+               "each line of "
+               "a side-scan, the newest on top, port left; range: a pixel for each beam of a 3-D sonar, nearest "
+               "brightest"},
               self.shape);
-        visit(Field{"height", "1", "max number of pixels over the range; a pixel covers at least one bin", 16, 8192},
+        visit({"height", "1", "max number of pixels over the range; a pixel covers at least one bin", 16, 8192},
               self.height);
-        visit(Field{"dynamic_range_db", "dB", "between black and white", 1, 300}, self.dynamic_range_db);
-        visit(Field{"reference_db", "dB",
-                    "level of white, 10 log10 of a bin; absent: the level that 0.2 % of the picture's bins exceed",
-                    -3000, 3000},
+        visit({"dynamic_range_db", "dB", "between black and white", 1, 300}, self.dynamic_range_db);
+        visit({"reference_db", "dB",
+               "level of white, 10 log10 of a bin; absent: the level that 0.2 % of the picture's bins exceed", -3000,
+               3000},
               self.reference_db);
-        visit(Field{"scale", "", "content of the bins: linear intensities, decibel, or code"}, self.scale);
-        visit(Field{"code_bits", "1", "bits of a code, if scale is code", 1, 32}, self.code_bits);
+        visit({"scale", "", "content of the bins: linear intensities, decibel, or code"}, self.scale);
+        visit({"code_bits", "1", "bits of a code, if scale is code", 1, 32}, self.code_bits);
     }
     void check(types::Diagnostics& diagnostics) const { display().check(diagnostics); }
 };

@@ -57,8 +57,7 @@ protected:
     std::vector<char> take(uint64_t at, size_t size);
     /** Returns the packet at `next_`, which becomes `at_`; its header has `header` bytes. Empty at the end of the file.
      *  @param sizeOf returns the packet's size from the header, or fails */
-    template <class SizeOf>
-    std::vector<char> takePacket(size_t header, SizeOf&& sizeOf) {
+    std::vector<char> takePacket(size_t header, auto&& sizeOf) {
         at_ = next_;
         if (at_ >= size_) return {};
         const std::vector<char> head = take(at_, header);

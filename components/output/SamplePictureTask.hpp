@@ -16,16 +16,13 @@ struct SamplePictureConfig : RecordingConfig {
     uint32_t width = 1024;
     ColourMap colour_map = ColourMap::Turbo;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
+    static void describe(auto& self, auto& visit) {
         RecordingConfig::describe(self, visit);
-        visit(Field{"every", "1", "samples from one picture to the next, and in the first", 1, 1e6}, self.every);
-        visit(
-            Field{"width", "1",
-                  "width of the picture in pixels; an odd width is rounded up to even; the height follows", 256, 8192},
-            self.width);
-        visit(Field{"colour_map", "", "colours from the deepest to the highest, or from the farthest to the nearest"},
+        visit({"every", "1", "samples from one picture to the next, and in the first", 1, 1e6}, self.every);
+        visit({"width", "1", "width of the picture in pixels; an odd width is rounded up to even; the height follows",
+               256, 8192},
+              self.width);
+        visit({"colour_map", "", "colours from the deepest to the highest, or from the farthest to the nearest"},
               self.colour_map);
     }
 };

@@ -11,10 +11,9 @@ namespace insonify::output {
 struct MosaicConfig : PairConfig {
     types::Mount mount;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         PairConfig::describe(self, visit);
-        visit(types::Field{"mount", "", "the sonar in the body"}, self.mount);
+        visit({"mount", "", "the sonar in the body"}, self.mount);
     }
 };
 

@@ -28,8 +28,7 @@ protected:
     explicit SideScanFile(const std::filesystem::path& path) : RecordedFile(path, "a recording of a side-scan") {}
 
     /** Adds a beam of bin_count bins: `count` samples from bin `first` on, and no echo in the others. */
-    template <class Sample>
-    static void appendBeam(bool is_port, uint32_t first, uint32_t count, Sample&& sample, types::Sonar& ping) {
+    static void appendBeam(bool is_port, uint32_t first, uint32_t count, auto&& sample, types::Sonar& ping) {
         const size_t begin = ping.bins.size();
         ping.bins.resize(begin + ping.bin_count);
         for (uint32_t i = 0; i < count; ++i) {

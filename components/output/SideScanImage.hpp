@@ -12,28 +12,23 @@ struct GroundRangeConfig {
     std::optional<double> altitude;
     double threshold_db = -20;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(
-            Field{"altitude", "m",
-                  "height above the bottom; absent: that of port altitude, else the range of the first return", 0, 1e5},
-            self.altitude);
-        visit(
-            Field{"threshold_db", "dB", "min level of the first return, relative to the ping's strongest bin", -300, 0},
-            self.threshold_db);
+    static void describe(auto& self, auto& visit) {
+        visit({"altitude", "m",
+               "height above the bottom; absent: that of port altitude, else the range of the first return", 0, 1e5},
+              self.altitude);
+        visit({"threshold_db", "dB", "min level of the first return, relative to the ping's strongest bin", -300, 0},
+              self.threshold_db);
     }
 };
 
 struct SideScanPictureConfig : PictureConfig {
     std::optional<GroundRangeConfig> ground_range;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         PictureConfig::describe(self, visit);
-        visit(types::Field{"ground_range", "",
-                           "rows in range along a flat bottom, sqrt(r^2 - h^2), without the water column; absent: in "
-                           "slant range"},
+        visit({"ground_range", "",
+               "rows in range along a flat bottom, sqrt(r^2 - h^2), without the water column; absent: in "
+               "slant range"},
               self.ground_range);
     }
 };

@@ -13,8 +13,7 @@ constexpr double tallest = 1.5;  // max height of a chart [of its width]
 
 bool isFinite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-template <class Use>
-void forEachPoint(const std::vector<std::vector<glm::dvec3>>& clouds, Use&& use) {
+void forEachPoint(const std::vector<std::vector<glm::dvec3>>& clouds, auto&& use) {
     for (const std::vector<glm::dvec3>& cloud : clouds)
         for (const glm::dvec3& point : cloud)
             if (isFinite(point)) use(point);

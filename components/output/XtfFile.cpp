@@ -7,7 +7,6 @@
 #include <ctime>
 
 #include "components/output/XtfLayout.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::output {
 namespace {

@@ -1,7 +1,5 @@
 #include "components/output/XtfTask.hpp"
 
-#include <cmath>
-
 #include "components/framework/MayLose.hpp"
 
 namespace insonify::output {

@@ -17,15 +17,13 @@ struct XtfConfig {
     double frequency_khz = 0;
     double timeout = 1;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"file", "", "name, relative to the output folder"}, self.file);
-        visit(Field{"samples", "",
-                    "uint16: integers from 0 to 65535, such as a receiver's codes of 16 bits; float32: the bins"},
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "", "name, relative to the output folder"}, self.file);
+        visit({"samples", "",
+               "uint16: integers from 0 to 65535, such as a receiver's codes of 16 bits; float32: the bins"},
               self.samples);
-        visit(Field{"frequency_khz", "kHz", "frequency of the sonar; 0: unknown", 0, 65535}, self.frequency_khz);
-        visit(Field{"timeout", "s", "max wait of a ping for its pose, in the samples' time", 0, 1e6}, self.timeout);
+        visit({"frequency_khz", "kHz", "frequency of the sonar; 0: unknown", 0, 65535}, self.frequency_khz);
+        visit({"timeout", "s", "max wait of a ping for its pose, in the samples' time", 0, 1e6}, self.timeout);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

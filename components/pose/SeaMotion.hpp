@@ -18,18 +18,16 @@ struct SeaMotionConfig {
     SeaSpectrum spectrum = SeaSpectrum::PiersonMoskowitz;
     uint32_t seed = 1;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"heave_m", "m", "root mean square along the world's z", 0, 100}, self.heave_m);
-        visit(Field{"roll_deg", "deg", "root mean square about the body's x", 0, 90}, self.roll_deg);
-        visit(Field{"pitch_deg", "deg", "root mean square about the body's y", 0, 45}, self.pitch_deg);
-        visit(Field{"period_s", "s", "of the spectrum's peak", 0.1, 1000}, self.period_s);
-        visit(Field{"spectrum", "",
-                    "pierson_moskowitz (1964), of a fully developed sea; jonswap (Hasselmann et al. 1973), with a "
-                    "higher peak"},
+    static void describe(auto& self, auto& visit) {
+        visit({"heave_m", "m", "root mean square along the world's z", 0, 100}, self.heave_m);
+        visit({"roll_deg", "deg", "root mean square about the body's x", 0, 90}, self.roll_deg);
+        visit({"pitch_deg", "deg", "root mean square about the body's y", 0, 45}, self.pitch_deg);
+        visit({"period_s", "s", "of the spectrum's peak", 0.1, 1000}, self.period_s);
+        visit({"spectrum", "",
+               "pierson_moskowitz (1964), of a fully developed sea; jonswap (Hasselmann et al. 1973), with a "
+               "higher peak"},
               self.spectrum);
-        visit(Field{"seed", "1", "of the phases: the same seed gives the same motion", 0, 4294967295.0}, self.seed);
+        visit({"seed", "1", "of the phases: the same seed gives the same motion", 0, 4294967295.0}, self.seed);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

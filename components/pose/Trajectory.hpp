@@ -25,14 +25,12 @@ struct Waypoint {
     /** Returns the unit quaternion that rotates vectors of the body into the world. */
     glm::dquat orientation() const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"time", "s", "since the start of the run", -1e9, 1e9}, self.time);
-        visit(Field{"position", "m", "of the body in the world: north, west, up", -1e9, 1e9}, self.position);
-        visit(Field{"roll_deg", "deg", "about x, positive lowers starboard", -360, 360}, self.roll_deg);
-        visit(Field{"pitch_deg", "deg", "about y, positive looks down", -360, 360}, self.pitch_deg);
-        visit(Field{"yaw_deg", "deg", "about z, positive turns to port", -360, 360}, self.yaw_deg);
+    static void describe(auto& self, auto& visit) {
+        visit({"time", "s", "since the start of the run", -1e9, 1e9}, self.time);
+        visit({"position", "m", "of the body in the world: north, west, up", -1e9, 1e9}, self.position);
+        visit({"roll_deg", "deg", "about x, positive lowers starboard", -360, 360}, self.roll_deg);
+        visit({"pitch_deg", "deg", "about y, positive looks down", -360, 360}, self.pitch_deg);
+        visit({"yaw_deg", "deg", "about z, positive turns to port", -360, 360}, self.yaw_deg);
     }
 };
 
@@ -44,21 +42,17 @@ struct TrajectoryConfig {
     bool smooth = false;
     std::optional<SeaMotionConfig> motion = {};
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz in [s], [m], [1]"}, self.file);
-        visit(Field{"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
-        visit(
-            Field{"loop", "", "whether the trajectory restarts at its first stamp after the last; else it ends there"},
-            self.loop);
-        visit(Field{"smooth", "",
-                    "a natural cubic spline through the stamps, whose accelerations do not jump; else straight lines "
-                    "with corners"},
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz in [s], [m], [1]"}, self.file);
+        visit({"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
+        visit({"loop", "", "whether the trajectory restarts at its first stamp after the last; else it ends there"},
+              self.loop);
+        visit({"smooth", "",
+               "a natural cubic spline through the stamps, whose accelerations do not jump; else straight lines "
+               "with corners"},
               self.smooth);
-        visit(
-            Field{"motion", "", "heave, roll and pitch of a carrier on waves, on top of the trajectory; absent: none"},
-            self.motion);
+        visit({"motion", "", "heave, roll and pitch of a carrier on waves, on top of the trajectory; absent: none"},
+              self.motion);
     }
     /** Requires exactly one source, and increasing times of waypoints. */
     void check(types::Diagnostics& diagnostics) const;

@@ -1,6 +1,5 @@
 #pragma once
 #include <memory>
-#include <string>
 
 #include "components/log/Reader.hpp"
 #include "components/output/PictureConfig.hpp"

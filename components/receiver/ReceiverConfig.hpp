@@ -18,22 +18,19 @@ struct TvgConfig {
     double db_per_m = 0;
     double max_db = 100;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"log_coefficient", "dB", "gain per decade of range", 0, 1000}, self.log_coefficient);
-        visit(Field{"db_per_m", "dB/m", "one-way absorption to compensate, twice per metre of range", 0, 1000},
+    static void describe(auto& self, auto& visit) {
+        visit({"log_coefficient", "dB", "gain per decade of range", 0, 1000}, self.log_coefficient);
+        visit({"db_per_m", "dB/m", "one-way absorption to compensate, twice per metre of range", 0, 1000},
               self.db_per_m);
-        visit(Field{"max_db", "dB", "max gain", -1000, 1000}, self.max_db);
+        visit({"max_db", "dB", "max gain", -1000, 1000}, self.max_db);
     }
 };
 
 struct BlankingConfig {
     double range_min = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"range_min", "m", "bins that begin nearer are silent", 0, 1e5}, self.range_min);
+    static void describe(auto& self, auto& visit) {
+        visit({"range_min", "m", "bins that begin nearer are silent", 0, 1e5}, self.range_min);
     }
 };
 
@@ -45,21 +42,17 @@ struct CodeConfig {
     double dynamic_range_db = 60;
     double gamma = 1;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"bits", "1", "of a code: the max code is 2^bits - 1", 8, 16}, self.bits);
-        visit(Field{"law", "", "the code is proportional to intensity, to its root, or to its level"}, self.law);
-        visit(Field{"full_scale_db", "dB", "level of the max code, all gain included", -1000, 1000},
-              self.full_scale_db);
-        visit(Field{"dynamic_range_db", "dB", "law log: level of code 0 below full_scale_db", 0.1, 3000},
+    static void describe(auto& self, auto& visit) {
+        visit({"bits", "1", "of a code: the max code is 2^bits - 1", 8, 16}, self.bits);
+        visit({"law", "", "the code is proportional to intensity, to its root, or to its level"}, self.law);
+        visit({"full_scale_db", "dB", "level of the max code, all gain included", -1000, 1000}, self.full_scale_db);
+        visit({"dynamic_range_db", "dB", "law log: level of code 0 below full_scale_db", 0.1, 3000},
               self.dynamic_range_db);
-        visit(
-            Field{"gamma", "1",
-                  "law linear or sqrt: the code is proportional to the law's value to this power; below 1 it brightens "
-                  "weak echoes",
-                  0.05, 5},
-            self.gamma);
+        visit({"gamma", "1",
+               "law linear or sqrt: the code is proportional to the law's value to this power; below 1 it brightens "
+               "weak echoes",
+               0.05, 5},
+              self.gamma);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -71,13 +64,10 @@ struct BrightnessConfig {
     double gain = 0.5;
     Model model = Model::Physical;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(
-            Field{"gain", "1", "a bin is twice this times its value relative to medium sand face on, at most 1", 0, 1},
-            self.gain);
-        visit(Field{"model", "", "`model` of the connected sonar"}, self.model);
+    static void describe(auto& self, auto& visit) {
+        visit({"gain", "1", "a bin is twice this times its value relative to medium sand face on, at most 1", 0, 1},
+              self.gain);
+        visit({"model", "", "`model` of the connected sonar"}, self.model);
     }
 };
 
@@ -87,14 +77,12 @@ struct AutomaticGainConfig {
     double attack_ms = 0.5, release_ms = 5;
     double max_db = 40;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"target_db", "dB", "target of the mean level over the beams, all gain included", -1000, 1000},
+    static void describe(auto& self, auto& visit) {
+        visit({"target_db", "dB", "target of the mean level over the beams, all gain included", -1000, 1000},
               self.target_db);
-        visit(Field{"attack_ms", "ms", "time to follow a rising level, to 1 - 1/e", 0, 1e6}, self.attack_ms);
-        visit(Field{"release_ms", "ms", "the same for a falling level", 0, 1e6}, self.release_ms);
-        visit(Field{"max_db", "dB", "max magnitude of this gain, up or down", 0, 1000}, self.max_db);
+        visit({"attack_ms", "ms", "time to follow a rising level, to 1 - 1/e", 0, 1e6}, self.attack_ms);
+        visit({"release_ms", "ms", "the same for a falling level", 0, 1e6}, self.release_ms);
+        visit({"max_db", "dB", "max magnitude of this gain, up or down", 0, 1000}, self.max_db);
     }
 };
 
@@ -110,24 +98,21 @@ struct ReceiverConfig {
     std::optional<AutomaticGainConfig> automatic_gain;
     std::optional<double> saturation_db;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"tvg", "", "time-varied gain: log_coefficient log10(r) + 2 db_per_m r; absent: none"}, self.tvg);
-        visit(Field{"gain_db", "dB", "gain at every range", -1000, 1000}, self.gain_db);
-        visit(Field{"blanking", "", "silences near bins, whose shadows remain; absent: none"}, self.blanking);
-        visit(Field{"output", "",
-                    "intensity; amplitude, its root; level_db, 10 log10 of it; received_level_db, the same plus "
-                    "source_level_db; code, whole numbers by `code`"},
+    static void describe(auto& self, auto& visit) {
+        visit({"tvg", "", "time-varied gain: log_coefficient log10(r) + 2 db_per_m r; absent: none"}, self.tvg);
+        visit({"gain_db", "dB", "gain at every range", -1000, 1000}, self.gain_db);
+        visit({"blanking", "", "silences near bins, whose shadows remain; absent: none"}, self.blanking);
+        visit({"output", "",
+               "intensity; amplitude, its root; level_db, 10 log10 of it; received_level_db, the same plus "
+               "source_level_db; code, whole numbers by `code`"},
               self.output);
-        visit(Field{"source_level_db", "dB re 1 uPa m", "used by output received_level_db", -300, 400},
+        visit({"source_level_db", "dB re 1 uPa m", "used by output received_level_db", -300, 400},
               self.source_level_db);
-        visit(Field{"code", "", "used by output code"}, self.code);
-        visit(Field{"automatic_gain", "", "gain that follows the level along each ping; absent: none"},
-              self.automatic_gain);
-        visit(Field{"saturation_db", "dB", "max level of a bin, all gain included; absent: none", -1000, 1000},
+        visit({"code", "", "used by output code"}, self.code);
+        visit({"automatic_gain", "", "gain that follows the level along each ping; absent: none"}, self.automatic_gain);
+        visit({"saturation_db", "dB", "max level of a bin, all gain included; absent: none", -1000, 1000},
               self.saturation_db);
-        visit(Field{"brightness", "", "instead of tvg: scales bins for a display; absent: none"}, self.brightness);
+        visit({"brightness", "", "instead of tvg: scales bins for a display; absent: none"}, self.brightness);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

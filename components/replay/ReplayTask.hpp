@@ -26,17 +26,15 @@ struct ReplayConfig {
     double from = 0;
     bool loop = false;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"file", "", "pocolog or MCAP file, relative to the deployment"}, self.file);
-        visit(Field{"pace", "1",
-                    "recorded seconds per second of the wall clock; 0: one instant of the log each cycle; without "
-                    "effect in lockstep, where simulated time follows the log",
-                    0, 1e6},
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "", "pocolog or MCAP file, relative to the deployment"}, self.file);
+        visit({"pace", "1",
+               "recorded seconds per second of the wall clock; 0: one instant of the log each cycle; without "
+               "effect in lockstep, where simulated time follows the log",
+               0, 1e6},
               self.pace);
-        visit(Field{"from", "s", "start of the replay, after the log's first stamp", 0, 1e9}, self.from);
-        visit(Field{"loop", "", "repeats the log from `from` on, with shifted stamps: time never runs backwards"},
+        visit({"from", "s", "start of the replay, after the log's first stamp", 0, 1e9}, self.from);
+        visit({"loop", "", "repeats the log from `from` on, with shifted stamps: time never runs backwards"},
               self.loop);
     }
 };

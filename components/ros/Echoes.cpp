@@ -24,8 +24,7 @@ float binAt(double level_db, BinScale scale) {
 }
 
 /** Calls `put(place, bin)` for each bin of the ping, in ascending order of places. */
-template <class Put>
-void inOrder(const types::Sonar& ping, ImageOrder order, Put&& put) {
+void inOrder(const types::Sonar& ping, ImageOrder order, auto&& put) {
     if (order == ImageOrder::BeamMajor) {
         for (size_t i = 0; i < ping.bins.size(); ++i) put(i, ping.bins[i]);
         return;

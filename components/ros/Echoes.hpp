@@ -1,6 +1,5 @@
 #pragma once
 #include <optional>
-#include <span>
 
 #include "components/ros/Options.hpp"
 #include "components/ros/SonarMessages.hpp"

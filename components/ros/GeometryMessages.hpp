@@ -12,8 +12,6 @@
 
 namespace insonify::ros {
 
-using types::Field;
-
 struct Time {
     static constexpr const char* type_name = "builtin_interfaces/msg/Time";
     static constexpr const char* type_hash = "RIHS01_b106235e25a4c5ed35098aa0a61a3ee9c9b18d197f398b0e4206cea9acf9c197";
@@ -21,10 +19,9 @@ struct Time {
     uint32_t nanosec = 0;
 
     friend bool operator==(const Time&, const Time&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"sec", "s", "since the epoch"}, self.sec);
-        visit(Field{"nanosec", "ns", "beyond the second, below 1e9"}, self.nanosec);
+    static void describe(auto& self, auto& visit) {
+        visit({"sec", "s", "since the epoch"}, self.sec);
+        visit({"nanosec", "ns", "beyond the second, below 1e9"}, self.nanosec);
     }
 };
 
@@ -35,10 +32,9 @@ struct Header {
     std::string frame_id;
 
     friend bool operator==(const Header&, const Header&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"stamp", "", "when the data was true in the world"}, self.stamp);
-        visit(Field{"frame_id", "", "the frame that the data is given in"}, self.frame_id);
+    static void describe(auto& self, auto& visit) {
+        visit({"stamp", "", "when the data was true in the world"}, self.stamp);
+        visit({"frame_id", "", "the frame that the data is given in"}, self.frame_id);
     }
 };
 
@@ -48,10 +44,7 @@ struct Clock {
     Time clock;
 
     friend bool operator==(const Clock&, const Clock&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"clock", "", "simulated time"}, self.clock);
-    }
+    static void describe(auto& self, auto& visit) { visit({"clock", "", "simulated time"}, self.clock); }
 };
 
 struct Vector3 {
@@ -60,11 +53,10 @@ struct Vector3 {
     double x = 0, y = 0, z = 0;
 
     friend bool operator==(const Vector3&, const Vector3&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"x"}, self.x);
-        visit(Field{"y"}, self.y);
-        visit(Field{"z"}, self.z);
+    static void describe(auto& self, auto& visit) {
+        visit({"x"}, self.x);
+        visit({"y"}, self.y);
+        visit({"z"}, self.z);
     }
 };
 
@@ -74,11 +66,10 @@ struct Point {
     double x = 0, y = 0, z = 0;
 
     friend bool operator==(const Point&, const Point&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"x", "m"}, self.x);
-        visit(Field{"y", "m"}, self.y);
-        visit(Field{"z", "m"}, self.z);
+    static void describe(auto& self, auto& visit) {
+        visit({"x", "m"}, self.x);
+        visit({"y", "m"}, self.y);
+        visit({"z", "m"}, self.z);
     }
 };
 
@@ -88,12 +79,11 @@ struct Quaternion {
     double x = 0, y = 0, z = 0, w = 1;
 
     friend bool operator==(const Quaternion&, const Quaternion&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"x"}, self.x);
-        visit(Field{"y"}, self.y);
-        visit(Field{"z"}, self.z);
-        visit(Field{"w"}, self.w);
+    static void describe(auto& self, auto& visit) {
+        visit({"x"}, self.x);
+        visit({"y"}, self.y);
+        visit({"z"}, self.z);
+        visit({"w"}, self.w);
     }
 };
 
@@ -104,10 +94,9 @@ struct Pose {
     Quaternion orientation;
 
     friend bool operator==(const Pose&, const Pose&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"position", "m", "origin of the body in the header's frame"}, self.position);
-        visit(Field{"orientation", "1", "turns body vectors into the header's frame"}, self.orientation);
+    static void describe(auto& self, auto& visit) {
+        visit({"position", "m", "origin of the body in the header's frame"}, self.position);
+        visit({"orientation", "1", "turns body vectors into the header's frame"}, self.orientation);
     }
 };
 
@@ -118,10 +107,9 @@ struct PoseStamped {
     Pose pose;
 
     friend bool operator==(const PoseStamped&, const PoseStamped&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"pose"}, self.pose);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"pose"}, self.pose);
     }
 };
 
@@ -135,10 +123,9 @@ struct PoseWithCovariance {
     Covariance covariance{};
 
     friend bool operator==(const PoseWithCovariance&, const PoseWithCovariance&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"covariance", "m^2, rad^2"}, self.covariance);
+    static void describe(auto& self, auto& visit) {
+        visit({"pose"}, self.pose);
+        visit({"covariance", "m^2, rad^2"}, self.covariance);
     }
 };
 
@@ -149,10 +136,9 @@ struct Twist {
     Vector3 angular;
 
     friend bool operator==(const Twist&, const Twist&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"linear", "m/s"}, self.linear);
-        visit(Field{"angular", "rad/s"}, self.angular);
+    static void describe(auto& self, auto& visit) {
+        visit({"linear", "m/s"}, self.linear);
+        visit({"angular", "rad/s"}, self.angular);
     }
 };
 
@@ -163,10 +149,9 @@ struct TwistWithCovariance {
     Covariance covariance{};
 
     friend bool operator==(const TwistWithCovariance&, const TwistWithCovariance&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"twist"}, self.twist);
-        visit(Field{"covariance", "m^2/s^2, rad^2/s^2"}, self.covariance);
+    static void describe(auto& self, auto& visit) {
+        visit({"twist"}, self.twist);
+        visit({"covariance", "m^2/s^2, rad^2/s^2"}, self.covariance);
     }
 };
 
@@ -180,12 +165,11 @@ struct Odometry {
     TwistWithCovariance twist;
 
     friend bool operator==(const Odometry&, const Odometry&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"child_frame_id", "", "the body"}, self.child_frame_id);
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"twist"}, self.twist);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"child_frame_id", "", "the body"}, self.child_frame_id);
+        visit({"pose"}, self.pose);
+        visit({"twist"}, self.twist);
     }
 };
 
@@ -196,10 +180,9 @@ struct Transform {
     Quaternion rotation;
 
     friend bool operator==(const Transform&, const Transform&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"translation", "m", "origin of the child in the header's frame"}, self.translation);
-        visit(Field{"rotation", "1", "turns vectors of the child into the header's frame"}, self.rotation);
+    static void describe(auto& self, auto& visit) {
+        visit({"translation", "m", "origin of the child in the header's frame"}, self.translation);
+        visit({"rotation", "1", "turns vectors of the child into the header's frame"}, self.rotation);
     }
 };
 
@@ -211,11 +194,10 @@ struct TransformStamped {
     Transform transform;
 
     friend bool operator==(const TransformStamped&, const TransformStamped&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"child_frame_id"}, self.child_frame_id);
-        visit(Field{"transform"}, self.transform);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"child_frame_id"}, self.child_frame_id);
+        visit({"transform"}, self.transform);
     }
 };
 
@@ -225,10 +207,7 @@ struct TFMessage {
     std::vector<TransformStamped> transforms;
 
     friend bool operator==(const TFMessage&, const TFMessage&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"transforms"}, self.transforms);
-    }
+    static void describe(auto& self, auto& visit) { visit({"transforms"}, self.transforms); }
 };
 
 }  // namespace insonify::ros

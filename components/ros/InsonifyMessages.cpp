@@ -26,8 +26,8 @@ requires(!std::is_same_v<From, To> && requires(const From& from, To& to) {
 /** Copies every field that both sides describe by the same name. */
 template <class From, class To>
 void copyFieldsByName(const From& from, To& to) {
-    auto take = [&](const Field& wanted, auto& target) {
-        auto give = [&](const Field& given, const auto& value) {
+    auto take = [&](const types::Field& wanted, auto& target) {
+        auto give = [&](const types::Field& given, const auto& value) {
             if (std::string_view(given.name) != wanted.name) return;
             if constexpr (requires { assign(value, target); })
                 assign(value, target);
@@ -39,8 +39,7 @@ void copyFieldsByName(const From& from, To& to) {
     To::describe(to, take);
 }
 
-template <class Sample, class Message>
-void fill(const Sample& sample, const std::string& frame_id, Message& message) {
+void fill(const auto& sample, const std::string& frame_id, auto& message) {
     types::requireSound(sample, "it");
     message.header = {toRos(sample.time), frame_id};
     copyFieldsByName(sample, message);

@@ -32,24 +32,23 @@ struct SonarTruth {
     std::vector<uint8_t> shadow;
 
     friend bool operator==(const SonarTruth&, const SonarTruth&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"bin_duration_us", "us", "one-way travel time through one bin"}, self.bin_duration_us);
-        visit(Field{"sound_speed", "m/s"}, self.sound_speed);
-        visit(Field{"bin_count", "1", "bins per beam"}, self.bin_count);
-        visit(Field{"bearings", "rad", "of each beam, positive to port"}, self.bearings);
-        visit(Field{"objects", "", "names of all objects"}, self.objects);
-        visit(Field{"elevation", "rad", "positive up"}, self.elevation);
-        visit(Field{"object", "1", "index into `objects`; -1: none"}, self.object);
-        visit(Field{"share", "1", "of that object, or of the water, in the energy"}, self.share);
-        visit(Field{"hits", "1", "samples"}, self.hits);
-        visit(Field{"grazing", "rad"}, self.grazing);
-        visit(Field{"path", "1",
-                    "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, 5: rung in a wall, 6: "
-                    "water"},
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"bin_duration_us", "us", "one-way travel time through one bin"}, self.bin_duration_us);
+        visit({"sound_speed", "m/s"}, self.sound_speed);
+        visit({"bin_count", "1", "bins per beam"}, self.bin_count);
+        visit({"bearings", "rad", "of each beam, positive to port"}, self.bearings);
+        visit({"objects", "", "names of all objects"}, self.objects);
+        visit({"elevation", "rad", "positive up"}, self.elevation);
+        visit({"object", "1", "index into `objects`; -1: none"}, self.object);
+        visit({"share", "1", "of that object, or of the water, in the energy"}, self.share);
+        visit({"hits", "1", "samples"}, self.hits);
+        visit({"grazing", "rad"}, self.grazing);
+        visit({"path", "1",
+               "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, 5: rung in a wall, 6: "
+               "water"},
               self.path);
-        visit(Field{"shadow", "", "1: no echo of a surface, although nearer than the last"}, self.shadow);
+        visit({"shadow", "", "1: no echo of a surface, although nearer than the last"}, self.shadow);
     }
 };
 
@@ -69,16 +68,15 @@ struct SonarReturns {
     std::vector<float> strongest_elevation;
 
     friend bool operator==(const SonarReturns&, const SonarReturns&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"bearings", "rad", "of each beam, positive to port"}, self.bearings);
-        visit(Field{"first_range", "m"}, self.first_range);
-        visit(Field{"first_level", "dB"}, self.first_level);
-        visit(Field{"first_elevation", "rad"}, self.first_elevation);
-        visit(Field{"strongest_range", "m"}, self.strongest_range);
-        visit(Field{"strongest_level", "dB"}, self.strongest_level);
-        visit(Field{"strongest_elevation", "rad"}, self.strongest_elevation);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"bearings", "rad", "of each beam, positive to port"}, self.bearings);
+        visit({"first_range", "m"}, self.first_range);
+        visit({"first_level", "dB"}, self.first_level);
+        visit({"first_elevation", "rad"}, self.first_elevation);
+        visit({"strongest_range", "m"}, self.strongest_range);
+        visit({"strongest_level", "dB"}, self.strongest_level);
+        visit({"strongest_elevation", "rad"}, self.strongest_elevation);
     }
 };
 
@@ -101,18 +99,17 @@ struct SonarElements {
     std::vector<float> quadrature;
 
     friend bool operator==(const SonarElements&, const SonarElements&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"sound_speed", "m/s"}, self.sound_speed);
-        visit(Field{"wavelength", "m"}, self.wavelength);
-        visit(Field{"first_range", "m", "of the first sample"}, self.first_range);
-        visit(Field{"sample_spacing", "m"}, self.sample_spacing);
-        visit(Field{"sample_count", "1", "of each element"}, self.sample_count);
-        visit(Field{"positions", "m", "of each element, positive to port"}, self.positions);
-        visit(Field{"weights", "1", "of each element"}, self.weights);
-        visit(Field{"in_phase", "1/m"}, self.in_phase);
-        visit(Field{"quadrature", "1/m"}, self.quadrature);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"sound_speed", "m/s"}, self.sound_speed);
+        visit({"wavelength", "m"}, self.wavelength);
+        visit({"first_range", "m", "of the first sample"}, self.first_range);
+        visit({"sample_spacing", "m"}, self.sample_spacing);
+        visit({"sample_count", "1", "of each element"}, self.sample_count);
+        visit({"positions", "m", "of each element, positive to port"}, self.positions);
+        visit({"weights", "1", "of each element"}, self.weights);
+        visit({"in_phase", "1/m"}, self.in_phase);
+        visit({"quadrature", "1/m"}, self.quadrature);
     }
 };
 
@@ -134,18 +131,17 @@ struct SonarSettings {
     uint32_t beam_count = 0;
 
     friend bool operator==(const SonarSettings&, const SonarSettings&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"range", "m", "slant range at which the last bin ends"}, self.range);
-        visit(Field{"frequency_khz", "kHz"}, self.frequency_khz);
-        visit(Field{"speed_of_sound", "m/s"}, self.speed_of_sound);
-        visit(Field{"gain_db", "dB", "of the receiver"}, self.gain_db);
-        visit(Field{"bearing", "rad", "of the head, 0 ahead, positive to port"}, self.bearing);
-        visit(Field{"field_of_view", "rad"}, self.field_of_view);
-        visit(Field{"beam_height", "rad"}, self.beam_height);
-        visit(Field{"bin_count", "1"}, self.bin_count);
-        visit(Field{"beam_count", "1"}, self.beam_count);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"range", "m", "slant range at which the last bin ends"}, self.range);
+        visit({"frequency_khz", "kHz"}, self.frequency_khz);
+        visit({"speed_of_sound", "m/s"}, self.speed_of_sound);
+        visit({"gain_db", "dB", "of the receiver"}, self.gain_db);
+        visit({"bearing", "rad", "of the head, 0 ahead, positive to port"}, self.bearing);
+        visit({"field_of_view", "rad"}, self.field_of_view);
+        visit({"beam_height", "rad"}, self.beam_height);
+        visit({"bin_count", "1"}, self.bin_count);
+        visit({"beam_count", "1"}, self.beam_count);
     }
 };
 

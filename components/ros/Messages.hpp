@@ -19,8 +19,7 @@ using MessageTypes =
                SonarSettings, Imu, FluidPressure, Dvl>;
 
 /** Calls `use(std::type_identity<T>{})` for each message. */
-template <class Use>
-void forEachMessage(Use&& use) {
+void forEachMessage(auto&& use) {
     [&]<class... T>(std::type_identity<std::tuple<T...>>) {
         (use(std::type_identity<T>{}), ...);
     }(std::type_identity<MessageTypes>{});

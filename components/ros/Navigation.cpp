@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <glm/matrix.hpp>
-#include <stdexcept>
 
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"

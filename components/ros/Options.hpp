@@ -37,26 +37,23 @@ struct SonarOptions {
     double frequency_khz = 0;
     std::string frame_id = "sonar";
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"order", "", "order of an image's echoes: all beams of a bin together, or all bins of a beam"},
+    static void describe(auto& self, auto& visit) {
+        visit({"order", "", "order of an image's echoes: all beams of a bin together, or all bins of a beam"},
               self.order);
-        visit(Field{"dtype", "", "type of an image's echoes: uint8 levels, or the bins as float32"}, self.dtype);
-        visit(Field{"frame", "",
-                    "axes of directions in marine_acoustic_msgs: z ahead and x up, or x ahead and z up as in all of "
-                    "sensor_msgs"},
+        visit({"dtype", "", "type of an image's echoes: uint8 levels, or the bins as float32"}, self.dtype);
+        visit({"frame", "",
+               "axes of directions in marine_acoustic_msgs: z ahead and x up, or x ahead and z up as in all of "
+               "sensor_msgs"},
               self.frame);
-        visit(Field{"scale", "", "content of the bins: linear intensities, or decibel"}, self.scale);
-        visit(Field{"dynamic_range_db", "dB", "range of uint8: 255 is the reference, 0 is this far below it", 1, 300},
+        visit({"scale", "", "content of the bins: linear intensities, or decibel"}, self.scale);
+        visit({"dynamic_range_db", "dB", "range of uint8: 255 is the reference, 0 is this far below it", 1, 300},
               self.dynamic_range_db);
-        visit(Field{"reference_db", "dB", "level of the strongest echo; absent: that of each ping", -3000, 3000},
+        visit({"reference_db", "dB", "level of the strongest echo; absent: that of each ping", -3000, 3000},
               self.reference_db);
-        visit(Field{"threshold_db", "dB", "min level of a return, relative to the reference", -300, 0},
-              self.threshold_db);
-        visit(Field{"frequency_khz", "kHz", "frequency of the device; 0: that of the sonar, if known", 0, 1e5},
+        visit({"threshold_db", "dB", "min level of a return, relative to the reference", -300, 0}, self.threshold_db);
+        visit({"frequency_khz", "kHz", "frequency of the device; 0: that of the sonar, if known", 0, 1e5},
               self.frequency_khz);
-        visit(Field{"frame_id", "", "name of the sonar's frame"}, self.frame_id);
+        visit({"frame_id", "", "name of the sonar's frame"}, self.frame_id);
     }
 };
 
@@ -64,10 +61,9 @@ struct SonarOptions {
 struct MessageOptions : SonarOptions {
     WorldFrame world_frame = WorldFrame::Enu;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         SonarOptions::describe(self, visit);
-        visit(types::Field{"world_frame", "", "axes of poses: Rock's as they are, ENU or NED"}, self.world_frame);
+        visit({"world_frame", "", "axes of poses: Rock's as they are, ENU or NED"}, self.world_frame);
     }
 };
 

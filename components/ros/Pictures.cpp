@@ -19,8 +19,7 @@ constexpr Encoding encodings[] = {{"mono8", types::ImageMode::Grayscale, 8, 1},
                                   {"rgb8", types::ImageMode::Rgb, 8, 3},
                                   {"bgr8", types::ImageMode::Bgr, 8, 3}};
 
-template <class Is>
-const Encoding& encodingWhere(const std::string& what, Is&& is) {
+const Encoding& encodingWhere(const std::string& what, auto&& is) {
     for (const Encoding& encoding : encodings)
         if (is(encoding)) return encoding;
     throw std::invalid_argument(what + " is not known: mono8, mono16, rgb8 and bgr8 are");

@@ -1,6 +1,5 @@
 #include "components/ros/Poses.hpp"
 
-#include <algorithm>
 #include <numbers>
 
 #include "components/ros/Stamps.hpp"

@@ -39,8 +39,7 @@ inline bool isUnknown(glm::dvec3 v) { return std::isnan(v.x) || std::isnan(v.y) 
 inline bool isUnknown(const glm::dmat3& m) { return isUnknown(m[0]) || isUnknown(m[1]) || isUnknown(m[2]); }
 
 /** Turns a covariance by `turn`, which turns vectors: C becomes A C A^T. */
-template <class Turn>
-glm::dmat3 both(const glm::dmat3& covariance, Turn&& turn) {
+glm::dmat3 both(const glm::dmat3& covariance, auto&& turn) {
     const auto columns = [&](const glm::dmat3& m) { return glm::dmat3(turn(m[0]), turn(m[1]), turn(m[2])); };
     return columns(glm::transpose(columns(covariance)));
 }

@@ -18,15 +18,14 @@ struct Image {
     std::vector<uint8_t> data;
 
     friend bool operator==(const Image&, const Image&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"height", "1", "rows"}, self.height);
-        visit(Field{"width", "1", "pixels in a row"}, self.width);
-        visit(Field{"encoding", "", "mono8, mono16, rgb8, bgr8"}, self.encoding);
-        visit(Field{"is_bigendian"}, self.is_bigendian);
-        visit(Field{"step", "B", "size of a row"}, self.step);
-        visit(Field{"data", "1", "rows from top to bottom"}, self.data);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"height", "1", "rows"}, self.height);
+        visit({"width", "1", "pixels in a row"}, self.width);
+        visit({"encoding", "", "mono8, mono16, rgb8, bgr8"}, self.encoding);
+        visit({"is_bigendian"}, self.is_bigendian);
+        visit({"step", "B", "size of a row"}, self.step);
+        visit({"data", "1", "rows from top to bottom"}, self.data);
     }
 };
 
@@ -41,18 +40,17 @@ struct LaserScan {
     std::vector<float> intensities;
 
     friend bool operator==(const LaserScan&, const LaserScan&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"angle_min", "rad", "of the first ray, positive to port"}, self.angle_min);
-        visit(Field{"angle_max", "rad", "of the last ray"}, self.angle_max);
-        visit(Field{"angle_increment", "rad"}, self.angle_increment);
-        visit(Field{"time_increment", "s", "from one ray to the next"}, self.time_increment);
-        visit(Field{"scan_time", "s", "from one scan to the next"}, self.scan_time);
-        visit(Field{"range_min", "m"}, self.range_min);
-        visit(Field{"range_max", "m"}, self.range_max);
-        visit(Field{"ranges", "m", "infinity: no return"}, self.ranges);
-        visit(Field{"intensities", "1"}, self.intensities);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"angle_min", "rad", "of the first ray, positive to port"}, self.angle_min);
+        visit({"angle_max", "rad", "of the last ray"}, self.angle_max);
+        visit({"angle_increment", "rad"}, self.angle_increment);
+        visit({"time_increment", "s", "from one ray to the next"}, self.time_increment);
+        visit({"scan_time", "s", "from one scan to the next"}, self.scan_time);
+        visit({"range_min", "m"}, self.range_min);
+        visit({"range_max", "m"}, self.range_max);
+        visit({"ranges", "m", "infinity: no return"}, self.ranges);
+        visit({"intensities", "1"}, self.intensities);
     }
 };
 
@@ -69,12 +67,11 @@ struct PointField {
     uint32_t count = 0;
 
     friend bool operator==(const PointField&, const PointField&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"name"}, self.name);
-        visit(Field{"offset", "B", "from the start of a point"}, self.offset);
-        visit(Field{"datatype", "1", "one of the constants"}, self.datatype);
-        visit(Field{"count", "1", "elements"}, self.count);
+    static void describe(auto& self, auto& visit) {
+        visit({"name"}, self.name);
+        visit({"offset", "B", "from the start of a point"}, self.offset);
+        visit({"datatype", "1", "one of the constants"}, self.datatype);
+        visit({"count", "1", "elements"}, self.count);
     }
 };
 
@@ -90,17 +87,16 @@ struct PointCloud2 {
     bool is_dense = true;
 
     friend bool operator==(const PointCloud2&, const PointCloud2&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"height", "1", "1: the points have no order"}, self.height);
-        visit(Field{"width", "1", "points in a row"}, self.width);
-        visit(Field{"fields", "", "what a point holds"}, self.fields);
-        visit(Field{"is_bigendian"}, self.is_bigendian);
-        visit(Field{"point_step", "B"}, self.point_step);
-        visit(Field{"row_step", "B"}, self.row_step);
-        visit(Field{"data"}, self.data);
-        visit(Field{"is_dense", "", "no point is invalid"}, self.is_dense);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"height", "1", "1: the points have no order"}, self.height);
+        visit({"width", "1", "points in a row"}, self.width);
+        visit({"fields", "", "what a point holds"}, self.fields);
+        visit({"is_bigendian"}, self.is_bigendian);
+        visit({"point_step", "B"}, self.point_step);
+        visit({"row_step", "B"}, self.row_step);
+        visit({"data"}, self.data);
+        visit({"is_dense", "", "no point is invalid"}, self.is_dense);
     }
 };
 
@@ -118,15 +114,14 @@ struct Range {
     float variance = 0;
 
     friend bool operator==(const Range&, const Range&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"radiation_type", "1", "sound"}, self.radiation_type);
-        visit(Field{"field_of_view", "rad"}, self.field_of_view);
-        visit(Field{"min_range", "m"}, self.min_range);
-        visit(Field{"max_range", "m"}, self.max_range);
-        visit(Field{"range", "m", "infinity: no return"}, self.range);
-        visit(Field{"variance", "m^2", "0: unknown"}, self.variance);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"radiation_type", "1", "sound"}, self.radiation_type);
+        visit({"field_of_view", "rad"}, self.field_of_view);
+        visit({"min_range", "m"}, self.min_range);
+        visit({"max_range", "m"}, self.max_range);
+        visit({"range", "m", "infinity: no return"}, self.range);
+        visit({"variance", "m^2", "0: unknown"}, self.variance);
     }
 };
 
@@ -143,15 +138,14 @@ struct Imu {
     std::array<double, 9> linear_acceleration_covariance{};
 
     friend bool operator==(const Imu&, const Imu&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"orientation", "1", "turns the unit's vectors into the world"}, self.orientation);
-        visit(Field{"orientation_covariance", "rad^2"}, self.orientation_covariance);
-        visit(Field{"angular_velocity", "rad/s", "in the unit"}, self.angular_velocity);
-        visit(Field{"angular_velocity_covariance", "rad^2/s^2"}, self.angular_velocity_covariance);
-        visit(Field{"linear_acceleration", "m/s^2", "specific force, in the unit"}, self.linear_acceleration);
-        visit(Field{"linear_acceleration_covariance", "m^2/s^4"}, self.linear_acceleration_covariance);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"orientation", "1", "turns the unit's vectors into the world"}, self.orientation);
+        visit({"orientation_covariance", "rad^2"}, self.orientation_covariance);
+        visit({"angular_velocity", "rad/s", "in the unit"}, self.angular_velocity);
+        visit({"angular_velocity_covariance", "rad^2/s^2"}, self.angular_velocity_covariance);
+        visit({"linear_acceleration", "m/s^2", "specific force, in the unit"}, self.linear_acceleration);
+        visit({"linear_acceleration_covariance", "m^2/s^4"}, self.linear_acceleration_covariance);
     }
 };
 
@@ -163,11 +157,10 @@ struct FluidPressure {
     double variance = 0;
 
     friend bool operator==(const FluidPressure&, const FluidPressure&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"fluid_pressure", "Pa", "absolute"}, self.fluid_pressure);
-        visit(Field{"variance", "Pa^2", "0: unknown"}, self.variance);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"fluid_pressure", "Pa", "absolute"}, self.fluid_pressure);
+        visit({"variance", "Pa^2", "0: unknown"}, self.variance);
     }
 };
 

@@ -17,12 +17,11 @@ struct PingInfo {
     std::vector<float> rx_beamwidths;
 
     friend bool operator==(const PingInfo&, const PingInfo&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"frequency", "Hz", "0: unknown"}, self.frequency);
-        visit(Field{"sound_speed", "m/s"}, self.sound_speed);
-        visit(Field{"tx_beamwidths", "rad", "across the plane of the fan, -3 dB"}, self.tx_beamwidths);
-        visit(Field{"rx_beamwidths", "rad", "in the plane of the fan, -3 dB"}, self.rx_beamwidths);
+    static void describe(auto& self, auto& visit) {
+        visit({"frequency", "Hz", "0: unknown"}, self.frequency);
+        visit({"sound_speed", "m/s"}, self.sound_speed);
+        visit({"tx_beamwidths", "rad", "across the plane of the fan, -3 dB"}, self.tx_beamwidths);
+        visit({"rx_beamwidths", "rad", "in the plane of the fan, -3 dB"}, self.rx_beamwidths);
     }
 };
 
@@ -41,12 +40,11 @@ struct SonarImageData {
     std::vector<uint8_t> data;
 
     friend bool operator==(const SonarImageData&, const SonarImageData&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"is_bigendian"}, self.is_bigendian);
-        visit(Field{"dtype", "1", "one of the constants"}, self.dtype);
-        visit(Field{"beam_count", "1", "beams"}, self.beam_count);
-        visit(Field{"data"}, self.data);
+    static void describe(auto& self, auto& visit) {
+        visit({"is_bigendian"}, self.is_bigendian);
+        visit({"dtype", "1", "one of the constants"}, self.dtype);
+        visit({"beam_count", "1", "beams"}, self.beam_count);
+        visit({"data"}, self.data);
     }
 };
 
@@ -61,13 +59,12 @@ struct ProjectedSonarImage {
     SonarImageData image;
 
     friend bool operator==(const ProjectedSonarImage&, const ProjectedSonarImage&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"ping_info"}, self.ping_info);
-        visit(Field{"beam_directions", "1", "unit vectors"}, self.beam_directions);
-        visit(Field{"ranges", "m", "centres of the bins"}, self.ranges);
-        visit(Field{"image"}, self.image);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"ping_info"}, self.ping_info);
+        visit({"beam_directions", "1", "unit vectors"}, self.beam_directions);
+        visit({"ranges", "m", "centres of the bins"}, self.ranges);
+        visit({"image"}, self.image);
     }
 };
 
@@ -86,17 +83,16 @@ struct RawSonarImage {
     SonarImageData image;
 
     friend bool operator==(const RawSonarImage&, const RawSonarImage&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"ping_info"}, self.ping_info);
-        visit(Field{"sample_rate", "Hz"}, self.sample_rate);
-        visit(Field{"samples_per_beam", "1"}, self.samples_per_beam);
-        visit(Field{"sample0", "1", "number of the first sample"}, self.sample0);
-        visit(Field{"tx_delays", "s", "of each beam"}, self.tx_delays);
-        visit(Field{"tx_angles", "rad", "of each beam"}, self.tx_angles);
-        visit(Field{"rx_angles", "rad", "of each beam, positive to starboard as in SonarDetections"}, self.rx_angles);
-        visit(Field{"image"}, self.image);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"ping_info"}, self.ping_info);
+        visit({"sample_rate", "Hz"}, self.sample_rate);
+        visit({"samples_per_beam", "1"}, self.samples_per_beam);
+        visit({"sample0", "1", "number of the first sample"}, self.sample0);
+        visit({"tx_delays", "s", "of each beam"}, self.tx_delays);
+        visit({"tx_angles", "rad", "of each beam"}, self.tx_angles);
+        visit({"rx_angles", "rad", "of each beam, positive to starboard as in SonarDetections"}, self.rx_angles);
+        visit({"image"}, self.image);
     }
 };
 
@@ -109,10 +105,7 @@ struct DetectionFlag {
     uint8_t flag = ok;
 
     friend bool operator==(const DetectionFlag&, const DetectionFlag&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"flag", "1", "0: good"}, self.flag);
-    }
+    static void describe(auto& self, auto& visit) { visit({"flag", "1", "0: good"}, self.flag); }
 };
 
 struct SonarRanges {
@@ -127,15 +120,14 @@ struct SonarRanges {
     std::vector<float> ranges;
 
     friend bool operator==(const SonarRanges&, const SonarRanges&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"ping_info"}, self.ping_info);
-        visit(Field{"flags"}, self.flags);
-        visit(Field{"transmit_delays", "s"}, self.transmit_delays);
-        visit(Field{"intensities", "1"}, self.intensities);
-        visit(Field{"beam_unit_vec", "1"}, self.beam_unit_vec);
-        visit(Field{"ranges", "m"}, self.ranges);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"ping_info"}, self.ping_info);
+        visit({"flags"}, self.flags);
+        visit({"transmit_delays", "s"}, self.transmit_delays);
+        visit({"intensities", "1"}, self.intensities);
+        visit({"beam_unit_vec", "1"}, self.beam_unit_vec);
+        visit({"ranges", "m"}, self.ranges);
     }
 };
 
@@ -161,26 +153,25 @@ struct Dvl {
     std::array<float, beams> range_covar{}, beam_quality{}, beam_velocity{}, beam_velocity_covar{};
 
     friend bool operator==(const Dvl&, const Dvl&) = default;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"header"}, self.header);
-        visit(Field{"velocity_mode", "1", "over the bottom"}, self.velocity_mode);
-        visit(Field{"dvl_type", "1", "a transducer for each beam"}, self.dvl_type);
-        visit(Field{"velocity", "m/s"}, self.velocity);
-        visit(Field{"velocity_covar", "m^2/s^2", "by rows; -1: unknown"}, self.velocity_covar);
-        visit(Field{"altitude", "m"}, self.altitude);
-        visit(Field{"course_gnd", "rad", "atan2 of velocity's y and x"}, self.course_gnd);
-        visit(Field{"speed_gnd", "m/s", "of velocity's x and y"}, self.speed_gnd);
-        visit(Field{"num_good_beams", "1"}, self.num_good_beams);
-        visit(Field{"sound_speed", "m/s"}, self.sound_speed);
-        visit(Field{"beam_ranges_valid", "", "a beam has an echo"}, self.beam_ranges_valid);
-        visit(Field{"beam_velocities_valid", "", "there is bottom lock"}, self.beam_velocities_valid);
-        visit(Field{"beam_unit_vec", "1"}, self.beam_unit_vec);
-        visit(Field{"range", "m", "along each beam"}, self.range);
-        visit(Field{"range_covar", "m^2", "-1: unknown"}, self.range_covar);
-        visit(Field{"beam_quality", "1", "1: an echo, 0: none"}, self.beam_quality);
-        visit(Field{"beam_velocity", "m/s"}, self.beam_velocity);
-        visit(Field{"beam_velocity_covar", "m^2/s^2", "-1: unknown"}, self.beam_velocity_covar);
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"velocity_mode", "1", "over the bottom"}, self.velocity_mode);
+        visit({"dvl_type", "1", "a transducer for each beam"}, self.dvl_type);
+        visit({"velocity", "m/s"}, self.velocity);
+        visit({"velocity_covar", "m^2/s^2", "by rows; -1: unknown"}, self.velocity_covar);
+        visit({"altitude", "m"}, self.altitude);
+        visit({"course_gnd", "rad", "atan2 of velocity's y and x"}, self.course_gnd);
+        visit({"speed_gnd", "m/s", "of velocity's x and y"}, self.speed_gnd);
+        visit({"num_good_beams", "1"}, self.num_good_beams);
+        visit({"sound_speed", "m/s"}, self.sound_speed);
+        visit({"beam_ranges_valid", "", "a beam has an echo"}, self.beam_ranges_valid);
+        visit({"beam_velocities_valid", "", "there is bottom lock"}, self.beam_velocities_valid);
+        visit({"beam_unit_vec", "1"}, self.beam_unit_vec);
+        visit({"range", "m", "along each beam"}, self.range);
+        visit({"range_covar", "m^2", "-1: unknown"}, self.range_covar);
+        visit({"beam_quality", "1", "1: an echo, 0: none"}, self.beam_quality);
+        visit({"beam_velocity", "m/s"}, self.beam_velocity);
+        visit({"beam_velocity_covar", "m^2/s^2", "-1: unknown"}, self.beam_velocity_covar);
     }
 };
 

@@ -62,14 +62,12 @@ inline FineStamps& fineStamps() {
 }
 
 /** Keeps the stamp of a message that was read. */
-template <class Message>
-void noteStamp(const Message& message) {
+void noteStamp(const auto& message) {
     if constexpr (requires { message.header.stamp; }) fineStamps().note(message.header.stamp);
 }
 
 /** Restores the full stamps of a message made from a sample. */
-template <class Message>
-void restoreStamps(Message& message) {
+void restoreStamps(auto& message) {
     if constexpr (requires { message.header.stamp; })
         message.header.stamp = fineStamps().exact(message.header.stamp);
     else if constexpr (requires { message.clock; })

@@ -1,7 +1,6 @@
 #include "components/ros/TransformTree.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include "types/Pose.hpp"

@@ -137,8 +137,7 @@ private:
             diagnostics_.push_back(
                 {field.name, fmt::format("is {}; {}may be {}", text(from), near(name, names), fmt::join(names, ", "))});
     }
-    template <class Names>
-    static std::string near(const std::string* name, const Names& names) {
+    static std::string near(const std::string* name, const auto& names) {
         return name ? types::didYouMean(*name, {std::begin(names), std::end(names)}) : "";
     }
     static std::string text(const AcousticValue& value) {

@@ -57,22 +57,19 @@ struct ShellAcoustics {
     /** Returns the shell. Requires that check() reports nothing. */
     types::Shell shell() const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"thickness_mm", "mm", "of the wall", 1e-3, 1000}, self.thickness_mm);
-        visit(Field{"material", "", "matter of the table that has these numbers: density, speeds and loss"},
-              self.material);
-        visit(Field{"density", "kg/m^3", "of the wall", 1, 30000}, self.density);
-        visit(Field{"sound_speed", "m/s", "of its longitudinal waves", 100, 20000}, self.sound_speed);
-        visit(Field{"shear_speed", "m/s", "of its shear waves; 0: it has none", 0, 10000}, self.shear_speed);
-        visit(Field{"loss", "1", "imaginary over real part of its wave numbers", 0, 1}, self.loss);
-        visit(Field{"fill", "", "medium behind the wall"}, self.fill);
-        visit(Field{"fill_density", "kg/m^3", "of the medium behind the wall, in place of that of `fill`", 10, 20000},
+    static void describe(auto& self, auto& visit) {
+        visit({"thickness_mm", "mm", "of the wall", 1e-3, 1000}, self.thickness_mm);
+        visit({"material", "", "matter of the table that has these numbers: density, speeds and loss"}, self.material);
+        visit({"density", "kg/m^3", "of the wall", 1, 30000}, self.density);
+        visit({"sound_speed", "m/s", "of its longitudinal waves", 100, 20000}, self.sound_speed);
+        visit({"shear_speed", "m/s", "of its shear waves; 0: it has none", 0, 10000}, self.shear_speed);
+        visit({"loss", "1", "imaginary over real part of its wave numbers", 0, 1}, self.loss);
+        visit({"fill", "", "medium behind the wall"}, self.fill);
+        visit({"fill_density", "kg/m^3", "of the medium behind the wall, in place of that of `fill`", 10, 20000},
               self.fill_density);
-        visit(Field{"fill_sound_speed", "m/s", "of the medium behind the wall, in place of that of `fill`", 200, 6000},
+        visit({"fill_sound_speed", "m/s", "of the medium behind the wall, in place of that of `fill`", 200, 6000},
               self.fill_sound_speed);
-        visit(Field{"fill_loss", "1", "imaginary over real part of its wave number", 0, 1}, self.fill_loss);
+        visit({"fill_loss", "1", "imaginary over real part of its wave number", 0, 1}, self.fill_loss);
     }
 
 private:
@@ -99,26 +96,23 @@ struct Acoustics {
     void applyTo(types::Material& target) const;
     void check(types::Diagnostics& diagnostics) const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"sediment", "", "a seabed of the table: its law at the sonar's frequency, else its lambert_db"},
+    static void describe(auto& self, auto& visit) {
+        visit({"sediment", "", "a seabed of the table: its law at the sonar's frequency, else its lambert_db"},
               self.sediment);
-        visit(Field{"material", "",
-                    "matter of the table: its law at the sonar's frequency, else its reflection and "
-                    "lambert_db"},
+        visit({"material", "",
+               "matter of the table: its law at the sonar's frequency, else its reflection and "
+               "lambert_db"},
               self.material);
-        visit(Field{"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, 20},
-              self.lambert_db);
-        visit(Field{"reflection", "1", "signed pressure reflection coefficient at normal incidence", -1, 1},
+        visit({"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, 20}, self.lambert_db);
+        visit({"reflection", "1", "signed pressure reflection coefficient at normal incidence", -1, 1},
               self.reflection);
-        visit(Field{"roughness_slope", "1", "rms slope of the micro-relief: adds the lobe of a `reflection`", 0, 10},
+        visit({"roughness_slope", "1", "rms slope of the micro-relief: adds the lobe of a `reflection`", 0, 10},
               self.roughness_slope);
-        visit(Field{"mirror", "", "reflects as a flat mirror, by `reflection` or all of the sound: for multipath"},
+        visit({"mirror", "", "reflects as a flat mirror, by `reflection` or all of the sound: for multipath"},
               self.mirror);
-        visit(Field{"reflectivity", "1", "factor of cerqueira2017", 0, 1}, self.reflectivity);
-        visit(Field{"table", "", "instead: CSV file with grazing_deg,strength_db"}, self.table);
-        visit(Field{"shell", "", "the surface is a thin wall, which sound passes through"}, self.shell);
+        visit({"reflectivity", "1", "factor of cerqueira2017", 0, 1}, self.reflectivity);
+        visit({"table", "", "instead: CSV file with grazing_deg,strength_db"}, self.table);
+        visit({"shell", "", "the surface is a thin wall, which sound passes through"}, self.shell);
     }
 };
 

@@ -19,14 +19,12 @@ struct AnimationConfig {
     double speed = 1;
     bool loop = true;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"play", "", "false: not played"}, self.play);
-        visit(Field{"start_s", "s", "time within the animation at the start of the run", -1e6, 1e6}, self.start_s);
-        visit(Field{"speed", "1", "seconds of the animation per second of the run; below 0: backwards", -1e3, 1e3},
+    static void describe(auto& self, auto& visit) {
+        visit({"play", "", "false: not played"}, self.play);
+        visit({"start_s", "s", "time within the animation at the start of the run", -1e6, 1e6}, self.start_s);
+        visit({"speed", "1", "seconds of the animation per second of the run; below 0: backwards", -1e3, 1e3},
               self.speed);
-        visit(Field{"loop", "", "false: plays once and stays at its end"}, self.loop);
+        visit({"loop", "", "false: plays once and stays at its end"}, self.loop);
     }
 };
 using AnimationConfigs = std::map<std::string, AnimationConfig>;

@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "components/scene/Scene.hpp"
 #include "types/ConfigError.hpp"
@@ -15,12 +14,10 @@ struct GazeboConfig {
     std::string world, partition;
     double timeout = 5;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"world", "", "name of Gazebo's world, which is asked for on /world/NAME/scene/info"}, self.world);
-        visit(Field{"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
-        visit(Field{"timeout", "s", "how long to wait for Gazebo's answer", 0.1, 3600}, self.timeout);
+    static void describe(auto& self, auto& visit) {
+        visit({"world", "", "name of Gazebo's world, which is asked for on /world/NAME/scene/info"}, self.world);
+        visit({"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
+        visit({"timeout", "s", "how long to wait for Gazebo's answer", 0.1, 3600}, self.timeout);
     }
     void check(types::Diagnostics& diagnostics) const;
     bool operator==(const GazeboConfig&) const = default;

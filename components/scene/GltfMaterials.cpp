@@ -158,8 +158,7 @@ glm::vec2 pairOf(const tinygltf::Value& object, const char* key, glm::vec2 other
 
 /** Returns the transform of KHR_texture_transform: scaled, then turned counter-clockwise as seen with v pointing down,
  *  then shifted. The listing in the specification turns the other way (KhronosGroup/glTF issue 1563). */
-template <class TextureInfo>
-NormalMapping mapping(const TextureInfo& texture) {
+NormalMapping mapping(const auto& texture) {
     NormalMapping result{texture.texCoord};
     const auto found = texture.extensions.find("KHR_texture_transform");
     if (found == texture.extensions.end() || !found->second.IsObject()) return result;

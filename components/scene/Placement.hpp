@@ -22,19 +22,17 @@ struct Placement {
 
     bool operator==(const Placement&) const = default;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"position", "m", "of the file's origin in the world: north, west, up", -1e7, 1e7}, self.position);
-        visit(Field{"yaw_deg", "deg", "turn of the scene about the vertical at its origin, positive from north to west",
-                    -360, 360},
+    static void describe(auto& self, auto& visit) {
+        visit({"position", "m", "of the file's origin in the world: north, west, up", -1e7, 1e7}, self.position);
+        visit({"yaw_deg", "deg", "turn of the scene about the vertical at its origin, positive from north to west",
+               -360, 360},
               self.yaw_deg);
-        visit(Field{"frame", "",
-                    "axes in which the scene was made, its z being up: as_is: x north, y west; enu, as ROS has it: x "
-                    "east, y "
-                    "north; ned: x north, y east, z down"},
+        visit({"frame", "",
+               "axes in which the scene was made, its z being up: as_is: x north, y west; enu, as ROS has it: x "
+               "east, y "
+               "north; ned: x north, y east, z down"},
               self.frame);
-        visit(Field{"up", "", "axis of the file that points up; absent: y of glTF, z of SDF"}, self.up);
+        visit({"up", "", "axis of the file that points up; absent: y of glTF, z of SDF"}, self.up);
     }
 };
 

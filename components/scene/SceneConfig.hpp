@@ -22,18 +22,15 @@ struct TargetConfig {
     std::string attached_to;
     std::optional<double> strength_db;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"name", "", "of the target, unique"}, self.name);
-        visit(Field{"position", "m",
-                    "in the world; with attached_to in the node's axes, which are the world's where the node is not "
-                    "turned, absent: the node's origin",
-                    -1e7, 1e7},
+    static void describe(auto& self, auto& visit) {
+        visit({"name", "", "of the target, unique"}, self.name);
+        visit({"position", "m",
+               "in the world; with attached_to in the node's axes, which are the world's where the node is not "
+               "turned, absent: the node's origin",
+               -1e7, 1e7},
               self.position);
-        visit(Field{"attached_to", "", "node with which the target moves; absent: it is fixed"}, self.attached_to);
-        visit(Field{"strength_db", "dB re 1 m^2", "target strength, the same from all sides", -3000, 200},
-              self.strength_db);
+        visit({"attached_to", "", "node with which the target moves; absent: it is fixed"}, self.attached_to);
+        visit({"strength_db", "dB re 1 m^2", "target strength, the same from all sides", -3000, 200}, self.strength_db);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -44,12 +41,9 @@ struct MosaicConfig {
     int band = 1;
     MapValues meaning;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"file", "", "strengths or classes on the same map as the survey, in a format of surveys"},
-              self.file);
-        visit(Field{"band", "1", "of the file", 1, 1000}, self.band);
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "", "strengths or classes on the same map as the survey, in a format of surveys"}, self.file);
+        visit({"band", "1", "of the file", 1, 1000}, self.band);
         MapValues::describe(self.meaning, visit);
     }
     void check(types::Diagnostics& diagnostics) const;
@@ -65,24 +59,21 @@ struct BathymetryConfig {
     double reach = 200;
     std::optional<MosaicConfig> map;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"file", "",
-                    "elevations on a map in metres: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of "
-                    "them (.vrt)"},
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "",
+               "elevations on a map in metres: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of "
+               "them (.vrt)"},
               self.file);
-        visit(Field{"easting", "m", "of the world's zero on the map; absent: the middle of the survey", -1e8, 1e8},
+        visit({"easting", "m", "of the world's zero on the map; absent: the middle of the survey", -1e8, 1e8},
               self.easting);
-        visit(Field{"northing", "m", "of the world's zero on the map; absent: the middle of the survey", -1e8, 1e8},
+        visit({"northing", "m", "of the world's zero on the map; absent: the middle of the survey", -1e8, 1e8},
               self.northing);
-        visit(Field{"band", "1", "of the file", 1, 1000}, self.band);
-        visit(Field{"positive_down", "", "true: the file has depths; false: elevations"}, self.positive_down);
-        visit(Field{"reach", "m", "min distance around the vehicle to which the floor reaches: the sonar's range", 1,
-                    1e5},
+        visit({"band", "1", "of the file", 1, 1000}, self.band);
+        visit({"positive_down", "", "true: the file has depths; false: elevations"}, self.positive_down);
+        visit({"reach", "m", "min distance around the vehicle to which the floor reaches: the sonar's range", 1, 1e5},
               self.reach);
-        visit(Field{"tile", "1", "posts of a tile along each side: the floor is read by tiles", 1, 2048}, self.tile);
-        visit(Field{"map", "", "map of the floor's echo strength or material; absent: the same everywhere"}, self.map);
+        visit({"tile", "1", "posts of a tile along each side: the floor is read by tiles", 1, 2048}, self.tile);
+        visit({"map", "", "map of the floor's echo strength or material; absent: the same everywhere"}, self.map);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -100,49 +91,45 @@ struct SceneConfig {
     std::vector<TargetConfig> targets;
     AnimationConfigs animations;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"file", "",
-                    "scene: .gltf, .glb, .world, .sdf or .urdf, relative to the deployment; may be absent with gazebo "
-                    "or bathymetry"},
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "",
+               "scene: .gltf, .glb, .world, .sdf or .urdf, relative to the deployment; may be absent with gazebo "
+               "or bathymetry"},
               self.file);
-        visit(
-            Field{"gazebo", "",
-                  "a world that Gazebo runs, whose models are the scene, in the place of file; absent: what file has"},
-            self.gazebo);
-        visit(Field{"bathymetry", "", "the sea floor of a survey, read around the vehicle; absent: what file has"},
+        visit({"gazebo", "",
+               "a world that Gazebo runs, whose models are the scene, in the place of file; absent: what file has"},
+              self.gazebo);
+        visit({"bathymetry", "", "the sea floor of a survey, read around the vehicle; absent: what file has"},
               self.bathymetry);
-        visit(Field{"placement", "", "place of the scene of file or gazebo in the world; absent: the scene's own"},
+        visit({"placement", "", "place of the scene of file or gazebo in the world; absent: the scene's own"},
               self.placement);
-        visit(Field{"scale", "1",
-                    "by name of a node: factor of the size of the node and of what is below it, about its origin", 1e-3,
-                    1e3},
-              self.scale);
-        visit(Field{"mount", "", "the sonar in the body"}, self.mount);
-        visit(Field{"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
-        visit(Field{"pose_timeout", "s",
-                    "max age of the newest pose, of the body and of each connected node; absent: 1 in realtime, else "
-                    "no limit",
-                    1e-3, 1e6},
-              self.pose_timeout);
-        visit(Field{"extrapolate", "s",
-                    "max time by which a sonar extrapolates its pose with its velocities to its ping; absent: the pose "
-                    "is used as it is",
-                    1e-3, 10},
-              self.extrapolate);
-        visit(Field{"materials", "", "acoustic values by name of a material or model, over those of the file"},
-              self.materials);
-        visit(Field{"materials_by_name", "",
-                    "materials without acoustic values are of the matter or sediment that their names contain, such as "
-                    "Steel.001; false: they are medium sand"},
-              self.materials_by_name);
-        visit(Field{"targets", "", "point targets, rendered by the active sonar equation; absent: none"}, self.targets);
         visit(
-            Field{"animations", "",
-                  "by name of an animation of the file, or * for all others: how it plays; absent: all play in a loop "
-                  "from the start of the run"},
-            self.animations);
+            {"scale", "1",
+             "by name of a node: factor of the size of the node and of what is below it, about its origin", 1e-3, 1e3},
+            self.scale);
+        visit({"mount", "", "the sonar in the body"}, self.mount);
+        visit({"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
+        visit({"pose_timeout", "s",
+               "max age of the newest pose, of the body and of each connected node; absent: 1 in realtime, else "
+               "no limit",
+               1e-3, 1e6},
+              self.pose_timeout);
+        visit({"extrapolate", "s",
+               "max time by which a sonar extrapolates its pose with its velocities to its ping; absent: the pose "
+               "is used as it is",
+               1e-3, 10},
+              self.extrapolate);
+        visit({"materials", "", "acoustic values by name of a material or model, over those of the file"},
+              self.materials);
+        visit({"materials_by_name", "",
+               "materials without acoustic values are of the matter or sediment that their names contain, such as "
+               "Steel.001; false: they are medium sand"},
+              self.materials_by_name);
+        visit({"targets", "", "point targets, rendered by the active sonar equation; absent: none"}, self.targets);
+        visit({"animations", "",
+               "by name of an animation of the file, or * for all others: how it plays; absent: all play in a loop "
+               "from the start of the run"},
+              self.animations);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

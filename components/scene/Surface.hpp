@@ -34,8 +34,7 @@ void cleanUp(Surface& surface, DroppedTriangles& dropped);
 
 /** Calls `use(a, b, c, d)` for each cell of a grid whose vertices are stored row by row. a and b are neighbours in one
  *  row, c and d the vertices opposite them in the next row. */
-template <class Use>
-void forEachCell(size_t columns, size_t rows, Use&& use) {
+void forEachCell(size_t columns, size_t rows, auto&& use) {
     const auto stride = static_cast<uint32_t>(columns);
     for (uint32_t row = 0; row + 1 < rows; ++row)
         for (uint32_t column = 0; column + 1 < stride; ++column) {

@@ -1,7 +1,6 @@
 #pragma once
 #include <functional>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,16 +19,14 @@ struct MapValues {
     std::vector<double> values{0, 255};          ///< The strength is constant beyond them.
     std::map<std::string, std::string> classes;  ///< Names of sediments, matter or materials by integer value.
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"decibels", "dB", "of the echo at the two `values`, above that of the surface's own material", -200,
-                    max_db},
+    static void describe(auto& self, auto& visit) {
+        visit({"decibels", "dB", "of the echo at the two `values`, above that of the surface's own material", -200,
+               max_db},
               self.decibels);
-        visit(Field{"values", "", "of the map, at which `decibels` are given; beyond them it is as at them", -1e9, 1e9},
+        visit({"values", "", "of the map, at which `decibels` are given; beyond them it is as at them", -1e9, 1e9},
               self.values);
-        visit(Field{"classes", "",
-                    "in the place of decibels: by whole values 0 to 254, sediments, matter or materials of the scene"},
+        visit({"classes", "",
+               "in the place of decibels: by whole values 0 to 254, sediments, matter or materials of the scene"},
               self.classes);
     }
     void check(types::Diagnostics& diagnostics) const;

@@ -175,8 +175,7 @@ private:
     }
 
     /** Returns the pose of a part in the frame of its container. */
-    template <class Part>
-    glm::dmat4 poseOf(const Part& part, const std::string& name) {
+    glm::dmat4 poseOf(const auto& part, const std::string& name) {
         ignition::math::Pose3d pose;
         const ::sdf::Errors errors = part.SemanticPose().Resolve(pose);
         if (errors.empty()) return matrixOf(pose);

@@ -18,8 +18,7 @@ struct AltimeterConfig {
     /** Returns the sonar with its one beam at bearing 0. */
     SonarConfig beam() const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         SonarConfig::describeBeam(self.sonar, visit);
         DetectionConfig::describeThreshold(self.detection, visit);
     }

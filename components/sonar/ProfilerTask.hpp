@@ -13,10 +13,9 @@ struct ProfilerConfig {
 
     ProfilerConfig() { sonar.beam_height_deg = 1; }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         SonarConfig::describe(self.sonar, visit);
-        visit(types::Field{"detection", "", "how a beam's sounding is found"}, self.detection);
+        visit({"detection", "", "how a beam's sounding is found"}, self.detection);
     }
     void check(types::Diagnostics& diagnostics) const { sonar.check(diagnostics); }
 };

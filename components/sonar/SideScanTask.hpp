@@ -17,11 +17,9 @@ struct SideScanConfig {
      *  elevation becomes azimuth. */
     SonarConfig acrossTrack() const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         SonarConfig::describeBeam(self.sonar, visit);
-        visit(types::Field{"depression_deg", "deg", "angle of each beam's axis below the horizontal", 0, 90},
-              self.depression_deg);
+        visit({"depression_deg", "deg", "angle of each beam's axis below the horizontal", 0, 90}, self.depression_deg);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

@@ -1,5 +1,4 @@
 #pragma once
-#include <vector>
 
 #include "components/framework/Properties.hpp"
 #include "components/sonar/PingTask.hpp"
@@ -19,11 +18,9 @@ struct BeamRow {
     double centreDeg(int k) const { return field_of_view_deg * ((k + 0.5) / beam_count - 0.5); }
     double spacingDeg() const { return field_of_view_deg / beam_count; }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"beam_count", "1", "beams side by side", 1, 1024}, self.beam_count);
-        visit(Field{"field_of_view_deg", "deg", "angle covered by the beams, edge to edge", 0.01, 180},
+    static void describe(auto& self, auto& visit) {
+        visit({"beam_count", "1", "beams side by side", 1, 1024}, self.beam_count);
+        visit({"field_of_view_deg", "deg", "angle covered by the beams, edge to edge", 0.01, 180},
               self.field_of_view_deg);
     }
 };
@@ -41,13 +38,11 @@ struct Sonar3dConfig {
     SonarConfig upright() const;
     double beamWidthDeg() const { return sonar.beam_width_deg.value_or(horizontal.spacingDeg()); }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
+    static void describe(auto& self, auto& visit) {
         SonarConfig::describeBeam(self.sonar, visit);
-        visit(Field{"horizontal", "", "beams in azimuth"}, self.horizontal);
-        visit(Field{"vertical", "", "beams in elevation"}, self.vertical);
-        visit(Field{"detection", "", "how a beam's return is found"}, self.detection);
+        visit({"horizontal", "", "beams in azimuth"}, self.horizontal);
+        visit({"vertical", "", "beams in elevation"}, self.vertical);
+        visit({"detection", "", "how a beam's return is found"}, self.detection);
     }
     void check(types::Diagnostics& diagnostics) const;
 

@@ -1,7 +1,5 @@
 #pragma once
-#include <array>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 

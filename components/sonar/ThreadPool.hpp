@@ -40,8 +40,7 @@ public:
 
 private:
     using Call = void (*)(const void*, int, int);
-    template <class Work>
-    static std::exception_ptr caught(const Work& work) {
+    static std::exception_ptr caught(const auto& work) {
         try {
             work();
         } catch (...) {

@@ -1,8 +1,6 @@
 #pragma once
 #include <functional>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "components/study/FitChain.hpp"
 #include "components/study/LevelBlocks.hpp"

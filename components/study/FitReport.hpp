@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "components/study/RecordingFit.hpp"
-#include "types/Image.hpp"
 #include "types/Mount.hpp"
 
 namespace insonify::study {

@@ -1,5 +1,4 @@
 #pragma once
-#include <optional>
 #include <vector>
 
 #include "components/study/FitLevels.hpp"
@@ -45,8 +44,7 @@ double binCorrelation(const acoustics::PulseConfig& pulse, double bin, double sp
 
 /** Returns the argument in [low, high] at which a monotonic function has a value, by bisection on the logarithm of the
  *  argument. */
-template <class Function>
-double argumentAt(double value, double low, double high, const Function& function) {
+double argumentAt(double value, double low, double high, const auto& function) {
     const bool rises = function(high) > function(low);
     for (int i = 0; i < 60; ++i) {
         const double middle = std::sqrt(low * high);

@@ -8,8 +8,7 @@ namespace {
 constexpr size_t max_beam_blocks = 8, max_slices = 64;
 constexpr double response_low = -140, response_high = 60, response_step = 0.25;  // [dB]
 
-template <class Intensity>
-LevelBlocks blocksBy(size_t beams, size_t bins, double resolution, const Intensity& intensity) {
+LevelBlocks blocksBy(size_t beams, size_t bins, double resolution, const auto& intensity) {
     LevelBlocks blocks{.beam_blocks = std::min(max_beam_blocks, beams), .slices = std::min(max_slices, bins)};
     for (size_t slice = 0; slice < blocks.slices; ++slice)
         blocks.ranges.push_back(resolution * static_cast<double>(bins) * (static_cast<double>(slice) + 0.5) /

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 namespace insonify::study {
@@ -193,8 +192,7 @@ void addArcs(const Picture& picture, Looks& looks) {
 }
 
 /** Calls a function with each statistic of two looks. */
-template <class F>
-void forEachFigure(Looks& a, const Looks& b, const F& f) {
+void forEachFigure(Looks& a, const Looks& b, const auto& f) {
     for (size_t i = 0; i < code_classes; ++i) f(a.histogram[i], b.histogram[i]);
     for (size_t i = 0; i < shown_percentiles.size(); ++i) f(a.percentiles[i], b.percentiles[i]);
     for (size_t i = 0; i < range_slices; ++i) f(a.mean_code[i], b.mean_code[i]), f(a.level_db[i], b.level_db[i]);

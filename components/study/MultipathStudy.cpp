@@ -183,8 +183,7 @@ double trihedralAperture(bool square, double yaw_deg) {
     return side * side * unit;
 }
 
-template <class Scene, class Aperture>
-void studyCorner(MultipathResult& result, const std::string& name, const Scene& scene, const Aperture& aperture) {
+void studyCorner(MultipathResult& result, const std::string& name, const auto& scene, const auto& aperture) {
     EchoCurve curve{name, "Target strength of a " + name, "turned by [deg]", "target strength [dB]", {}};
     for (double yaw = -20; yaw <= 20; yaw += 5)
         curve.points.push_back({yaw, strengthOf(scene(yaw)), 20 * std::log10(aperture(yaw) / wavelength)});

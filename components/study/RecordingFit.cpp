@@ -77,8 +77,7 @@ void setPulseLength(double length, double c, acoustics::PulseConfig& pulse) {
 }
 
 /** Returns the square of an integral over the integral of the square, of a cell's weight. */
-template <class Weight>
-double effectiveWidth(double reach, const Weight& weight) {
+double effectiveWidth(double reach, const auto& weight) {
     constexpr int steps = 4000;
     double sum = 0, squares = 0;
     for (int i = 0; i < steps; ++i) {
@@ -200,8 +199,7 @@ private:
         if (filter.correlation_beams || filter.correlation_bins) chain_.noise.filter = filter;
     }
     /** Returns an interval from those of the recorded and simulated statistics. */
-    template <class At>
-    static Fitted interval(double value, double statistic, const Measured& recorded, const At& at) {
+    static Fitted interval(double value, double statistic, const Measured& recorded, const auto& at) {
         const double off = z_95 * recorded.error * std::sqrt(1 + 1.0 / simulations);
         const double a = at(statistic - off), b = at(statistic + off);
         return {value, std::min(a, b), std::max(a, b)};

@@ -134,8 +134,7 @@ std::vector<Sums> blocksOf(const SpeckleField& field) {
 }
 
 /** Returns a statistic of all blocks, and its spread when each block is omitted in turn. */
-template <class Figure>
-Estimate jackknife(const Sums& total, const std::vector<Sums>& blocks, const Figure& figure) {
+Estimate jackknife(const Sums& total, const std::vector<Sums>& blocks, const auto& figure) {
     const auto count = static_cast<double>(blocks.size());
     double mean = 0, squares = 0;
     for (const Sums& block : blocks) mean += figure(total.plus(block, -1)) / count;

@@ -26,8 +26,7 @@ Outcome sounds(double tolerance, const types::GeometryPtr& changed, const std::s
 }
 
 /** Returns wall and ball with `change` applied to the scene. */
-template <class Change>
-types::GeometryPtr changed(const Change& change) {
+types::GeometryPtr changed(const auto& change) {
     const auto geometry = copyOf(wallAndBall());
     change(*geometry);
     return geometry;

@@ -1,7 +1,6 @@
 #pragma once
 // Smooth rigid bodies with known target strengths, as meshes with any number of facets around (ACOUSTICS.md 3.6).
 #include <glm/vec2.hpp>
-#include <string>
 #include <vector>
 
 #include "components/sonar/plan/SonarConfig.hpp"

@@ -9,8 +9,6 @@
 
 namespace insonify::viewer::foxglove {
 
-using types::Field;
-
 /** Seconds and nanoseconds. */
 struct Duration {
     static constexpr const char* type_name = "builtin_interfaces/msg/Duration";
@@ -18,10 +16,9 @@ struct Duration {
     int32_t sec = 0;
     uint32_t nanosec = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"sec", "s"}, self.sec);
-        visit(Field{"nanosec", "ns"}, self.nanosec);
+    static void describe(auto& self, auto& visit) {
+        visit({"sec", "s"}, self.sec);
+        visit({"nanosec", "ns"}, self.nanosec);
     }
 };
 
@@ -33,12 +30,11 @@ struct Color {
     double b = 0;
     double a = 1;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"r", "1", "0 to 1"}, self.r);
-        visit(Field{"g", "1"}, self.g);
-        visit(Field{"b", "1"}, self.b);
-        visit(Field{"a", "1", "1: opaque"}, self.a);
+    static void describe(auto& self, auto& visit) {
+        visit({"r", "1", "0 to 1"}, self.r);
+        visit({"g", "1"}, self.g);
+        visit({"b", "1"}, self.b);
+        visit({"a", "1", "1: opaque"}, self.a);
     }
 };
 
@@ -52,13 +48,12 @@ struct FrameTransform {
     ros::Vector3 translation;
     ros::Quaternion rotation;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"timestamp"}, self.timestamp);
-        visit(Field{"parent_frame_id"}, self.parent_frame_id);
-        visit(Field{"child_frame_id"}, self.child_frame_id);
-        visit(Field{"translation", "m", "of the child's origin in the parent"}, self.translation);
-        visit(Field{"rotation", "1", "turns vectors of the child into the parent"}, self.rotation);
+    static void describe(auto& self, auto& visit) {
+        visit({"timestamp"}, self.timestamp);
+        visit({"parent_frame_id"}, self.parent_frame_id);
+        visit({"child_frame_id"}, self.child_frame_id);
+        visit({"translation", "m", "of the child's origin in the parent"}, self.translation);
+        visit({"rotation", "1", "turns vectors of the child into the parent"}, self.rotation);
     }
 };
 
@@ -67,10 +62,7 @@ struct FrameTransforms {
     static constexpr const char* type_hash = "RIHS01_315904b719ab379b8e3bc70505f544519c1df6e7daf394be91891cd73e165086";
     std::vector<FrameTransform> transforms;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"transforms"}, self.transforms);
-    }
+    static void describe(auto& self, auto& visit) { visit({"transforms"}, self.transforms); }
 };
 
 struct SceneEntityDeletion {
@@ -83,11 +75,10 @@ struct SceneEntityDeletion {
     uint8_t type = 0;
     std::string id;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"timestamp", "", "entities that are older"}, self.timestamp);
-        visit(Field{"type", "1", "one of the constants"}, self.type);
-        visit(Field{"id"}, self.id);
+    static void describe(auto& self, auto& visit) {
+        visit({"timestamp", "", "entities that are older"}, self.timestamp);
+        visit({"type", "1", "one of the constants"}, self.type);
+        visit({"id"}, self.id);
     }
 };
 
@@ -97,10 +88,9 @@ struct KeyValuePair {
     std::string key;
     std::string value;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"key"}, self.key);
-        visit(Field{"value"}, self.value);
+    static void describe(auto& self, auto& visit) {
+        visit({"key"}, self.key);
+        visit({"value"}, self.value);
     }
 };
 
@@ -114,14 +104,13 @@ struct ArrowPrimitive {
     double head_diameter = 0;
     Color color;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"shaft_length", "m"}, self.shaft_length);
-        visit(Field{"shaft_diameter", "m"}, self.shaft_diameter);
-        visit(Field{"head_length", "m"}, self.head_length);
-        visit(Field{"head_diameter", "m"}, self.head_diameter);
-        visit(Field{"color"}, self.color);
+    static void describe(auto& self, auto& visit) {
+        visit({"pose"}, self.pose);
+        visit({"shaft_length", "m"}, self.shaft_length);
+        visit({"shaft_diameter", "m"}, self.shaft_diameter);
+        visit({"head_length", "m"}, self.head_length);
+        visit({"head_diameter", "m"}, self.head_diameter);
+        visit({"color"}, self.color);
     }
 };
 
@@ -132,11 +121,10 @@ struct CubePrimitive {
     ros::Vector3 size;
     Color color;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"size", "m"}, self.size);
-        visit(Field{"color"}, self.color);
+    static void describe(auto& self, auto& visit) {
+        visit({"pose"}, self.pose);
+        visit({"size", "m"}, self.size);
+        visit({"color"}, self.color);
     }
 };
 
@@ -147,11 +135,10 @@ struct SpherePrimitive {
     ros::Vector3 size;
     Color color;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"size", "m"}, self.size);
-        visit(Field{"color"}, self.color);
+    static void describe(auto& self, auto& visit) {
+        visit({"pose"}, self.pose);
+        visit({"size", "m"}, self.size);
+        visit({"color"}, self.color);
     }
 };
 
@@ -164,13 +151,12 @@ struct CylinderPrimitive {
     double top_scale = 0;
     Color color;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"size", "m"}, self.size);
-        visit(Field{"bottom_scale", "1"}, self.bottom_scale);
-        visit(Field{"top_scale", "1"}, self.top_scale);
-        visit(Field{"color"}, self.color);
+    static void describe(auto& self, auto& visit) {
+        visit({"pose"}, self.pose);
+        visit({"size", "m"}, self.size);
+        visit({"bottom_scale", "1"}, self.bottom_scale);
+        visit({"top_scale", "1"}, self.top_scale);
+        visit({"color"}, self.color);
     }
 };
 
@@ -190,16 +176,15 @@ struct LinePrimitive {
     std::vector<Color> colors;
     std::vector<uint32_t> indices;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"type", "1", "one of the constants"}, self.type);
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"thickness", "m"}, self.thickness);
-        visit(Field{"scale_invariant"}, self.scale_invariant);
-        visit(Field{"points", "m"}, self.points);
-        visit(Field{"color"}, self.color);
-        visit(Field{"colors"}, self.colors);
-        visit(Field{"indices", "1"}, self.indices);
+    static void describe(auto& self, auto& visit) {
+        visit({"type", "1", "one of the constants"}, self.type);
+        visit({"pose"}, self.pose);
+        visit({"thickness", "m"}, self.thickness);
+        visit({"scale_invariant"}, self.scale_invariant);
+        visit({"points", "m"}, self.points);
+        visit({"color"}, self.color);
+        visit({"colors"}, self.colors);
+        visit({"indices", "1"}, self.indices);
     }
 };
 
@@ -213,13 +198,12 @@ struct TriangleListPrimitive {
     std::vector<Color> colors;
     std::vector<uint32_t> indices;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"points", "m"}, self.points);
-        visit(Field{"color", "", "of all where `colors` is empty"}, self.color);
-        visit(Field{"colors"}, self.colors);
-        visit(Field{"indices", "1"}, self.indices);
+    static void describe(auto& self, auto& visit) {
+        visit({"pose"}, self.pose);
+        visit({"points", "m"}, self.points);
+        visit({"color", "", "of all where `colors` is empty"}, self.color);
+        visit({"colors"}, self.colors);
+        visit({"indices", "1"}, self.indices);
     }
 };
 
@@ -233,14 +217,13 @@ struct TextPrimitive {
     Color color;
     std::string text;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"billboard"}, self.billboard);
-        visit(Field{"font_size", "m"}, self.font_size);
-        visit(Field{"scale_invariant"}, self.scale_invariant);
-        visit(Field{"color"}, self.color);
-        visit(Field{"text"}, self.text);
+    static void describe(auto& self, auto& visit) {
+        visit({"pose"}, self.pose);
+        visit({"billboard"}, self.billboard);
+        visit({"font_size", "m"}, self.font_size);
+        visit({"scale_invariant"}, self.scale_invariant);
+        visit({"color"}, self.color);
+        visit({"text"}, self.text);
     }
 };
 
@@ -255,15 +238,14 @@ struct ModelPrimitive {
     std::string media_type;
     std::vector<uint8_t> data;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"pose"}, self.pose);
-        visit(Field{"scale", "1"}, self.scale);
-        visit(Field{"color"}, self.color);
-        visit(Field{"override_color"}, self.override_color);
-        visit(Field{"url"}, self.url);
-        visit(Field{"media_type"}, self.media_type);
-        visit(Field{"data"}, self.data);
+    static void describe(auto& self, auto& visit) {
+        visit({"pose"}, self.pose);
+        visit({"scale", "1"}, self.scale);
+        visit({"color"}, self.color);
+        visit({"override_color"}, self.override_color);
+        visit({"url"}, self.url);
+        visit({"media_type"}, self.media_type);
+        visit({"data"}, self.data);
     }
 };
 
@@ -286,22 +268,21 @@ struct SceneEntity {
     std::vector<TextPrimitive> texts;
     std::vector<ModelPrimitive> models;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"timestamp"}, self.timestamp);
-        visit(Field{"frame_id"}, self.frame_id);
-        visit(Field{"id"}, self.id);
-        visit(Field{"lifetime", "", "0: until it is replaced"}, self.lifetime);
-        visit(Field{"frame_locked"}, self.frame_locked);
-        visit(Field{"metadata"}, self.metadata);
-        visit(Field{"arrows"}, self.arrows);
-        visit(Field{"cubes"}, self.cubes);
-        visit(Field{"spheres"}, self.spheres);
-        visit(Field{"cylinders"}, self.cylinders);
-        visit(Field{"lines"}, self.lines);
-        visit(Field{"triangles"}, self.triangles);
-        visit(Field{"texts"}, self.texts);
-        visit(Field{"models"}, self.models);
+    static void describe(auto& self, auto& visit) {
+        visit({"timestamp"}, self.timestamp);
+        visit({"frame_id"}, self.frame_id);
+        visit({"id"}, self.id);
+        visit({"lifetime", "", "0: until it is replaced"}, self.lifetime);
+        visit({"frame_locked"}, self.frame_locked);
+        visit({"metadata"}, self.metadata);
+        visit({"arrows"}, self.arrows);
+        visit({"cubes"}, self.cubes);
+        visit({"spheres"}, self.spheres);
+        visit({"cylinders"}, self.cylinders);
+        visit({"lines"}, self.lines);
+        visit({"triangles"}, self.triangles);
+        visit({"texts"}, self.texts);
+        visit({"models"}, self.models);
     }
 };
 
@@ -311,10 +292,9 @@ struct SceneUpdate {
     std::vector<SceneEntityDeletion> deletions;
     std::vector<SceneEntity> entities;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"deletions", "", "before what follows"}, self.deletions);
-        visit(Field{"entities"}, self.entities);
+    static void describe(auto& self, auto& visit) {
+        visit({"deletions", "", "before what follows"}, self.deletions);
+        visit({"entities"}, self.entities);
     }
 };
 

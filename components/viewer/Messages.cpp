@@ -26,10 +26,7 @@ foxglove::FrameTransforms transformOf(const types::Pose& pose, const std::string
 }
 
 const types::Sonar& pingOf(const types::Sonar& ping) { return ping; }
-template <class Beams>
-types::Sonar pingOf(const Beams& beams) {
-    return types::toSonar(beams);
-}
+types::Sonar pingOf(const auto& beams) { return types::toSonar(beams); }
 
 }  // namespace
 

@@ -2,7 +2,6 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
-#include <variant>
 #include <vector>
 
 #include "components/ros/Samples.hpp"
@@ -99,8 +98,7 @@ public:
     SceneUpdates& scene() { return scene_; }
 
 private:
-    template <class T>
-    void append(const T& sample, Form form, std::vector<char>& bytes);
+    void append(const auto& sample, Form form, std::vector<char>& bytes);
 
     ros::MessageOptions options_;
     FanPicture picture_;

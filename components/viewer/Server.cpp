@@ -49,8 +49,7 @@ public:
     void deliver();
     static void give(Session& session, uint64_t key, const Waiting& item);
     /** Runs on the server's thread. */
-    template <class Work>
-    void forEachFoxglove(Work&& work) {
+    void forEachFoxglove(auto&& work) {
         const auto sessions = sessions_;  // sending may end a session
         for (const auto& [id, session] : sessions)
             if (session->kind() == Kind::Foxglove) session->attempt([&] { work(*session); });

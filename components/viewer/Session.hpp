@@ -74,14 +74,12 @@ public:
     void post(Frame frame, std::optional<uint64_t> of = {});
     void close();
     /** Closes this session, and nothing else, if `work` throws. */
-    template <class Work>
-    void attempt(Work&& work);
+    void attempt(auto&& work);
 
 private:
     beast::tcp_stream& stream() { return ws_.next_layer(); }
     /** Returns a completion handler for Asio. */
-    template <class Work>
-    auto handler(Work work) {
+    auto handler(auto work) {
         return [self = shared_from_this(), work](const Error& error, size_t = 0) {
             self->attempt([&] { work(*self, error); });
         };
@@ -125,10 +123,7 @@ inline Session::Session(tcp::socket socket, ServerContext& context, uint64_t id)
     stream().socket().set_option(tcp::no_delay(true), ignored);
 }
 
-template <class Work>
-void Session::attempt(Work&& work) try {
-    work();
-} catch (const std::exception& thrown) {
+void Session::attempt(auto&& work) try { work(); } catch (const std::exception& thrown) {
     context_.refused.add(std::string("an error in this server: ") + thrown.what());
     leave();
 }

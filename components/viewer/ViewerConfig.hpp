@@ -19,34 +19,28 @@ struct ViewerConfig {
     ros::WorldFrame world_frame = ros::WorldFrame::Enu;
     ros::SonarOptions messages;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(
-            Field{"port", "1", "TCP port of the page and of Foxglove; 0: any free port, printed in a notice", 0, 65535},
-            self.port);
-        visit(Field{"address", "", "numeric address to listen on; an address other than loopback requires a token"},
+    static void describe(auto& self, auto& visit) {
+        visit({"port", "1", "TCP port of the page and of Foxglove; 0: any free port, printed in a notice", 0, 65535},
+              self.port);
+        visit({"address", "", "numeric address to listen on; an address other than loopback requires a token"},
               self.address);
-        visit(Field{"token", "", "required from clients: http://address:port/?token=...; empty: none"}, self.token);
-        visit(
-            Field{
-                "token_file", "",
-                "a file whose first line is the token, relative to the deployment; logs then do not contain the token"},
-            self.token_file);
-        visit(Field{"clients", "1", "max number of connected clients; others are refused", 1, 1000}, self.clients);
-        visit(Field{"idle_timeout", "s", "a client that has not answered for this long is disconnected", 1, 3600},
+        visit({"token", "", "required from clients: http://address:port/?token=...; empty: none"}, self.token);
+        visit({"token_file", "",
+               "a file whose first line is the token, relative to the deployment; logs then do not contain the token"},
+              self.token_file);
+        visit({"clients", "1", "max number of connected clients; others are refused", 1, 1000}, self.clients);
+        visit({"idle_timeout", "s", "a client that has not answered for this long is disconnected", 1, 3600},
               self.idle_timeout);
-        visit(Field{"control", "", "whether pages may set properties, call operations and pause; else they only show"},
+        visit({"control", "", "whether pages may set properties, call operations and pause; else they only show"},
               self.control);
-        visit(
-            Field{"max_triangles", "1",
-                  "max triangles of the page's scene; above, large meshes are coarse, small meshes omitted", 1000, 1e8},
-            self.max_triangles);
-        visit(Field{"world_frame", "",
-                    "axes of poses for Foxglove: ours (x north, y west, z up), x east, y north, z up, or x north, y "
-                    "east, z down"},
+        visit({"max_triangles", "1",
+               "max triangles of the page's scene; above, large meshes are coarse, small meshes omitted", 1000, 1e8},
+              self.max_triangles);
+        visit({"world_frame", "",
+               "axes of poses for Foxglove: ours (x north, y west, z up), x east, y north, z up, or x north, y "
+               "east, z down"},
               self.world_frame);
-        visit(Field{"messages", "", "how pings become messages for Foxglove; `scale` also applies to the page"},
+        visit({"messages", "", "how pings become messages for Foxglove; `scale` also applies to the page"},
               self.messages);
     }
 

@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
-#include <optional>
 #include <stdexcept>
 
 #include "components/command/Sha256.hpp"

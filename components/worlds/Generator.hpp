@@ -1,6 +1,5 @@
 #pragma once
 // Scenes by recipe: the package insonify_worlds, which runs in a separate process of Python.
-#include <filesystem>
 #include <string>
 #include <vector>
 

@@ -5,11 +5,9 @@
 #include <numbers>
 
 #include "components/acoustics/Backscatter.hpp"
-#include "components/acoustics/SeabedBackscatter.hpp"
 #include "tests/acoustics/Degree.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::acoustics {
 namespace {
@@ -18,8 +16,7 @@ using std::numbers::pi;
 using ::testing::HasSubstr;
 
 /** Returns the integral of a function of the angle of incidence, from 0 to a right angle. */
-template <class F>
-double overIncidence(const F& f) {
+double overIncidence(const auto& f) {
     constexpr int cells = 200000;
     double sum = 0;
     for (int i = 0; i < cells; ++i) sum += f((i + 0.5) / cells * pi / 2);
@@ -27,8 +24,7 @@ double overIncidence(const F& f) {
 }
 
 /** Returns the echo of a sphere of radius a whose surface scatters by a law of the cosine of incidence [m^2]. */
-template <class F>
-double sphereSection(double a, const F& section) {
+double sphereSection(double a, const auto& section) {
     return overIncidence([&](double t) { return 2 * pi * a * a * std::sin(t) * section(std::cos(t)); });
 }
 
@@ -53,8 +49,7 @@ TEST(BackscatterTest, TheLobeGivesASphereItsTargetStrengthWithAnySlope) {
 
 /** Returns the echo of an ellipsoid of semi-axes a, b, c along a, whose surface scatters by a law of the cosine
  *  [m^2]. */
-template <class F>
-double ellipsoidSection(double a, double b, double c, const F& section) {
+double ellipsoidSection(double a, double b, double c, const auto& section) {
     constexpr int rings = 4000, cells = 200;
     double sum = 0;
     for (int i = 0; i < rings; ++i)

@@ -27,8 +27,7 @@ const DolphRow dolph[] = {{-25, 0.993}, {-30, 1.073}, {-40, 1.218}};
 /** Returns a width in u: twice the sine of half an angle, times the aperture [wavelengths]. */
 double inWavelengths(double width, const BeamPattern& pattern) { return 2 * std::sin(width / 2) * pattern.aperture(); }
 
-class BeamPatternTest : public ::testing::Test {
-protected:
+struct BeamPatternTest : ::testing::Test {
     /** An array of 60 wavelengths. */
     static BeamPattern longArray(BeamLaw law) {
         law.aperture_m = 0.12;

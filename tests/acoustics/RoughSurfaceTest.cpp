@@ -16,8 +16,7 @@ using std::numbers::pi;
 const HalfSpace steel_space{7850.0 / 1025, 5900.0 / 1500, 1e-4};
 
 /** Returns the integral over K of f(K) 2 pi K, in logarithmic steps. */
-template <class F>
-double overWaves(double low, double high, const F& f) {
+double overWaves(double low, double high, const auto& f) {
     constexpr int steps = 20000;
     double sum = 0;
     for (int i = 0; i < steps; ++i) {

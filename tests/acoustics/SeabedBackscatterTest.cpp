@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "components/acoustics/SeabedBackscatter.hpp"
 #include "tests/acoustics/Degree.hpp"

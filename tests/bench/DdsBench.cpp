@@ -4,7 +4,6 @@
 //     dds_bench send SECONDS WAIT    waits for WAIT seconds, then sends; the duration of sending
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <thread>
@@ -14,7 +13,6 @@
 #include "components/dds/PublisherTask.hpp"
 #include "components/framework/Port.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Messages.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/Sonar.hpp"
 

@@ -28,8 +28,7 @@ double quantile(std::vector<double> values, double q) {
 }
 
 /** Median over batches of the time of one `work` [ns]. */
-template <class Work>
-double medianTime(int batches, int batch, Work&& work) {
+double medianTime(int batches, int batch, auto&& work) {
     std::vector<double> times;
     for (int i = 0; i < batches; ++i) {
         const auto begin = Clock::now();
@@ -132,8 +131,7 @@ private:
 };
 
 /** Wake-ups one after the other, each of a sleeping thread. */
-template <class Wake>
-void wakeUp(const std::atomic<size_t>& woken, Wake&& wake) {
+void wakeUp(const std::atomic<size_t>& woken, auto&& wake) {
     const size_t before = woken;
     std::this_thread::sleep_for(std::chrono::microseconds(200));
     wake(Clock::now());

@@ -14,7 +14,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
-#include <thread>
 
 #include "components/scene/Bathymetry.hpp"
 #include "components/scene/Clusters.hpp"

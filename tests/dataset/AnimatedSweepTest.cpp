@@ -25,8 +25,7 @@ picture: {height: 300}
 annotations: {min_pixels: 1}
 )";
 
-class AnimatedSweepTest : public scene::SceneFiles {
-protected:
+struct AnimatedSweepTest : scene::SceneFiles {
     AnimatedSweepTest() {
         write("eel.gltf", gltf(scene::eelText(scene::Tube(30, 24, 0.06f))));
         std::string text = deployment;
@@ -45,8 +44,7 @@ protected:
     /** Returns the records of a data set, in order. */
     std::vector<json> recordsOf(const std::string& poses_and_settings) const {
         write("sweep.yml", sweep + poses_and_settings);
-        const Outcome outcome = callInsonify(owned_, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "out"});
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(owned_, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "out"}), succeeds());
         std::map<std::string, json> records;
         for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))
             if (const std::string name = entry.path().filename(); name.starts_with("0") && name.ends_with(".json"))

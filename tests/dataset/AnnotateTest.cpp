@@ -18,8 +18,7 @@ constexpr uint32_t beams = 61, bins = 100;
 constexpr double bin_width = 0.0213;  // [m]; differs from the ping's rounded duration
 
 /** A floor at -20 dB everywhere, with a "rock" and a "pile" at 0 dB. */
-class AnnotateTest : public ::testing::Test {
-protected:
+struct AnnotateTest : ::testing::Test {
     AnnotateTest() {
         ping_ = test::emptyPing(120, beams, bins);
         std::ranges::fill(ping_.bins, 0.01f);

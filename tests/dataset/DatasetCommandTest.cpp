@@ -59,8 +59,7 @@ std::string replaced(std::string text, const std::string& old, const std::string
     return text.replace(text.find(old), old.size(), by);
 }
 
-class DatasetCommandTest : public testing::Test {
-protected:
+struct DatasetCommandTest : testing::Test {
     DatasetCommandTest() {
         writeFile(folder_ / "d.yml", deployment);
         writeFile(folder_ / "sweep.yml", sweep);
@@ -85,9 +84,7 @@ protected:
 }  // namespace
 
 TEST_F(DatasetCommandTest, EachSampleHasItsFilesAndTheManifestNamesAll) {
-    const Outcome outcome = make("out");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("8 of 8 samples in "), HasSubstr(", 8 of them new")));
+    ASSERT_THAT(make("out"), prints(AllOf(HasSubstr("8 of 8 samples in "), HasSubstr(", 8 of them new"))));
     const auto files = filesOf(folder_ / "out");
     const json manifest = json::parse(files.at("manifest.json"));
     EXPECT_EQ(manifest["samples"], 8);
@@ -122,8 +119,7 @@ TEST_F(DatasetCommandTest, TheBytesDoNotDependOnTheProcess) {
 TEST_F(DatasetCommandTest, DrawnSettingsAreInTheRecordAndChangeThePicture) {
     writeFile(folder_ / "sweep.yml", "poses: {random: {count: 3, x: 5, y: -4, z: -5.5}}\n" +
                                          replaced(drawn_settings, ", {law: k, shape: 5}]", "]"));
-    const Outcome outcome = make("out");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(make("out"), succeeds());
     std::set<double> strengths;
     for (const char* index : {"000000", "000001", "000002"}) {
         const json settings = recordOf("out", index)["settings"];
@@ -224,9 +220,7 @@ TEST_F(DatasetCommandTest, TwoProcessesInOneFolderDoNotHarmEachOther) {
 TEST_F(DatasetCommandTest, AnotherSweepNeedsAnotherFolder) {
     ASSERT_EQ(make("out", {"--shard", "0/8"}).code, 0);
     writeFile(folder_ / "sweep.yml", sweep + "# changed\n");
-    const Outcome outcome = make("out");
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("a sample of another sweep, deployment, scene, format or version"));
+    EXPECT_THAT(make("out"), isRefused(HasSubstr("a sample of another sweep, deployment, scene, format or version")));
 }
 
 TEST_F(DatasetCommandTest, PycocotoolsReadsItAndEveryBoxHoldsItsObjectsEnergy) {
@@ -330,9 +324,7 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryMoveOnWavesAsTheTaskMovesThem) {
         EXPECT_NEAR(position[2].get<double>(), pose.position.z, 1e-6) << i;
     }
     writeFile(folder_ / "sweep.yml", "poses:\n  trajectory: {file: path.csv, count: 3, motion: {seed: 3}}\n");
-    const Outcome nothing = make("out");
-    EXPECT_EQ(nothing.code, 2);
-    EXPECT_THAT(nothing.err, HasSubstr("moves nothing; give heave_m, roll_deg or pitch_deg"));
+    EXPECT_THAT(make("out"), isRefused(HasSubstr("moves nothing; give heave_m, roll_deg or pitch_deg")));
 }
 
 TEST_F(DatasetCommandTest, PosesOfATrajectoryAreFromItsFirstStampToItsLast) {
@@ -342,11 +334,8 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryAreFromItsFirstStampToItsLast) {
         return DatasetCommandTest::make("out");
     };
     const std::string place = "sweep.yml:2:15: poses.trajectory.";
-    const Outcome early = make(", from: 2"), late = make(", to: 103");
-    EXPECT_EQ(early.code, 2);
-    EXPECT_THAT(early.err, HasSubstr(place + "from: is 2 s; the trajectory is from 100 to 102 s"));
-    EXPECT_EQ(late.code, 2);
-    EXPECT_THAT(late.err, HasSubstr(place + "to: is 103 s; the trajectory is from 100 to 102 s"));
+    EXPECT_THAT(make(", from: 2"), isRefused(HasSubstr(place + "from: is 2 s; the trajectory is from 100 to 102 s")));
+    EXPECT_THAT(make(", to: 103"), isRefused(HasSubstr(place + "to: is 103 s; the trajectory is from 100 to 102 s")));
     ASSERT_EQ(make("").code, 0);
     for (int i = 0; i < 3; ++i) {
         const json record = recordOf("out", "00000" + std::to_string(i));
@@ -361,12 +350,10 @@ TEST_F(DatasetCommandTest, AnotherFileThatTheSweepNamesIsAnotherDataSet) {
         writeFile(folder_ / "sand.csv", "grazing_deg,strength_db\n10,-30\n80,-20\n");
         writeFile(folder_ / "sweep.yml", place + std::string("poses: {grid: {x: 5, y: -4, z: -5.5}}\n"));
         const std::string out = place[1] == 'e' ? "settings" : "scenes";
-        const Outcome first = make(out);
-        ASSERT_EQ(first.code, 0) << first.err;
+        ASSERT_THAT(make(out), succeeds());
         writeFile(folder_ / "sand.csv", "grazing_deg,strength_db\n10,-30\n80,-21\n");
-        const Outcome second = make(out);
-        EXPECT_EQ(second.code, 2) << place;
-        EXPECT_THAT(second.err, HasSubstr("a sample of another sweep, deployment, scene, format or version"));
+        EXPECT_THAT(make(out), isRefused(HasSubstr("a sample of another sweep, deployment, scene, format or version")))
+            << place;
     }
 }
 
@@ -375,8 +362,7 @@ TEST_F(DatasetCommandTest, TheFloorOfASurveyIsAScene) {
                       survey = (root / "deploy/scenes/bay.flt").string();
     writeFile(folder_ / "d.yml", replaced(deployment, "file: " + file, "bathymetry: {file: " + survey + "}"));
     writeFile(folder_ / "sweep.yml", "poses: {grid: {z: [-11, -10]}}\n");
-    const Outcome outcome = make("out");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(make("out"), succeeds());
     for (const char* index : {"000000", "000001"}) {
         const json record = recordOf("out", index);
         EXPECT_EQ(record["scene"], "bathymetry");
@@ -393,10 +379,9 @@ TEST_F(DatasetCommandTest, ABudgetInAPropertyFileIsRefused) {
     const std::string open = replaced(deployment, "quality: {rows: 128, columns_per_beam: 1}", "");
     writeFile(folder_ / "d.yml",
               replaced(open, "sonar::SonarTask\n", "sonar::SonarTask\n    property_files: {files: [sonar.yml]}\n"));
-    const Outcome outcome = make("out");
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err,
-                HasSubstr("sonar.yml:3:14: quality.budget_ms: budget_ms lets the speed of the machine decide"));
+    EXPECT_THAT(
+        make("out"),
+        isRefused(HasSubstr("sonar.yml:3:14: quality.budget_ms: budget_ms lets the speed of the machine decide")));
 }
 
 TEST_F(DatasetCommandTest, ObjectsEchoFromTheirPlaces) {
@@ -488,18 +473,16 @@ TEST_F(DatasetCommandTest, APatternOfObjectsMayMatchInOneOfTheScenesAlone) {
     writeFile(folder_ / "sweep.yml", scenes +
                                          "objects: [{names: [rock_000, pillar*], x: [6, 20], y: [-8, 8], avoid: "
                                          "[quay_wall]}]\n");
-    const Outcome outcome = make("out");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(make("out"), succeeds());
     const json harbour = recordOf("out", "000000")["objects"], tank = recordOf("out", "000001")["objects"];
     ASSERT_EQ(harbour.size(), 1u);
     EXPECT_EQ(harbour[0]["name"], "rock_000");
     for (const json& each : tank) EXPECT_THAT(each["name"].get<std::string>(), testing::StartsWith("pillar"));
     EXPECT_FALSE(tank.empty());
     writeFile(folder_ / "sweep.yml", scenes + "objects: [{names: [rock_000, pilar*], x: [6, 20], y: [-8, 8]}]\n");
-    const Outcome none = make("none");
-    EXPECT_EQ(none.code, 2);
-    EXPECT_THAT(none.err,
-                HasSubstr("sweep.yml:3:11: objects[0].names[1]: is pilar*, which is no name in any of the scenes"));
+    EXPECT_THAT(
+        make("none"),
+        isRefused(HasSubstr("sweep.yml:3:11: objects[0].names[1]: is pilar*, which is no name in any of the scenes")));
 }
 
 TEST_F(DatasetCommandTest, ALogOfASampleHasItsPingTruthAndPose) {
@@ -518,8 +501,7 @@ TEST_F(DatasetCommandTest, ChecksOptionsOfTheCommandLine) {
     EXPECT_EQ(make("out", {"--format", "voc"}).code, 2);
     EXPECT_THAT(make("out", {"--seed", "-1"}).err, HasSubstr("-1 is no whole number from 0 to 2^64 - 1"));
     const Outcome set = make("out", {"--set", "sonr.range=5"});
-    EXPECT_EQ(set.code, 2);
-    EXPECT_THAT(set.err, HasSubstr("--set: sonr.range=5: there is no task sonr; did you mean sonar?"));
+    EXPECT_THAT(set, isRefused(HasSubstr("--set: sonr.range=5: there is no task sonr; did you mean sonar?")));
     EXPECT_THAT(make("out", {"--set", "sonar.quality.rows=null", "--set", "sonar.quality.columns_per_beam=null",
                              "--set", "sonar.quality.budget_ms=5"})
                     .err,
@@ -534,10 +516,8 @@ TEST_F(DatasetCommandTest, ChecksOptionsOfTheCommandLine) {
 }
 
 TEST_F(DatasetCommandTest, TheSweepOfTheHarbourIsMadeWithItsDeployment) {
-    const Outcome outcome =
-        callInsonify(folder_, {"dataset", root / "deploy/truth.yml", "--sweep", root / "deploy/sweeps/harbour.yml",
-                               "--out", "out", "--shard", "0/24"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("1 of 24 samples in "), HasSubstr(", 1 of them new")));
+    ASSERT_THAT(callInsonify(folder_, {"dataset", root / "deploy/truth.yml", "--sweep",
+                                       root / "deploy/sweeps/harbour.yml", "--out", "out", "--shard", "0/24"}),
+                prints(AllOf(HasSubstr("1 of 24 samples in "), HasSubstr(", 1 of them new"))));
     EXPECT_GT(recordOf("out", "000000")["annotations"].size(), 5u);
 }

@@ -1,6 +1,5 @@
 #pragma once
 // A small sonar in the harbour, whose pings data sets are made of.
-#include <filesystem>
 #include <string>
 
 #include "tests/support/Paths.hpp"

@@ -10,8 +10,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class RangeImageTest : public testing::Test {
-protected:
+struct RangeImageTest : testing::Test {
     RangeImageTest() { writeFile(folder_ / "sweep.yml", sweep("range")); }
     static std::string sweep(const std::string& shape) {
         return "poses: {grid: {x: [31, 32], y: -6, z: -5.5, yaw_deg: -50}}\n"
@@ -60,10 +59,7 @@ for record in sorted(glob.glob("coco/0*.json")):
         seen.add(each["class"])
     print(sorted(seen), x["object"].shape, x["range_elevation"].shape)
 )");
-    ASSERT_EQ(read.code, 0) << read.err;
-    EXPECT_THAT(read.out, HasSubstr("'wreck'"));
-    EXPECT_THAT(read.out, HasSubstr("'floor'"));
-    EXPECT_THAT(read.out, HasSubstr("(90, 500) (40, 90)"));
+    ASSERT_THAT(read, prints(AllOf(HasSubstr("'wreck'"), HasSubstr("'floor'"), HasSubstr("(90, 500) (40, 90)"))));
 }
 
 TEST_F(RangeImageTest, NearIsBrightAndNothingIsBlack) {
@@ -80,22 +76,19 @@ levels = np.rint(image.imread(sorted(glob.glob("coco/*.png"))[0]) * 255).astype(
 expected = np.where(np.isfinite(x["distances"]), np.rint(255 - 254 * np.minimum(x["distances"] / 15, 1)), 0)
 print(abs(levels - expected).max(), (levels == 0).sum() > 0, levels.max() > 128)
 )");
-    ASSERT_EQ(read.code, 0) << read.err;
-    EXPECT_THAT(read.out, HasSubstr("0.0 True True"));
+    ASSERT_THAT(read, prints(HasSubstr("0.0 True True")));
 }
 
 /** The ping of a 3-D sonar is a fan like any other, with its truth. */
 TEST_F(RangeImageTest, ItsPingIsAPictureAsWell) {
     writeFile(folder_ / "sweep.yml", sweep("fan"));
-    const Outcome outcome = make("fans", "yolo");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(make("fans", "yolo"), succeeds());
     const Outcome read = python(folder_, R"(
 import glob, json
 told = json.load(open(sorted(glob.glob("fans/0*.json"))[0]))
 print(told["picture"]["shape"], sorted({each["class"] for each in told["annotations"]}))
 )");
-    ASSERT_EQ(read.code, 0) << read.err;
-    EXPECT_THAT(read.out, HasSubstr("fan ['floor', 'rock', 'wreck']"));
+    ASSERT_THAT(read, prints(HasSubstr("fan ['floor', 'rock', 'wreck']")));
 }
 
 TEST_F(RangeImageTest, ALogHasTheImageAndItsTruth) {

@@ -12,8 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class StoreTest : public ::testing::Test {
-protected:
+struct StoreTest : ::testing::Test {
     Store store(const std::string& digest = "a") const { return Store(folder_.path(), digest); }
     void putSample(Store& store, uint64_t index) const {
         const std::string name = store.stemOf(index) + ".txt";

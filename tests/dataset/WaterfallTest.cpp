@@ -45,8 +45,7 @@ picture: {shape: waterfall, height: 400}
 annotations: {min_pixels: 4, shadows: true}
 )";
 
-class WaterfallTest : public testing::Test {
-protected:
+struct WaterfallTest : testing::Test {
     WaterfallTest() {
         writeFile(folder_ / "d.yml", side_scan);
         writeFile(folder_ / "sweep.yml", sweep_of_lines);
@@ -54,8 +53,7 @@ protected:
     std::map<std::string, std::string> made(const std::string& out, std::vector<std::string> more = {}) const {
         std::vector<std::string> all = {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", out};
         all.insert(all.end(), more.begin(), more.end());
-        const Outcome outcome = callInsonify(folder_, all);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(folder_, all), succeeds());
         std::map<std::string, std::string> files;
         for (const auto& entry : fs::directory_iterator(folder_ / out))
             files[entry.path().filename()] = readFile(entry.path());

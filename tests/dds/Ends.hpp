@@ -1,13 +1,11 @@
 #pragma once
 // Running tasks for tests, with their inputs and outputs.
-#include <chrono>
 
 #include "components/dds/PublisherTask.hpp"
 #include "components/dds/SubscriberTask.hpp"
 #include "components/framework/Activity.hpp"
 #include "tests/dds/Loopback.hpp"
 #include "tests/support/Ports.hpp"
-#include "types/Image.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::dds {

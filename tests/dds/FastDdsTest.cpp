@@ -18,8 +18,7 @@ namespace {
 
 const std::string program = test::program("dds_fast_peer");
 
-class FastDdsTest : public Loopback {
-protected:
+struct FastDdsTest : Loopback {
     void SetUp() override {
         if (!std::filesystem::exists(program)) GTEST_SKIP() << program << " is not built: it needs libfastrtps-dev";
     }

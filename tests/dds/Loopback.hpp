@@ -49,8 +49,7 @@ private:
 };
 
 /** Tests in a separate domain; `lo` has no multicast. */
-class Loopback : public testing::Test {
-protected:
+struct Loopback : testing::Test {
     Loopback() {
         constexpr const char* settings =
             "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces>"
@@ -76,8 +75,7 @@ public:
     static bool available() { return pythonHas("cyclonedds"); }
     bool ready() const { return ready_; }
     /** Sends greetings until a listener has received one; it then receives all that is sent. */
-    template <class Greet>
-    bool meets(Greet&& greet) const {
+    bool meets(auto&& greet) const {
         return becomesTrue([&] { return greet(), hasSaid("met"); });
     }
     /** Starts a sender, whose first greeting has arrived. */
@@ -98,8 +96,7 @@ private:
 };
 
 /** For tests with a peer. */
-class WithPeer : public Loopback {
-protected:
+struct WithPeer : Loopback {
     void SetUp() override {
         if (!Peer::available())
             GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";

@@ -3,7 +3,6 @@
 
 #include "components/dds/Endpoints.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Messages.hpp"
 #include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 
@@ -24,8 +23,7 @@ TopicOut floats(const std::string& topic) {
 }
 
 /** Sends pings at a rate. */
-template <class Send>
-void sendAll(int count, double hertz, Send&& send) {
+void sendAll(int count, double hertz, auto&& send) {
     auto due = std::chrono::steady_clock::now();
     for (int i = 0; i < count; ++i) {
         std::this_thread::sleep_until(due);

@@ -17,8 +17,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class PublisherTaskTest : public Loopback {
-protected:
+struct PublisherTaskTest : Loopback {
     Node node{domainId({}), "listener", 16};
 
     /** Returns the message that `send` causes on a topic, or fails. */
@@ -39,10 +38,9 @@ protected:
 struct Described {
     double frequency_khz = 0;
     types::Mount mount;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"frequency_khz", "kHz"}, self.frequency_khz);
-        visit(types::Field{"mount"}, self.mount);
+    static void describe(auto& self, auto& visit) {
+        visit({"frequency_khz", "kHz"}, self.frequency_khz);
+        visit({"mount"}, self.mount);
     }
 };
 struct Sonar : framework::TaskContext {

@@ -6,7 +6,6 @@
 #include "components/dds/Endpoints.hpp"
 #include "components/dds/RawType.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/SensorMessages.hpp"
 #include "tests/dds/Loopback.hpp"
 
 using namespace insonify;
@@ -14,8 +13,7 @@ using namespace insonify::dds;
 
 namespace {
 
-class RawTypeTest : public Loopback {
-protected:
+struct RawTypeTest : Loopback {
     Node node{domainId({}), "raw", 16};
     Writer writer{node, "rt/bytes", "test_msgs/msg/Bytes", "", {}};
     Reader reader{node, "rt/bytes", "test_msgs/msg/Bytes", "", {}, {}};

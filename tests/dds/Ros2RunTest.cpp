@@ -18,8 +18,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class Ros2RunTest : public Loopback {
-protected:
+struct Ros2RunTest : Loopback {
     TestFolder folder;
     const std::string fls = test::sourceFile("deploy/ros2_fls.yml");
     const std::string tf = test::sourceFile("deploy/ros2_tf.yml");
@@ -119,8 +118,7 @@ TEST_F(Ros2RunTest, ReportsThatItWaitsForPoses) {
                std::string::npos;
     })) << readFile(folder / "stderr.txt");
     waiting.signal(SIGINT);
-    const Outcome outcome = waiting.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(waiting.wait(), succeeds());
 }
 
 TEST_F(Ros2RunTest, TransformsOfAPeerBecomePings) {
@@ -131,8 +129,7 @@ TEST_F(Ros2RunTest, TransformsOfAPeerBecomePings) {
         folder.path());
     const Peer peer("transforms 0.5");
     if (!becomesTrue([&] { return fs::exists(folder / "summary.json"); })) sonar.signal(SIGKILL);
-    const Outcome outcome = sonar.wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(sonar.wait(), succeeds());
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 10);
 }
 
@@ -142,9 +139,8 @@ TEST_F(Ros2RunTest, TheDeploymentsAreValid) {
 
 TEST_F(Ros2RunTest, ReportsDiagnosticsWithTheirPlace) {
     Outcome outcome = check(replaced(vehicle, "type: nav_msgs/Odometry", "type: nav_msgs/Odometri"));
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("x.yml:4:"));
-    EXPECT_THAT(outcome.err, HasSubstr("tasks.ros.properties.topics[0].type: is nav_msgs/Odometri"));
+    EXPECT_THAT(outcome, isRefused(AllOf(HasSubstr("x.yml:4:"),
+                                         HasSubstr("tasks.ros.properties.topics[0].type: is nav_msgs/Odometri"))));
     outcome = check(replaced(vehicle, "topic: /auv/odometry", "topic: /auv odometry"));
     EXPECT_THAT(outcome.err, HasSubstr("topics[0].topic: is \"/auv odometry\"; must be words of letters"));
     outcome = check(replaced(vehicle, "{port: pose,", "{port: pose, colour: red,"));
@@ -158,10 +154,9 @@ TEST_F(Ros2RunTest, ReportsDiagnosticsWithTheirPlace) {
 }
 
 TEST_F(Ros2RunTest, RefusesToReadPosesInLockstep) {
-    const Outcome outcome =
-        check(replaced(replaced(readFile(fls), "realtime", "lockstep"), "scenes/", test::sourceFile("deploy/scenes/")));
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("tasks.poses.properties: messages arrive by the wall clock"));
+    EXPECT_THAT(
+        check(replaced(replaced(readFile(fls), "realtime", "lockstep"), "scenes/", test::sourceFile("deploy/scenes/"))),
+        isRefused(HasSubstr("tasks.poses.properties: messages arrive by the wall clock")));
 }
 
 TEST_F(Ros2RunTest, ReportsOneErrorForADomainThatCannotBeJoined) {
@@ -171,8 +166,7 @@ TEST_F(Ros2RunTest, ReportsOneErrorForADomainThatCannotBeJoined) {
            "name=\"nothere0\"/></Interfaces></General></Domain></CycloneDDS>",
            1);
     const Outcome outcome = callInsonify(folder, {"run", "x.yml", "--out", "out"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("cannot be joined"));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("cannot be joined")));
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 
@@ -200,8 +194,7 @@ TEST_F(Ros2RunTest, VehiclesOfALaunchFileHaveSeparateTopicsAndFrames) {
     received<ros::Clock>("/auv2/clock");
     for (const Process& process : running) process.signal(SIGINT);
     for (const Process& process : running) {
-        const Outcome outcome = process.wait();
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(process.wait(), succeeds());
     }
 }
 
@@ -222,8 +215,7 @@ TEST_F(Ros2RunTest, ALaunchFileReplaysALogToTheTopics) {
                   "  - {from: scene.snapshot, to: receiver.snapshot}\n"
                   "  - {from: poses.pose, to: log.pose, policy: {type: buffer, size: 8}}\n"
                   "  - {from: receiver.ping, to: log.ping, policy: {type: buffer, size: 8}}\n");
-    const Outcome recorded = callInsonify(folder, {"run", "record.yml", "--out", "out", "--pings", "100"});
-    ASSERT_EQ(recorded.code, 0) << recorded.err;
+    ASSERT_THAT(callInsonify(folder, {"run", "record.yml", "--out", "out", "--pings", "100"}), succeeds());
     auto commands = launched("replay.launch.py log:=out/x.0.log deployment:=" + fls + " namespace:=auv3");
     ASSERT_EQ(commands.size(), 1u);
     commands[0].erase(commands[0].begin());
@@ -231,8 +223,7 @@ TEST_F(Ros2RunTest, ALaunchFileReplaysALogToTheTopics) {
     const auto image = received<ros::ProjectedSonarImage>("/auv3/sonar");
     EXPECT_EQ(image.image.beam_count, 16u);
     replay.signal(SIGINT);
-    const Outcome outcome = replay.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(replay.wait(), succeeds());
 }
 
 TEST_F(Ros2RunTest, NamesNodesByTheArguments) {
@@ -284,10 +275,8 @@ TEST_F(Ros2RunTest, AppliesParameterFilesToTheNodesThatTheyName) {
           std::pair("-r other:__node:=x", "there is no such node; nodes: /auv/insonify_poses, /auv/insonify")}) {
         const std::string both = words;
         const size_t space = both.find(' ');
-        const Outcome outcome =
-            callInsonify(folder, {"run", fls, "--ros-args", both.substr(0, space), both.substr(space + 1)});
-        EXPECT_EQ(outcome.code, 2);
-        EXPECT_THAT(outcome.err, HasSubstr(message));
+        EXPECT_THAT(callInsonify(folder, {"run", fls, "--ros-args", both.substr(0, space), both.substr(space + 1)}),
+                    isRefused(HasSubstr(message)));
     }
 }
 
@@ -296,8 +285,7 @@ TEST_F(Ros2RunTest, ParametersAndRvizOfTheBringupFitTheExample) {
     ASSERT_EQ(commands.size(), 2u);
     std::vector<std::string> words(commands[0].begin() + 1, commands[0].end());
     words.insert(words.begin() + 1, {"--out", "out", "--duration", "0.1"});
-    const Outcome outcome = callInsonify(folder, words);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(callInsonify(folder, words), succeeds());
     const std::string rviz = readFile(test::sourceFile("ros2/insonify_bringup/config/insonify.rviz"));
     const std::string deployment = readFile(fls);
     EXPECT_THAT(deployment, HasSubstr("namespace: auv "));
@@ -341,8 +329,7 @@ TEST_F(Ros2RunTest, ANodeOfCycloneListsGetsSetsAndDescribesParameters) {
     Peer peer("parameters /auv/ros sonar.range 15");
     const json found = peer.result();
     run.signal(SIGINT);
-    const Outcome outcome = run.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(run.wait(), succeeds());
     ASSERT_FALSE(found.is_null());
     EXPECT_EQ(found["list"][1], json({"sonar"}));
     for (const std::string name : found["list"][0]) EXPECT_TRUE(name.starts_with("sonar.")) << name;

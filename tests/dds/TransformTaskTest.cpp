@@ -16,8 +16,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class TransformTaskTest : public Loopback, protected test::Listening<TransformTask> {
-protected:
+struct TransformTaskTest : Loopback, protected test::Listening<TransformTask> {
     TransformTaskTest() : Listening("tf") {}
 
     void startWith(std::vector<FrameOut> frames, const std::function<void(TransformConfig&)>& change = {}) {

@@ -77,13 +77,11 @@ std::pair<int, int> brightestColumns(const fs::path& picture, const output::Side
     return found;
 }
 
-class AltitudeRunTest : public testing::Test {
-protected:
+struct AltitudeRunTest : testing::Test {
     void SetUp() override {
         writeBytes(folder_ / "wire.xtf", wireXtf());
         writeFile(folder_ / "side.yml", above_ground);
-        const Outcome outcome = callInsonify(folder_, {"log", "import", "wire.xtf", "--to", "wire.0.log"});
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(callInsonify(folder_, {"log", "import", "wire.xtf", "--to", "wire.0.log"}), succeeds());
     }
     void expectStraight(const std::string& picture) const {
         const output::SideScanPictureConfig config;
@@ -99,8 +97,7 @@ protected:
 }  // namespace
 
 TEST_F(AltitudeRunTest, AReplayHasTheAltitudesOfTheRecording) {
-    const Outcome outcome = callInsonify(folder_, {"replay", "wire.0.log", "side.yml", "--out", "out"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(callInsonify(folder_, {"replay", "wire.0.log", "side.yml", "--out", "out"}), succeeds());
     expectStraight("out/ground_000001.png");
     const auto [minimum, greatest] = brightestColumns(folder_ / "out/fixed_000001.png", {});
     EXPECT_GT(greatest - minimum, 30) << "a fixed altitude bends the wire";

@@ -119,9 +119,7 @@ INSTANTIATE_TEST_SUITE_P(All, BadDeploymentTest, testing::ValuesIn(cases),
 
 TEST(BadDeploymentsTest, NamesAMissingFile) {
     const TestFolder folder;
-    const Outcome outcome = callInsonify(folder, {"run", "nowhere.yml"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("nowhere.yml"));
+    EXPECT_THAT(callInsonify(folder, {"run", "nowhere.yml"}), isRefused(HasSubstr("nowhere.yml")));
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
@@ -144,8 +142,7 @@ TEST(BadDeploymentsTest, ReportsAllErrors) {
 TEST(BadDeploymentsTest, ReplayRefusesAFileThatIsNotALog) {
     const WallFolder folder;
     writeFile(folder / "no.0.log", "this is no log at all, but it is longer than a header of one would be");
-    const Outcome outcome = callInsonify(folder, {"replay", "no.0.log", "wall.yml", "--out", "out"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("no.0.log"));
+    EXPECT_THAT(callInsonify(folder, {"replay", "no.0.log", "wall.yml", "--out", "out"}),
+                isRefused(HasSubstr("no.0.log")));
     EXPECT_FALSE(fs::exists(folder / "out"));
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The `insonify` command as a separate process: its exit code and its output.
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -36,6 +37,19 @@ struct Outcome {
     int code = -1;  ///< Exit code; minus the signal that killed it.
     std::string out, err;
 };
+inline std::ostream& operator<<(std::ostream& stream, const Outcome& outcome) {
+    return stream << "code " << outcome.code << ", output: " << outcome.out << ", errors: " << outcome.err;
+}
+
+/** Matches the outcome of a command that is refused with this message. */
+inline auto isRefused(const testing::Matcher<const std::string&>& message) {
+    return testing::AllOf(testing::Field("code", &Outcome::code, 2), testing::Field("err", &Outcome::err, message));
+}
+inline auto succeeds() { return testing::Field("code", &Outcome::code, 0); }
+/** Matches the outcome of a command that succeeds with this output. */
+inline auto prints(const testing::Matcher<const std::string&>& output) {
+    return testing::AllOf(succeeds(), testing::Field("out", &Outcome::out, output));
+}
 
 /** A running program; its output is written to files in `folder`, which is also its current folder. */
 class Process {

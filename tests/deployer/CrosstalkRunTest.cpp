@@ -29,8 +29,7 @@ connections:
   - {from: two_sonar.ping, to: log.two, policy: {type: buffer, size: 8}}
 )";
 
-class CrosstalkRunTest : public testing::Test {
-protected:
+struct CrosstalkRunTest : testing::Test {
     CrosstalkRunTest() {
         fs::copy_file(fs::path(insonify::test::source_dir) / "deploy/scenes/wall.glb", folder_ / "case.glb");
     }
@@ -57,8 +56,7 @@ std::map<size_t, float> received(const Sonar& ping) {
 }  // namespace
 
 TEST_F(CrosstalkRunTest, PulsesOfTheOtherSonarArriveAtTheRightTimeAndLevel) {
-    const Outcome outcome = run(pair, {"--pings", "6"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(run(pair, {"--pings", "6"}), succeeds());
     const std::vector<Sonar> one = logged("one"), two = logged("two");
     ASSERT_GE(one.size(), 6u);
     ASSERT_GE(two.size(), 6u);
@@ -99,8 +97,7 @@ TEST_F(CrosstalkRunTest, PingsWithoutAPulseEqualThoseWithoutCrosstalk) {
 }
 
 TEST_F(CrosstalkRunTest, CrosstalkWorksInRealtime) {
-    const Outcome outcome = run("schedule: realtime\n" + std::string(pair), {"--duration", "2"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(run("schedule: realtime\n" + std::string(pair), {"--duration", "2"}), succeeds());
     const std::vector<Sonar> one = logged("one");
     EXPECT_GE(one.size(), 15u);
     size_t receives = 0;
@@ -114,22 +111,18 @@ TEST_F(CrosstalkRunTest, CrosstalkWorksInRealtime) {
 
 TEST_F(CrosstalkRunTest, RefusesWrongConnections) {
     Outcome outcome = run(replaced(pair, ", crosstalk: {}", ""), {"--pings", "2"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("others: is connected; the sonar does not receive other sonars: "
-                                                "give it `crosstalk: {}`"));
+    EXPECT_THAT(outcome, isRefused(testing::HasSubstr("others: is connected; the sonar does not receive other sonars: "
+                                                      "give it `crosstalk: {}`")));
     std::string loop = replaced(pair, "one_sonar.others, policy: {type: circular_buffer, size: 8}", "one_sonar.others");
     loop = replaced(loop, "two_sonar.others, policy: {type: circular_buffer, size: 8}", "two_sonar.others");
     outcome = run(loop, {"--pings", "2"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("closes a loop without a buffer"));
+    EXPECT_THAT(outcome, isRefused(testing::HasSubstr("closes a loop without a buffer")));
     outcome = run(replaced(pair, "crosstalk: {}", "crosstalk: {rejection: 3}"), {"--pings", "2"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("crosstalk.rejection: is not a key here; did you mean rejection_db?"));
+    EXPECT_THAT(outcome,
+                isRefused(testing::HasSubstr("crosstalk.rejection: is not a key here; did you mean rejection_db?")));
     outcome = run(replaced(pair, "crosstalk: {}", "crosstalk: {}, visibility: gl"), {"--pings", "2"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("visibility: is gl with crosstalk.echoes, which needs rays"));
+    EXPECT_THAT(outcome, isRefused(testing::HasSubstr("visibility: is gl with crosstalk.echoes, which needs rays")));
     outcome = run(pair, {"--pings", "4", "--shard", "1/2"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err,
-                testing::HasSubstr("the sonar receives pings of other sonars, which a shard does not have"));
+    EXPECT_THAT(outcome,
+                isRefused(testing::HasSubstr("the sonar receives pings of other sonars, which a shard does not have")));
 }

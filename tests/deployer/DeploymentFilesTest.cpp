@@ -29,8 +29,7 @@ std::vector<std::string> runOf(const std::string& deployment, std::vector<std::s
     return words;
 }
 
-class DeploymentFilesTest : public testing::TestWithParam<std::string> {
-protected:
+struct DeploymentFilesTest : testing::TestWithParam<std::string> {
     void SetUp() override {
         const std::string lacks = callInsonify(folder, {"libraries", deploy / (GetParam() + ".yml")}).out;
         if (!lacks.empty())
@@ -46,8 +45,7 @@ TEST_P(DeploymentFilesTest, RunsForTwoPings) {
     std::vector<std::string> more = {"--pings", "2", "--summary", "summary.json"};
     if (!lockstep)  // a slow machine must not look like a missing vehicle
         more.insert(more.end(), {"--set", "scene.pose_timeout=60"});
-    const Outcome outcome = callInsonify(folder, runOf(GetParam(), more));
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(callInsonify(folder, runOf(GetParam(), more)), succeeds());
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 2);
     for (const auto& [connection, lost] : summary["losses"].items())  // in realtime the newest sample is used
@@ -72,8 +70,7 @@ TEST(DeliveredFilesTest, ReplayShowsTheLatestHarbourRun) {
     const TestFolder folder;
     fs::copy(deploy, folder / "deploy", fs::copy_options::recursive);
     ASSERT_EQ(callInsonify(folder, {"run", "deploy/harbour_fls.yml", "--pings", "2"}).code, 0);
-    const Outcome outcome =
-        callInsonify(folder, {"run", "deploy/replay.yml", "--out", "again", "--summary", "summary.json"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(callInsonify(folder, {"run", "deploy/replay.yml", "--out", "again", "--summary", "summary.json"}),
+                succeeds());
     EXPECT_FALSE(fs::is_empty(folder / "again"));
 }

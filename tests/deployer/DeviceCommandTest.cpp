@@ -9,10 +9,9 @@ using testing::HasSubstr;
 
 TEST(DeviceCommandTest, ListPrintsTheReplacedDevicesAndTheirPorts) {
     const TestFolder folder;
-    const Outcome outcome = callInsonify(folder, {"device", "list"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("device::Ping360Task"), HasSubstr("Blue Robotics Ping360"),
-                                   HasSubstr("port 12345"), HasSubstr("device::Ping1dTask"), HasSubstr("port 9090")));
+    EXPECT_THAT(callInsonify(folder, {"device", "list"}),
+                prints(AllOf(HasSubstr("device::Ping360Task"), HasSubstr("Blue Robotics Ping360"),
+                             HasSubstr("port 12345"), HasSubstr("device::Ping1dTask"), HasSubstr("port 9090"))));
     const json devices = json::parse(callInsonify(folder, {"device", "list", "--json"}).out);
     const auto ping360 =
         std::ranges::find_if(devices, [](const json& d) { return d["type"] == "device::Ping360Task"; });
@@ -45,8 +44,8 @@ TEST(DeviceCommandTest, AProbeIdentifiesTheDevice) {
     });
     run.signal(SIGINT);
     EXPECT_EQ(run.wait().code, 0);
-    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("serial line " + line + ": Blue Robotics Ping360, id 2, revision 1"));
+    EXPECT_THAT(outcome, prints(HasSubstr("serial line " + line + ": Blue Robotics Ping360, id 2, revision 1")))
+        << outcome.out << outcome.err;
 }
 
 TEST(DeviceCommandTest, NoAnswerIsReportedWithReasonsAndCode1) {
@@ -65,9 +64,8 @@ TEST(DeviceCommandTest, NoAnswerIsReportedWithReasonsAndCode1) {
 
 TEST(DeviceCommandTest, ABadAddressIsOneClearErrorAndCode2) {
     const TestFolder folder;
-    const Outcome port = callInsonify(folder, {"device", "probe", "127.0.0.1:70000"});
-    EXPECT_EQ(port.code, 2);
-    EXPECT_THAT(port.err, HasSubstr("ADDRESS: is '127.0.0.1:70000', whose port '70000' is not from 1 to 65535"));
+    EXPECT_THAT(callInsonify(folder, {"device", "probe", "127.0.0.1:70000"}),
+                isRefused(HasSubstr("ADDRESS: is '127.0.0.1:70000', whose port '70000' is not from 1 to 65535")));
     EXPECT_EQ(callInsonify(folder, {"device", "probe", ""}).code, 2);
     EXPECT_EQ(callInsonify(folder, {"device", "probe"}).code, 2);
     EXPECT_EQ(callInsonify(folder, {"device"}).code, 2);

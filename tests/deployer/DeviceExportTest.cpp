@@ -42,12 +42,10 @@ connections:
   - {from: vehicle.pose,   to: log.vehicle,  policy: {type: buffer, size: 64}}
 )";
 
-class DeviceExportTest : public testing::Test {
-protected:
+struct DeviceExportTest : testing::Test {
     void SetUp() override {
         writeFile(folder_ / "wall.yml", sidescan_deployment);
-        const Outcome outcome = folder_.run({"--pings", "6"});
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(folder_.run({"--pings", "6"}), succeeds());
     }
     /** Runs `log export` on the run's log. */
     Outcome toFile(const std::string& stream, const std::string& to, std::vector<std::string> more = {},
@@ -63,9 +61,7 @@ protected:
     }
     void expectRefused(const std::string& stream, const std::string& to, std::vector<std::string> more,
                        const std::string& why, const std::string& log = "out/lines.0.log") const {
-        const Outcome outcome = toFile(stream, to, std::move(more), log);
-        EXPECT_EQ(outcome.code, 2);
-        EXPECT_THAT(outcome.err, HasSubstr(why));
+        EXPECT_THAT(toFile(stream, to, std::move(more), log), isRefused(HasSubstr(why)));
         EXPECT_FALSE(fs::exists(folder_ / to));
     }
 
@@ -75,9 +71,7 @@ protected:
 }  // namespace
 
 TEST_F(DeviceExportTest, ALogExportsTheXtfFileOfItsRun) {
-    const Outcome outcome = toFile("receiver.ping", "lines.xtf");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "lines.xtf\n");
+    ASSERT_THAT(toFile("receiver.ping", "lines.xtf"), prints("lines.xtf\n"));
     const std::string exported = readFile(folder_ / "lines.xtf");
     EXPECT_EQ(exported.size() % 64, 0u);
     EXPECT_EQ(exported.size(), 1024 + 6 * ((256 + 2 * (64 + 200 * 2) + 63) / 64 * 64));
@@ -112,8 +106,7 @@ TEST_F(DeviceExportTest, PyxtfReadsTheLinesOfALogWithTheirPositions) {
 TEST_F(DeviceExportTest, AnMcapFileGivesTheSameLines) {
     if (!pythonHas("pyxtf")) GTEST_SKIP() << "SKIPPED: the Python package pyxtf is missing; scripts/setup installs it";
     ASSERT_EQ(toFile("", "lines.mcap").code, 0);
-    const Outcome outcome = toFile("/receiver/ping", "bag.xtf", {"--pose", "/sonar/pose"}, "lines.mcap");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(toFile("/receiver/ping", "bag.xtf", {"--pose", "/sonar/pose"}, "lines.mcap"), succeeds());
     ASSERT_EQ(toFile("receiver.ping", "lines.xtf").code, 0);
     const json bag = readXtf("bag.xtf"), lines = readXtf("lines.xtf");
     ASSERT_EQ(bag["pings"].size(), 6u);
@@ -151,9 +144,8 @@ TEST_F(DeviceExportTest, BinsThatAreNotCodesAreUnchanged) {
 }
 
 TEST_F(DeviceExportTest, AnXtfFileIsImportedAgainBinByBin) {
-    const Outcome outcome = callInsonify(folder_, {"log", "import", "out/lines.xtf", "--to", "again.0.log"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "again.0.log: 6 pings as receiver.ping\n");
+    ASSERT_THAT(callInsonify(folder_, {"log", "import", "out/lines.xtf", "--to", "again.0.log"}),
+                prints("again.0.log: 6 pings as receiver.ping\n"));
     const auto pingsOf = [&](const char* log) {
         std::vector<types::Sonar> pings;
         log::openLog(folder_ / log)->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) {
@@ -185,9 +177,9 @@ TEST_F(DeviceExportTest, AnXtfFileIsImportedAgainBinByBin) {
 
 TEST_F(DeviceExportTest, AnXtfFileIsRenderedAgainAndScored) {
     ASSERT_EQ(callInsonify(folder_, {"log", "import", "out/lines.xtf", "wall.yml", "--to", "again.0.log"}).code, 0);
-    const Outcome outcome =
-        callInsonify(folder_, {"replay", "again.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(
+        callInsonify(folder_, {"replay", "again.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"}),
+        succeeds());
     const json score = json::parse(readFile(folder_ / "scored/score.json"))["streams"][0];
     EXPECT_EQ(score["stream"], "receiver.ping");
     EXPECT_EQ(score["compared"], 6);
@@ -233,9 +225,9 @@ TEST(OculusExportTest, ARecordingIsImportedAgainCodeByCode) {
     for (const char* code : {"{bits: 16, law: sqrt, full_scale_db: -40}", "{law: sqrt, full_scale_db: -40}"}) {
         const WallFolder folder(codedWall(code));
         ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
-        const Outcome outcome = callInsonify(
-            folder, {"log", "export", "out/wall.0.log", "--stream", "receiver.ping", "--to", "dive.oculus"});
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "receiver.ping", "--to",
+                                          "dive.oculus"}),
+                    succeeds());
         ASSERT_EQ(callInsonify(folder, {"log", "import", "dive.oculus", "wall.yml", "--to", "dive.0.log"}).code, 0);
         std::vector<types::Sonar> before, after;
         log::openLog(folder / "out/wall.0.log")

@@ -53,8 +53,7 @@ TEST(DeviceTest, WithoutOpenGlTheMessageNamesPackagesAndSettings) {
 TEST(DeviceTest, RayTracingWorksWithoutOpenGl) {
     for (const std::string& way : ways_without_gl) {
         const WallFolder folder;
-        const Outcome outcome = runWith(folder, {way});
-        EXPECT_EQ(outcome.code, 0) << way << outcome.err;
+        EXPECT_THAT(runWith(folder, {way}), succeeds()) << way;
     }
 }
 
@@ -73,8 +72,7 @@ TEST(DeviceTest, AnUnknownDeviceIsNamedWithTheAlternatives) {
 
 TEST(DeviceTest, ThePropertyOverridesTheVariable) {
     const WallFolder folder;
-    const Outcome outcome = runWith(folder, {"INSONIFY_EGL_DEVICE=quantum"}, {"--set", "sonar.device=software"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(runWith(folder, {"INSONIFY_EGL_DEVICE=quantum"}, {"--set", "sonar.device=software"}), succeeds());
 }
 
 TEST(DeviceTest, RequestsNoDeviceForRayTracingOrWithoutAGraphicsCard) {
@@ -97,8 +95,7 @@ TEST(DeviceTest, ChecksADeploymentWithoutRequestingADevice) {
         EXPECT_EQ(good.code, 0) << good.err;
         EXPECT_FALSE(asked_for_good) << visibility;
         const auto [bad, asked_for_bad] = witnessed(with("-20"), {"check", "wall.yml"});
-        EXPECT_EQ(bad.code, 2);
-        EXPECT_THAT(bad.err, HasSubstr("range"));
+        EXPECT_THAT(bad, isRefused(HasSubstr("range")));
         EXPECT_FALSE(asked_for_bad) << visibility;
         const auto [refused, asked_for_refused] = witnessed(with("-20"), {"run", "wall.yml", "--pings", "1"});
         EXPECT_EQ(refused.code, 2);

@@ -17,8 +17,7 @@ namespace {
 
 constexpr int shard_count = 6;
 
-class EngineTest : public testing::Test {
-protected:
+struct EngineTest : testing::Test {
     /** The run, without its shard; `out` is relative to the test's folder. */
     std::vector<std::string> runTo(const std::string& out) const {
         return {"run", folder_ / "wall.yml", "--out", folder_ / out, "--pings", "60"};
@@ -56,8 +55,7 @@ struct Engine {
     const char *name, *module;
 };
 
-class WorkersTest : public EngineTest, public testing::WithParamInterface<Engine> {
-protected:
+struct WorkersTest : EngineTest, testing::WithParamInterface<Engine> {
     void SetUp() override {
         if (!insonify::pythonHas(GetParam().module))
             GTEST_SKIP() << "SKIPPED: the Python package " << GetParam().module
@@ -161,9 +159,8 @@ TEST_P(WorkersTest, ADataSetEqualsThatOfOneMachine) {
                                         "--out",   folder_ / out,        "--format", "yolo"};
     };
     ASSERT_EQ(callInsonify(folder_, dataSet("one")).code, 0);
-    const Outcome outcome =
-        Process(byWorkers(insonify::test::program("insonify"), 2, dataSet("shards")), folder_.path()).wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(Process(byWorkers(insonify::test::program("insonify"), 2, dataSet("shards")), folder_.path()).wait(),
+                succeeds());
     std::map<std::string, std::string> one, shards;
     for (const auto& file : fs::directory_iterator(folder_ / "one"))
         one[file.path().filename()] = readFile(file.path());
@@ -193,13 +190,10 @@ TEST_F(EngineTest, ASlurmArrayMakesAllShards) {
         return Process(words, folder_.path()).wait();
     };
     for (int i = 0; i < shard_count; ++i) {
-        const Outcome outcome = job(std::to_string(i), "0");
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(job(std::to_string(i), "0"), succeeds());
     }
     expectAsByOne();
-    const Outcome from_one = job("1", "1");
-    EXPECT_EQ(from_one.code, 2);
-    EXPECT_THAT(from_one.err, HasSubstr("the array must count from 0 by 1"));
+    EXPECT_THAT(job("1", "1"), isRefused(HasSubstr("the array must count from 0 by 1")));
     const Outcome alone = Process({"env", "-u", "SLURM_ARRAY_TASK_ID", "bash", script}, folder_.path()).wait();
     EXPECT_NE(alone.code, 0);
     EXPECT_THAT(alone.err, HasSubstr("SLURM_ARRAY_TASK_ID: is not set; submit with --array=0-N"));
@@ -220,8 +214,7 @@ TEST_F(EngineTest, AKubernetesJobIsWellFormedAndItsPodsMakeShards) {
     for (const int index : {0, 15}) {
         std::vector<std::string> words = wordsOf(index);
         *(std::ranges::find(words, "--pings") + 1) = "32";
-        const Outcome outcome = callInsonify(folder_, words);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(folder_, words), succeeds());
     }
     EXPECT_TRUE(fs::exists(folder_ / "mine/shard_00_of_16/manifest.json"));
     EXPECT_TRUE(fs::exists(folder_ / "mine/shard_15_of_16/wall.0.log"));

@@ -51,8 +51,7 @@ std::vector<double> geminiBearingsDeg() {
     return bearings;
 }
 
-class FanImportTest : public testing::Test {
-protected:
+struct FanImportTest : testing::Test {
     /** The pings of a run of the wall. */
     std::vector<types::Sonar> pingsOf(const std::string& deployment, int count) const {
         writeFile(folder_ / "wall.yml", deployment);
@@ -102,9 +101,9 @@ protected:
         return callInsonify(folder_, arguments);
     }
     json score() const {
-        const Outcome outcome =
-            callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"});
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(
+            callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"}),
+            succeeds());
         const json all = json::parse(readFile(folder_ / "scored/score.json"));
         for (const json& stream : all["streams"])
             if (stream["stream"] == "receiver.ping") return stream;
@@ -119,8 +118,7 @@ protected:
 TEST_F(FanImportTest, AnArisFileOfRenderedPingsIsRenderedAgain) {
     recordAris(3);
     const Outcome outcome = import("dive.aris");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "dive.0.log: 3 pings as receiver.ping\n");
+    ASSERT_THAT(outcome, prints("dive.0.log: 3 pings as receiver.ping\n"));
     EXPECT_THAT(outcome.err, HasSubstr("as recorded: receiver.blanking={range_min: 1.5}"));
     EXPECT_EQ(callInsonify(folder_, {"log", "check", "dive.0.log"}).code, 0);
     const json scored = score();
@@ -131,8 +129,7 @@ TEST_F(FanImportTest, AnArisFileOfRenderedPingsIsRenderedAgain) {
 
 TEST_F(FanImportTest, AGlfFileHasTheRenderedPings) {
     recordGemini(3);
-    const Outcome outcome = import("dive.glf");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(import("dive.glf"), succeeds());
     std::vector<types::Sonar> rendered, imported;
     const auto read = [&](const char* log, std::vector<types::Sonar>& pings) {
         log::openLog(folder_ / log)->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) {
@@ -160,8 +157,7 @@ TEST_F(FanImportTest, AGlfFileHasTheRenderedPings) {
 
 TEST_F(FanImportTest, WithoutADeploymentTheLogIsExportedAndReplayed) {
     recordAris(2);
-    const Outcome outcome = import("dive.aris", "");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(import("dive.aris", ""), succeeds());
     const auto to = [&](const std::string& file) {
         return callInsonify(folder_, {"log", "export", "dive.0.log", "--stream", "receiver.ping", "--to", file});
     };
@@ -171,8 +167,7 @@ TEST_F(FanImportTest, WithoutADeploymentTheLogIsExportedAndReplayed) {
     const std::string info = callInsonify(folder_, {"log", "info", "dive.0.log", "--metadata"}).out;
     EXPECT_THAT(info, HasSubstr("samples of dive.aris, as its device output them"));
     EXPECT_THAT(info, HasSubstr("\"dynamic_range_db\": 80"));
-    const Outcome replay = callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--out", "again"});
-    EXPECT_EQ(replay.code, 0) << replay.err;
+    EXPECT_THAT(callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--out", "again"}), succeeds());
     EXPECT_TRUE(fs::exists(folder_ / "again/fan_000001.png"));
 }
 
@@ -204,8 +199,7 @@ TEST_F(FanImportTest, ADamagedFileIsOneErrorAndLeavesNoLog) {
     EXPECT_EQ(import("empty.aris").err, "empty.aris: holds no ping of a sonar\n");
     bytes.resize(3000);
     writeBytes(folder_ / "zero.aris", bytes);
-    const Outcome outcome = import("zero.aris");
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.err, "zero.aris: byte 1036: is 0x00000000; the header of a frame has 0x05464444 here\n");
+    EXPECT_THAT(import("zero.aris"),
+                isRefused("zero.aris: byte 1036: is 0x00000000; the header of a frame has 0x05464444 here\n"));
     EXPECT_FALSE(fs::exists(folder_ / "dive.0.log"));
 }

@@ -24,8 +24,7 @@ std::string wallOfCodes() {
                     "  - {from: receiver.ping, to: log.ping, policy: {type: buffer, size: 64}}");
 }
 
-class ImportCommandTest : public testing::Test {
-protected:
+struct ImportCommandTest : testing::Test {
     /** Writes the codes of the wall's receiver to dive.oculus, as the maker's viewer would record them. */
     void record(int pings) const {
         ASSERT_EQ(folder_.run({"--pings", std::to_string(pings)}).code, 0);
@@ -58,9 +57,9 @@ protected:
         return callInsonify(folder_, {"log", "import", recording, deployment, "--to", "dive.0.log"});
     }
     json score(const std::string& deployment = "wall.yml") const {
-        const Outcome outcome =
-            callInsonify(folder_, {"replay", "dive.0.log", deployment, "--rerender", "--score", "--out", "scored"});
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(
+            callInsonify(folder_, {"replay", "dive.0.log", deployment, "--rerender", "--score", "--out", "scored"}),
+            succeeds());
         const json all = json::parse(readFile(folder_ / "scored/score.json"));
         for (const json& stream : all["streams"])
             if (stream["stream"] == "receiver.ping") return stream;
@@ -74,9 +73,7 @@ protected:
 
 TEST_F(ImportCommandTest, ARecordingOfRenderedPingsIsRenderedAgain) {
     record(3);
-    const Outcome outcome = import("dive.oculus");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("dive.0.log: 3 pings as receiver.ping"));
+    ASSERT_THAT(import("dive.oculus"), prints(HasSubstr("dive.0.log: 3 pings as receiver.ping")));
     EXPECT_EQ(callInsonify(folder_, {"log", "check", "dive.0.log"}).code, 0);
     const json scored = score();
     EXPECT_EQ(scored["compared"], 3);
@@ -101,8 +98,7 @@ TEST_F(ImportCommandTest, TheLogHasThePingsTimesAndThePosesOfTheTrajectory) {
 TEST_F(ImportCommandTest, EveryPingIsKeptWhenSettingsChange) {
     recordAChange();
     const Outcome outcome = import("dive.oculus");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("dive.0.log: 4 pings as receiver.ping"));
+    ASSERT_THAT(outcome, prints(HasSubstr("dive.0.log: 4 pings as receiver.ping")));
     EXPECT_THAT(outcome.err, HasSubstr("notice: settings change 1 times; properties.0.log next to the log has them"));
     std::vector<double> ranges;
     log::openLog(folder_ / "dive.0.log")
@@ -118,8 +114,7 @@ TEST_F(ImportCommandTest, EveryPingIsKeptWhenSettingsChange) {
 
 TEST_F(ImportCommandTest, WithoutADeploymentTheLogHasTheRecordingsData) {
     record(3);
-    const Outcome outcome = callInsonify(folder_, {"log", "import", "dive.oculus", "--to", "alone.0.log"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(callInsonify(folder_, {"log", "import", "dive.oculus", "--to", "alone.0.log"}), succeeds());
     ASSERT_EQ(import("dive.oculus").code, 0);
     const auto alone = log::openLog(folder_ / "alone.0.log"), with = log::openLog(folder_ / "dive.0.log");
     ASSERT_EQ(alone->streams().size(), 1u);
@@ -135,8 +130,7 @@ TEST_F(ImportCommandTest, ARealSideScanBecomesAWaterfallArraysAndTheSameXtfFile)
     const fs::path recording = test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
     if (!fs::exists(recording)) GTEST_SKIP() << recording << " is missing: no real XTF file is tested";
     const Outcome outcome = callInsonify(folder_, {"log", "import", recording, "--to", "side.0.log"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "side.0.log: 461 pings as receiver.ping\n");
+    ASSERT_THAT(outcome, prints("side.0.log: 461 pings as receiver.ping\n"));
     EXPECT_THAT(outcome.err, HasSubstr("x = y = 0 of the world is latitude 48.4454500, longitude -68.8279350"));
     const auto log = log::openLog(folder_ / "side.0.log");
     EXPECT_EQ(log->find("sonar.pose")->count, 460u);
@@ -160,8 +154,7 @@ TEST_F(ImportCommandTest, ARealSideScanBecomesAWaterfallArraysAndTheSameXtfFile)
 TEST_F(ImportCommandTest, AJsfFileBecomesALogThatIsCheckedAndExported) {
     const std::string recording = test::sourceFile("tests/fuzz/corpus/jsf/two_pings");
     const Outcome outcome = callInsonify(folder_, {"log", "import", recording, "--to", "side.0.log"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "side.0.log: 2 pings as receiver.ping\n");
+    ASSERT_THAT(outcome, prints("side.0.log: 2 pings as receiver.ping\n"));
     EXPECT_THAT(outcome.err, HasSubstr("settings change 1 times; each ping has its own range and bins"));
     EXPECT_EQ(callInsonify(folder_, {"log", "check", "side.0.log"}).code, 0);
     const auto to = [&](const std::string& file) {
@@ -193,9 +186,8 @@ TEST_F(ImportCommandTest, ADamagedXtfFileIsOneErrorAndLeavesNoLog) {
     std::string bytes(1024 + 256, '\0');
     bytes[0] = '\x7B';
     writeFile(folder_ / "line.xtf", bytes);
-    const Outcome outcome = callInsonify(folder_, {"log", "import", "line.xtf", "--to", "line.0.log"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.err, "line.xtf: byte 1024: is 0x0000; a packet begins with 0xFACE\n");
+    EXPECT_THAT(callInsonify(folder_, {"log", "import", "line.xtf", "--to", "line.0.log"}),
+                isRefused("line.xtf: byte 1024: is 0x0000; a packet begins with 0xFACE\n"));
     writeFile(folder_ / "line.xtf", bytes.substr(0, 1030));
     EXPECT_THAT(callInsonify(folder_, {"log", "import", "line.xtf", "--to", "line.0.log"}).err,
                 HasSubstr("line.xtf: holds no ping of a side-scan; the packet at byte 1024 is cut off"));
@@ -222,8 +214,6 @@ TEST_F(ImportCommandTest, ReportsWhyAFileCannotBeImported) {
     record(1);
     writeFile(folder_ / "plain.yml", wall_deployment);
     EXPECT_THAT(import("dive.oculus", "plain.yml").err, HasSubstr("has no receiver that outputs codes"));
-    const Outcome outcome =
-        callInsonify(folder_, {"log", "import", "dive.oculus", "wall.yml", "--to", "plain.yml/dive.0.log"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("plain.yml: --to: is no folder and cannot be made"));
+    EXPECT_THAT(callInsonify(folder_, {"log", "import", "dive.oculus", "wall.yml", "--to", "plain.yml/dive.0.log"}),
+                isRefused(HasSubstr("plain.yml: --to: is no folder and cannot be made")));
 }

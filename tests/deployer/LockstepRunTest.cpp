@@ -9,8 +9,7 @@ using namespace insonify::deployer;
 namespace {
 
 /** A deployment of deploy/ in its own folder, with a text replaced. */
-class DeployFolder : public TestFolder {
-public:
+struct DeployFolder : TestFolder {
     DeployFolder(const std::string& name, const std::string& what, const std::string& with) {
         const fs::path deploy = fs::path(insonify::test::source_dir) / "deploy";
         fs::create_symlink(deploy / "scenes", *this / "scenes");
@@ -21,8 +20,7 @@ public:
                       const std::vector<std::string>& more = {}) const {
         std::vector<std::string> words = {"run", "x.yml", "--out", out, "--pings", "6"};
         words.insert(words.end(), more.begin(), more.end());
-        const Outcome outcome = callInsonify(*this, words);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(*this, words), succeeds());
         const std::string log = readFile(path() / out / name);
         EXPECT_GT(log.size(), minimum);
         return log;

@@ -8,8 +8,7 @@ using testing::HasSubstr;
 namespace {
 
 /** A folder with a run of the wall for three pings. */
-class LogCommandTest : public testing::Test {
-protected:
+struct LogCommandTest : testing::Test {
     LogCommandTest() { EXPECT_EQ(folder.run({"--pings", "3"}).code, 0); }
     Outcome exportTo(const std::string& stream, const std::string& to) {
         return callInsonify(folder, {"log", "export", log, "--stream", stream, "--to", to});
@@ -116,9 +115,7 @@ TEST_F(LogCommandTest, MakesTheFolderOfAnOutputFile) {
     EXPECT_EQ(exportTo("sonar.ping", "deep/too/ping.npz").code, 0);
     writeFile(folder / "plain", "a file");
     for (const char* to : {"deep/er/cut.0.log/ping.npz", "plain"}) {
-        const Outcome outcome = exportTo("sonar.ping", to);
-        EXPECT_EQ(outcome.code, 2);
-        EXPECT_THAT(outcome.err, HasSubstr("--to: is no folder and cannot be made"));
+        EXPECT_THAT(exportTo("sonar.ping", to), isRefused(HasSubstr("--to: is no folder and cannot be made")));
     }
 }
 
@@ -127,10 +124,9 @@ TEST_F(LogCommandTest, ADamagedLogIsNamedByItsFirstWrongByteAndRepaired) {
     fs::remove(folder / "out/wall.0.idx");
     const size_t stray = bytes.size() - 4;
     writeFile(folder / log, bytes.substr(0, stray));
-    const Outcome checked = callInsonify(folder, {"log", "check", log});
-    EXPECT_EQ(checked.code, 2);
-    EXPECT_THAT(checked.err, testing::MatchesRegex("out/wall.0.log: byte [0-9]+: the file ends within a block: it has "
-                                                   "[0-9]+ bytes, [0-9]+ are left\n"));
+    EXPECT_THAT(callInsonify(folder, {"log", "check", log}),
+                isRefused(testing::MatchesRegex("out/wall.0.log: byte [0-9]+: the file ends within a block: it has "
+                                                "[0-9]+ bytes, [0-9]+ are left\n")));
     const json reported = json::parse(callInsonify(folder, {"log", "check", log, "--json"}).out);
     EXPECT_FALSE(reported["valid"]);
     EXPECT_EQ(reported["samples"], 8);
@@ -138,8 +134,7 @@ TEST_F(LogCommandTest, ADamagedLogIsNamedByItsFirstWrongByteAndRepaired) {
     EXPECT_GT(reported["wrong"]["byte"], 0);
 
     const Outcome repaired = callInsonify(folder, {"log", "repair", log, "--to", "whole.0.log"});
-    EXPECT_EQ(repaired.code, 0);
-    EXPECT_EQ(repaired.out, "whole.0.log: 8 samples, lost in 1 places\n");
+    EXPECT_THAT(repaired, prints("whole.0.log: 8 samples, lost in 1 places\n"));
     EXPECT_THAT(repaired.err, testing::StartsWith("lost: out/wall.0.log: bytes "));
     const json valid = json::parse(callInsonify(folder, {"log", "check", "whole.0.log", "--json"}).out);
     EXPECT_TRUE(valid["valid"]);
@@ -203,9 +198,8 @@ TEST(LogFileTest, RefusesAFileThatIsNotALog) {
     writeFile(folder / "text.0.log", "POCOSIN, almost a log, and long enough for a prologue");
     for (const char* file : {"empty.0.log", "text.0.log", ".", "nowhere.0.log"}) {
         for (const char* command : {"info", "check"}) {
-            const Outcome outcome = callInsonify(folder, {"log", command, file});
-            EXPECT_EQ(outcome.code, 2) << command << " " << file;
-            EXPECT_THAT(outcome.err, HasSubstr(file));
+            EXPECT_THAT(callInsonify(folder, {"log", command, file}), isRefused(HasSubstr(file)))
+                << command << " " << file;
         }
     }
 }

@@ -11,8 +11,7 @@ using testing::Not;
 namespace {
 
 /** A log of the wall in out/wall.0.log: noiseless pings, pings with speckle, pings of a receiver with a TVG. */
-class LogMeaningTest : public testing::Test {
-protected:
+struct LogMeaningTest : testing::Test {
     LogMeaningTest()
         : folder_(replaced(replaced(replaced(wall_deployment, "  log:\n",
                                              "  receiver: {type: receiver::ReceiverTask, properties: {tvg: "
@@ -21,14 +20,12 @@ protected:
                                     "  - {from: noise.noisy, to: receiver.intensity}\n  - {from: receiver.ping, to: "
                                     "log.amplified, policy: {type: buffer, size: 64}}\n  - {from: noise.noisy,"),
                            "properties: {file: wall.gltf}", "properties: {file: wall.gltf, mount: {pitch_deg: 3}}")) {
-        const Outcome ran = folder_.run({"--pings", "2", "--seed", "5"});
-        EXPECT_EQ(ran.code, 0) << ran.err;
+        EXPECT_THAT(folder_.run({"--pings", "2", "--seed", "5"}), succeeds());
     }
     /** Returns the output of a python program on x.npz, exported from this stream. */
     std::string exported(const std::string& stream, const std::string& program) {
-        const Outcome written =
-            callInsonify(folder_, {"log", "export", "out/wall.0.log", "--stream", stream, "--to", "x.npz"});
-        EXPECT_EQ(written.code, 0) << written.err;
+        EXPECT_THAT(callInsonify(folder_, {"log", "export", "out/wall.0.log", "--stream", stream, "--to", "x.npz"}),
+                    succeeds());
         const Outcome said = python(
             folder_, "import json, numpy\nd = numpy.load('x.npz')\nmeta = json.loads(str(d['meta']))\n" + program);
         EXPECT_EQ(said.code, 0) << said.err;

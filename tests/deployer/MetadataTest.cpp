@@ -77,8 +77,7 @@ TEST(MetadataTest, TheExtensionStartsAValidDeployment) {
     // The networks of the testing machine do not matter here.
     for (std::string& word : words) word = std::regex_replace(word, std::regex("0\\.0\\.0\\.0"), "127.0.0.1");
     words.insert(words.end(), {"--set", "ping360.port=0", "--set", "ping1d.port=0", "--duration", "0.2"});
-    const Outcome outcome = callInsonify(TestFolder(), words);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(callInsonify(TestFolder(), words), succeeds());
 }
 
 TEST(MetadataTest, TheCitationHasTheFieldsOfItsFormat) {

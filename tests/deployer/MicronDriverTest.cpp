@@ -50,8 +50,7 @@ MicronDriver driverOn(const Wire& wire) {
     return {[&wire](const Bytes& bytes) { wire.say(bytes); }, [&wire] { return wire.receive(); }};
 }
 
-class MicronDriverTest : public ::testing::Test {
-protected:
+struct MicronDriverTest : ::testing::Test {
     void expectAWallAt6Metres(MicronDriver driver, bool low_resolution) {
         driver.reboot();
         EXPECT_EQ(driver.serialNumber(), 1);
@@ -114,8 +113,7 @@ TEST_F(MicronDriverTest, SurvivesAThousandReconnectsAndAClientThatDoesNotRead) {
     driver.configure({.resolution = 0.05, .max_distance = 10});
     driver.request();
     EXPECT_EQ(driver.beam().bins.size(), 200u);
-    const Outcome outcome = run_.stop();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(run_.stop(), succeeds());
 }
 
 /** As on a machine with too few processors, or whose clock is set forward: the line is late, but is sent. */

@@ -16,8 +16,7 @@ namespace {
 constexpr int half_width = 2 * 420 + 112;  ///< Half the width of the picture [px].
 
 /** The picture of the ping that completes the head's turn: at 20 s, turned about, 1.7 m north and 1.5 m west. */
-class MosaicRunTest : public testing::Test {
-protected:
+struct MosaicRunTest : testing::Test {
     static void SetUpTestSuite() {
         const deployer::TestFolder folder;
         const fs::path deployment = fs::path(test::source_dir) / "deploy/tank_mosaic.yml";

@@ -15,8 +15,7 @@ namespace {
 
 const std::string navigation = test::sourceFile("deploy/navigation.yml");
 
-class NavigationRunTest : public testing::Test {
-protected:
+struct NavigationRunTest : testing::Test {
     /** Runs it with a small, fast sonar. */
     void run(const std::string& out, std::vector<std::string> more = {}) {
         std::vector<std::string> words = {"run",   navigation,
@@ -25,8 +24,7 @@ protected:
                                           "--set", "sonar.bin_count=100",
                                           "--set", "sonar.quality={rows: 16, columns_per_beam: 1}"};
         words.insert(words.end(), more.begin(), more.end());
-        const Outcome outcome = callInsonify(folder_, words);
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(callInsonify(folder_, words), succeeds());
     }
     /** Returns the reader's output for a bag. */
     json read(const std::string& out) const {
@@ -37,9 +35,8 @@ protected:
         return reported;
     }
     std::string exported(const std::string& log, const std::string& stream) const {
-        const Outcome outcome =
-            callInsonify(folder_, {"log", "export", log, "--stream", stream, "--to", "of_" + stream + ".csv"});
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(folder_, {"log", "export", log, "--stream", stream, "--to", "of_" + stream + ".csv"}),
+                    succeeds());
         return readFile(folder_ / ("of_" + stream + ".csv"));
     }
     const TestFolder folder_;
@@ -144,10 +141,7 @@ connections:
   - {from: dvl.dvl, to: log.dvl, policy: {type: buffer, size: 256}}
   - {from: pressure.pressure, to: log.pressure, policy: {type: buffer, size: 256}}
 )");
-    const auto call = [&](std::vector<std::string> words) {
-        const Outcome outcome = callInsonify(folder_, words);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
-    };
+    const auto call = [&](std::vector<std::string> words) { EXPECT_THAT(callInsonify(folder_, words), succeeds()); };
     call({"run", "sensors.yml", "--out", "a"});
     call({"log", "cut", "a/x.0.log", "--to", "poses.0.log", "--stream", "motion.pose"});
     call({"replay", "poses.0.log", "sensors.yml", "--out", "b"});

@@ -13,8 +13,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class OculusRunTest : public testing::Test {
-protected:
+struct OculusRunTest : testing::Test {
     ~OculusRunTest() override {
         if (!ended_) end(SIGKILL);
     }

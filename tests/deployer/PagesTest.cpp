@@ -129,8 +129,8 @@ TEST_P(PagesTest, ItsCommandsWorkOneAfterTheOther) {
     size_t run = 0;
     for (const CodeBlock& block : page.blocks()) {
         if (!holdsCommands(block)) continue;
-        const Outcome outcome = runInBash(folder, block.text);
-        ASSERT_EQ(outcome.code, 0) << page.path() << ":" << block.line << "\n" << block.text << outcome.err;
+        ASSERT_THAT(runInBash(folder, block.text), succeeds()) << page.path() << ":" << block.line << "\n"
+                                                               << block.text;
         ++run;
     }
     const auto fences = std::ranges::count_if(
@@ -203,15 +203,14 @@ TEST(PagesTest, TheComponentBuildsAndRunsInADeployment) {
         "64}}\n";
     const WallFolder folder(deployment);
     writeFile(folder / "mean_echo.cpp", codeOf(readPage("components/framework/README.md"), "cpp"));
-    const Outcome built =
+    ASSERT_THAT(
         Process({"g++", "-std=c++20", "-shared", "-fPIC", "-I" + sources.string(),
                  "-I" + std::string(insonify::test::build_dir) + "/include", "mean_echo.cpp", "-o", "mean_echo.so"},
                 folder.path())
-            .wait();
-    ASSERT_EQ(built.code, 0) << built.err;
+            .wait(),
+        succeeds());
 
-    const Outcome outcome = folder.run({"--pings", "2"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(folder.run({"--pings", "2"}), succeeds());
     ASSERT_EQ(
         callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "mean.mean", "--to", "mean.csv"}).code, 0);
     EXPECT_TRUE(readFile(folder / "mean.csv").starts_with("time,value\n"));

@@ -28,8 +28,7 @@ std::vector<double> numbersIn(const std::string& text, const std::string& patter
 }
 
 /** The running deployment, and the output of the client. */
-class PingDriverTest : public testing::Test {
-protected:
+struct PingDriverTest : testing::Test {
     void SetUp() override {
         if (!insonify::pythonHas("brping"))
             GTEST_SKIP() << "PyPI's bluerobotics-ping is not in " << insonify::python()
@@ -44,8 +43,7 @@ protected:
     void TearDown() override {
         if (!run_) return;
         run_->signal(SIGINT);
-        const Outcome outcome = run_->wait();
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(run_->wait(), succeeds());
     }
     std::string udpPortOf(const std::string& task) const {
         const std::string text = readFile(folder_ / "stderr.txt");

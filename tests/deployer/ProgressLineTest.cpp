@@ -21,8 +21,7 @@ with open('seen.txt', 'wb') as seen:
         return data
     sys.exit(pty.spawn([')" + insonify::test::program("insonify") +
                                 R"(', 'run', 'wall.yml', '--duration', '1', '--out', 'out'], read) >> 8))";
-    const Outcome outcome = python(folder, program);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(python(folder, program), succeeds());
     EXPECT_THAT(readFile(folder / "seen.txt"), AllOf(HasSubstr(" of 1.0 s simulated"), HasSubstr(" % done, 1 s left")));
     EXPECT_THAT(folder.run({"--pings", "2"}).err, Not(HasSubstr("done")));
 }

@@ -16,9 +16,9 @@ json infoOf(const TestFolder& folder, const std::string& log) {
 TEST(ReplayCommandTest, AStreamReplacesItsPortAndItsTaskIsNotStarted) {
     const WallFolder folder;
     ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
-    const Outcome outcome =
-        callInsonify(folder, {"replay", "out/wall.0.log", "wall.yml", "--out", "again", "--summary", "summary.json"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(
+        callInsonify(folder, {"replay", "out/wall.0.log", "wall.yml", "--out", "again", "--summary", "summary.json"}),
+        succeeds());
     const json tasks = json::parse(readFile(folder / "summary.json"))["tasks"];
     for (const char* replaced_task : {"vehicle", "sonar", "noise"}) EXPECT_FALSE(tasks.contains(replaced_task));
     EXPECT_TRUE(tasks.contains("log"));
@@ -33,8 +33,7 @@ TEST(ReplayCommandTest, LoggedPosesGiveTheSamePings) {
     ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
     writeFile(folder / "full.yml", wall_deployment);
     ASSERT_EQ(callInsonify(folder, {"run", "full.yml", "--pings", "3", "--out", "direct"}).code, 0);
-    const Outcome outcome = callInsonify(folder, {"replay", "out/wall.0.log", "full.yml", "--out", "again"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(callInsonify(folder, {"replay", "out/wall.0.log", "full.yml", "--out", "again"}), succeeds());
     for (const char* run : {"direct", "again"})
         ASSERT_EQ(callInsonify(folder, {"log", "export", std::string(run) + "/wall.0.log", "--stream", "noise.noisy",
                                         "--to", std::string(run) + ".npz"})
@@ -79,8 +78,7 @@ TEST(ReplayCommandTest, ATruncatedLogIsReplayedUpToItsLastCompleteBlock) {
     const WallFolder folder;
     ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
     fs::resize_file(folder / "out/wall.0.log", fs::file_size(folder / "out/wall.0.log") - 5);
-    const Outcome outcome = callInsonify(folder, {"replay", "out/wall.0.log", "wall.yml", "--out", "again"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(callInsonify(folder, {"replay", "out/wall.0.log", "wall.yml", "--out", "again"}), succeeds());
     EXPECT_TRUE(infoOf(folder, "again/wall.0.log")["complete"]);
 }
 

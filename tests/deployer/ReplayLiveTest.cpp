@@ -12,8 +12,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class ReplayLiveTest : public testing::Test {
-protected:
+struct ReplayLiveTest : testing::Test {
     Outcome call(std::vector<std::string> words) const { return callInsonify(folder_, std::move(words)); }
     Outcome score(const std::string& log, std::vector<std::string> more = {}) const {
         std::vector<std::string> words = {"replay", log, "wall.yml", "--rerender", "--score", "--out", "scored"};
@@ -82,8 +81,7 @@ TEST_F(ReplayLiveTest, ExtrapolatedPosesAreLoggedAsUsedAndScoreZero) {
     recorded->forEachRef("sonar.ping", [&](const log::SampleRef& at) { carried += !poses.contains(at.time); });
     EXPECT_GT(carried, 0u) << "no ping was at another time than a pose";
 
-    const Outcome outcome = score("out/wall.0.log");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(score("out/wall.0.log"), succeeds());
     expectAllSame(4);
 }
 

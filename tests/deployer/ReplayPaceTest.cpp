@@ -20,8 +20,7 @@ using testing::Not;
 namespace {
 
 /** A log of pings at 1.0, 1.1 and 1.2 s. */
-class ReplayPaceTest : public testing::Test {
-protected:
+struct ReplayPaceTest : testing::Test {
     void SetUp() override { ASSERT_EQ(folder_.run({"--pings", "3"}).code, 0); }
     std::vector<std::string> words(const std::vector<std::string>& more) const {
         std::vector<std::string> all = {"replay", "out/wall.0.log", "wall.yml", "--out", "again"};
@@ -29,8 +28,7 @@ protected:
         return all;
     }
     void replay(const std::vector<std::string>& more) const {
-        const Outcome outcome = callInsonify(folder_, words(more));
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(callInsonify(folder_, words(more)), succeeds());
     }
     /** Times of the replayed pings [ms]. */
     std::vector<int64_t> stamps() const {
@@ -62,10 +60,9 @@ TEST_F(ReplayPaceTest, ACutAndAReplayStartAtTheSameStamp) {
 }
 
 TEST_F(ReplayPaceTest, RefusesAStartAfterTheLogsEnd) {
-    const Outcome outcome = callInsonify(folder_, words({"--from", "3"}));
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("from: is 3 s; the log ends 0.2 s after its start"));
-    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("nothing that would run it")));
+    EXPECT_THAT(callInsonify(folder_, words({"--from", "3"})),
+                isRefused(AllOf(HasSubstr("from: is 3 s; the log ends 0.2 s after its start"),
+                                testing::Not(HasSubstr("nothing that would run it")))));
 }
 
 TEST_F(ReplayPaceTest, ASettingOfASonarWhosePingsTheLogReplacesIsANotice) {
@@ -148,8 +145,7 @@ connections:
     EXPECT_TRUE(insonify::test::becomesTrue(
         [&] { return flushedSamples(folder_ / "again/again.0.log", "vehicle.pose") >= 4; }));
     process.signal(SIGINT);
-    const Outcome outcome = process.wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(process.wait(), succeeds());
     log::pocolog::Reader log(folder_ / "again/again.0.log");
     for (const log::SampleRef& at : log.samples()) {
         EXPECT_GE(at.received, at.time);

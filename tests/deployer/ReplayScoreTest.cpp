@@ -1,8 +1,6 @@
 // A log rendered again and compared with its pings.
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "tests/deployer/Wall.hpp"
@@ -15,11 +13,9 @@ using testing::HasSubstr;
 namespace {
 
 /** out/wall.0.log of the wall's deployment, and scores compared with it. */
-class ReplayScoreTest : public testing::Test {
-protected:
+struct ReplayScoreTest : testing::Test {
     void record(std::vector<std::string> more = {"--pings", "3"}) {
-        const Outcome outcome = folder_.run(std::move(more));
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(folder_.run(std::move(more)), succeeds());
     }
     Outcome score(const std::string& log, std::vector<std::string> more = {}) const {
         std::vector<std::string> words = {"replay", log, "wall.yml", "--rerender", "--score", "--out", "scored"};
@@ -76,9 +72,8 @@ protected:
 
 TEST_F(ReplayScoreTest, ASimulatedLogScoresRelativeL2ZeroAndCorrelationOne) {
     record();
-    const Outcome outcome = score("out/wall.0.log");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("noise.noisy: 3 pings compared; relative L2 0 to 0, median 0\n"));
+    ASSERT_THAT(score("out/wall.0.log"),
+                prints(HasSubstr("noise.noisy: 3 pings compared; relative L2 0 to 0, median 0\n")));
     for (const auto& [name, stream] : streams()) expectSame(stream);
     EXPECT_TRUE(fs::exists(folder_ / "scored/score_000005.png")) << "three pings of each stream";
     EXPECT_FALSE(fs::exists(folder_ / "scored/score_000006.png"));
@@ -87,12 +82,10 @@ TEST_F(ReplayScoreTest, ASimulatedLogScoresRelativeL2ZeroAndCorrelationOne) {
 TEST_F(ReplayScoreTest, PointTargetsAreInTheReplayAsInTheRun) {
     const std::string target = "scene.targets=[{name: buoy, position: [6, 0.5, 0], strength_db: 10}]";
     record({"--pings", "3", "--set", target});
-    const Outcome outcome = score("out/wall.0.log");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(score("out/wall.0.log"), succeeds());
     for (const auto& [name, stream] : streams()) expectSame(stream);
     fs::remove_all(folder_ / "scored");
-    const Outcome without = score("out/wall.0.log", {"--set", "scene.targets=[]"});
-    ASSERT_EQ(without.code, 0) << without.err;
+    ASSERT_THAT(score("out/wall.0.log", {"--set", "scene.targets=[]"}), succeeds());
     for (const auto& [name, stream] : streams())
         for (const json& ping : stream["pings"]) EXPECT_GT(ping["rel_l2"], 0.1);
 }
@@ -100,8 +93,7 @@ TEST_F(ReplayScoreTest, PointTargetsAreInTheReplayAsInTheRun) {
 TEST_F(ReplayScoreTest, PosesShiftedByTenCentimetresScoreWorse) {
     record();
     shiftPoses(0);
-    const Outcome outcome = score("shifted.0.log");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(score("shifted.0.log"), succeeds());
     for (const auto& [name, stream] : streams())
         for (const json& ping : stream["pings"]) {
             RecordProperty(name + "_rel_l2", ping["rel_l2"].dump());
@@ -174,8 +166,7 @@ TEST_F(ReplayScoreTest, UsesTheLogsChosenQuality) {
     const json first = quality("first.json");
     ASSERT_FALSE(first["predicted_error"].is_null()) << "the sonar chose it";
     for (const char* from : {"0", "0.1"}) {
-        const Outcome outcome = score("out/wall.0.log", {"--from", from, "--summary", "again.json"});
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(score("out/wall.0.log", {"--from", from, "--summary", "again.json"}), succeeds());
         for (const auto& [name, stream] : streams()) {
             EXPECT_GE(stream["compared"], 2) << name;
             for (const json& ping : stream["pings"]) EXPECT_EQ(ping["rel_l2"], 0) << name;
@@ -205,13 +196,11 @@ TEST_F(ReplayScoreTest, AnErrorOfAValueFromTheLogNamesTheLog) {
     writeFile(folder_ / "other.gltf", readFile(folder_ / "wall.gltf"));
     record({"--pings", "3", "--set", "scene.file=other.gltf"});
     fs::remove(folder_ / "other.gltf");
-    const Outcome outcome = score("out/wall.0.log");
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("out/wall.0.log: tasks.scene.properties.file: "));
-    EXPECT_THAT(outcome.err, HasSubstr("; the value is the log's, and --set overrides it\n"));
-    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("--set: ")));
-    const Outcome overridden = score("out/wall.0.log", {"--set", "scene.file=wall.gltf"});
-    EXPECT_EQ(overridden.code, 0) << overridden.err;
+    EXPECT_THAT(score("out/wall.0.log"),
+                isRefused(AllOf(HasSubstr("out/wall.0.log: tasks.scene.properties.file: "),
+                                HasSubstr("; the value is the log's, and --set overrides it\n"),
+                                testing::Not(HasSubstr("--set: ")))));
+    EXPECT_THAT(score("out/wall.0.log", {"--set", "scene.file=wall.gltf"}), succeeds());
 }
 
 TEST_F(ReplayScoreTest, AScanningSonarScoresAsWell) {
@@ -221,12 +210,10 @@ TEST_F(ReplayScoreTest, AScanningSonarScoresAsWell) {
     scanning = replaced(scanning, "      field_of_view_deg: 60\n", "");
     writeFile(folder_ / "wall.yml", scanning);
     record();
-    const Outcome outcome = score("out/wall.0.log");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(score("out/wall.0.log"), succeeds());
     for (const auto& [name, stream] : streams()) expectSame(stream);
-    const Outcome middle = score("out/wall.0.log", {"--from", "0.1"});
-    EXPECT_EQ(middle.code, 2);
-    EXPECT_THAT(middle.err, HasSubstr("tasks.sonar: is a scanning sonar, whose head starts at its left limit"));
+    EXPECT_THAT(score("out/wall.0.log", {"--from", "0.1"}),
+                isRefused(HasSubstr("tasks.sonar: is a scanning sonar, whose head starts at its left limit")));
 }
 
 TEST_F(ReplayScoreTest, LevelsAreComparedAsEnergies) {
@@ -274,9 +261,7 @@ TEST_F(ReplayScoreTest, RefusesWhatCannotBeScored) {
         "  - {from: noise.noisy, to: log.noisy, policy: {type: buffer, size: 64}}\n", "");
     writeFile(folder_ / "wall.yml", pose_only);
     record();
-    const Outcome outcome = score("out/wall.0.log");
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("holds no pings of a task of wall.yml"));
+    EXPECT_THAT(score("out/wall.0.log"), isRefused(HasSubstr("holds no pings of a task of wall.yml")));
     EXPECT_FALSE(fs::exists(folder_ / "scored"));
 }
 
@@ -285,7 +270,6 @@ TEST_F(ReplayScoreTest, ALogWithoutPosesIsRefused) {
         folder_ / "wall.yml",
         replaced(wall_deployment, "  - {from: vehicle.pose, to: log.pose, policy: {type: buffer, size: 64}}\n", ""));
     record();
-    const Outcome outcome = score("out/wall.0.log");
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("none of its streams is of a task of wall.yml before its sonars"));
+    EXPECT_THAT(score("out/wall.0.log"),
+                isRefused(HasSubstr("none of its streams is of a task of wall.yml before its sonars")));
 }

@@ -15,8 +15,7 @@ namespace ros = insonify::ros;
 namespace {
 
 /** Runs a deployment for two pings, logged as MCAP. */
-class RosArgumentsTest : public testing::Test {
-protected:
+struct RosArgumentsTest : testing::Test {
     Outcome run(std::vector<std::string> ros_args, const std::string& deployment = "wall.yml") {
         std::vector<std::string> words = {"run", deployment, "--out",           "out",       "--pings",
                                           "2",   "--set",    "log.file=x.mcap", "--ros-args"};
@@ -52,8 +51,7 @@ const std::string fleet = "namespace: auv1\nframe_prefix: auv1\n" + wall_deploym
 
 TEST_F(RosArgumentsTest, ALogHasTheNamespaceAndFramePrefixOfRos) {
     writeFile(folder / "fleet.yml", fleet);
-    const Outcome outcome = run({}, "fleet.yml");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(run({}, "fleet.yml"), succeeds());
     EXPECT_THAT(topics(), ElementsAre("/auv1/sonar/ping", "/auv1/noise/noisy", "/auv1/vehicle/pose"));
     EXPECT_EQ(first<ros::ProjectedSonarImage>("sonar.ping").header.frame_id, "auv1/sonar");
     EXPECT_EQ(first<ros::Odometry>("vehicle.pose").child_frame_id, "auv1/body");
@@ -71,10 +69,8 @@ TEST_F(RosArgumentsTest, ALogHasTheNamespaceAndFramePrefixOfRos) {
 
 TEST_F(RosArgumentsTest, ReplaysALogInANamespace) {
     ASSERT_EQ(run({"-r", "__ns:=/auv2", "-p", "frame_prefix:=auv2"}).code, 0);
-    const Outcome outcome =
-        callInsonify(folder, {"replay", "out/x.mcap", "wall.yml", "--rerender", "--score", "--out", "again"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("sonar.ping"));
+    EXPECT_THAT(callInsonify(folder, {"replay", "out/x.mcap", "wall.yml", "--rerender", "--score", "--out", "again"}),
+                prints(HasSubstr("sonar.ping")));
 }
 
 TEST_F(RosArgumentsTest, WithoutNamesTheLogIsTheSameBitForBit) {
@@ -157,8 +153,7 @@ TEST_F(RosArgumentsTest, WrongArgumentsAreOneErrorEach) {
         {{"--params-file", "key.yaml"}, "key.yaml:4:7: sonar.rang: is not a key here; did you mean range?"}};
     for (const auto& [words, message] : wrong) {
         const Outcome outcome = run(words);
-        EXPECT_EQ(outcome.code, 2) << message;
-        EXPECT_THAT(outcome.err, HasSubstr(message));
+        EXPECT_THAT(outcome, isRefused(HasSubstr(message))) << message;
         EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
         EXPECT_EQ(outcome.out, "");
     }

@@ -123,8 +123,7 @@ TEST(SceneCommandTest, ListsOmittedParts) {
 TEST(SceneCommandTest, AFileThatIsNotASceneIsAnErrorThatNamesTheFormats) {
     const TestFolder folder;
     writeFile(folder / "wall.blend", "BLENDER");
-    const Outcome wrong = callInsonify(folder, {"scene", "wall.blend"});
-    EXPECT_EQ(wrong.code, 2);
-    EXPECT_THAT(wrong.err, HasSubstr("may be .gltf, .glb, .world, .sdf or .urdf"));
+    EXPECT_THAT(callInsonify(folder, {"scene", "wall.blend"}),
+                isRefused(HasSubstr("may be .gltf, .glb, .world, .sdf or .urdf")));
     EXPECT_EQ(callInsonify(folder, {"scene", "nowhere.glb"}).code, 2);
 }

@@ -12,8 +12,7 @@ using testing::Not;
 
 namespace {
 
-class SchemaTest : public testing::Test {
-protected:
+struct SchemaTest : testing::Test {
     void SetUp() override {
         if (python(folder_, "import jsonschema, yaml").code != 0)
             GTEST_SKIP() << "python3-jsonschema and python3-yaml are not installed; scripts/setup does that";

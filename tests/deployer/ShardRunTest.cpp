@@ -72,8 +72,7 @@ std::map<std::string, std::string> filesIn(const fs::path& folder) {
     return files;
 }
 
-class Shards : public WallFolder {
-public:
+struct Shards : WallFolder {
     using WallFolder::WallFolder;
 
     Outcome make(const std::string& shard, const std::string& out = "shards",
@@ -84,8 +83,7 @@ public:
     }
     void makeAll(int count, const std::vector<std::string>& more = {}, const std::string& out = "shards") const {
         for (int i = count - 1; i >= 0; --i) {
-            const Outcome outcome = make(std::to_string(i) + "/" + std::to_string(count), out, more);
-            ASSERT_EQ(outcome.code, 0) << outcome.err;
+            ASSERT_THAT(make(std::to_string(i) + "/" + std::to_string(count), out, more), succeeds());
         }
     }
     /** All pictures, and the joined log. */
@@ -101,16 +99,14 @@ public:
         }
         fs::create_directory(*this / "joined");
         words.insert(words.end(), {"--to", "joined/" + log});
-        const Outcome outcome = callInsonify(*this, words);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(*this, words), succeeds());
         all[log] = readFile(path() / "joined" / log);
         return all;
     }
     /** The same files of the whole run, with a copy of its log. */
     std::map<std::string, std::string> whole(const std::vector<std::string>& more = {},
                                              const std::string& log = "wall.0.log") const {
-        const Outcome outcome = run(more);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(run(more), succeeds());
         fs::create_directory(*this / "whole");
         EXPECT_EQ(callInsonify(*this, {"log", "cut", "out/" + log, "--to", "whole/" + log}).code, 0);
         std::map<std::string, std::string> all = filesIn(path() / "out");
@@ -165,8 +161,7 @@ TEST(ShardRunTest, TracesRaysOnAnyDeviceUnlessVisibilityIsSet) {
         std::vector<std::string> words = {"env", "INSONIFY_EGL_DEVICE=software"};
         std::ranges::copy(insonifyWords({"run", "wall.yml", "--out", "shards", "--pings", "2", "--shard", "1/2"}),
                           std::back_inserter(words));
-        const Outcome made = Process(words, folder.path()).wait();
-        EXPECT_EQ(made.code, 0) << made.err;
+        EXPECT_THAT(Process(words, folder.path()).wait(), succeeds());
         const insonify::log::pocolog::Reader log(folder.path() / "shards/shard_1_of_2/wall.0.log");
         const std::string plan = log.metadatum("insonify_plan");
         const size_t device = plan.find("\"device\": ");
@@ -235,10 +230,8 @@ TEST(ShardRunTest, AFinishedShardIsLeftUnchanged) {
     const Shards folder(movingWall());
     folder.makeAll(2, {"--pings", "6"});
     const auto before = fs::last_write_time(folder.path() / "shards/shard_1_of_2/wall.0.log");
-    const Outcome again = folder.make("1/2", "shards", {"--pings", "6"});
-    EXPECT_EQ(again.code, 0) << again.err;
-    EXPECT_THAT(again.out, HasSubstr("shard 1/2: 3 pings from 3 on, of 6; "));
-    EXPECT_THAT(again.out, HasSubstr("files existed already"));
+    EXPECT_THAT(folder.make("1/2", "shards", {"--pings", "6"}),
+                prints(AllOf(HasSubstr("shard 1/2: 3 pings from 3 on, of 6; "), HasSubstr("files existed already"))));
     EXPECT_EQ(fs::last_write_time(folder.path() / "shards/shard_1_of_2/wall.0.log"), before);
 }
 
@@ -354,17 +347,13 @@ TEST(ShardRunTest, ReportsAnInvalidShardWithTheOption) {
                                                       {"-1/2", "it must be i/N, whole numbers"},
                                                       {"abc", "it must be i/N, whole numbers"}};
     for (const auto& [shard, why] : wrong) {
-        const Outcome outcome = folder.make(shard);
-        EXPECT_EQ(outcome.code, 2) << shard;
-        EXPECT_THAT(outcome.err, AllOf(HasSubstr("--shard"), HasSubstr(why)));
+        EXPECT_THAT(folder.make(shard), isRefused(AllOf(HasSubstr("--shard"), HasSubstr(why)))) << shard;
         EXPECT_FALSE(fs::exists(folder / "shards"));
     }
-    const Outcome nowhere = callInsonify(folder, {"run", "wall.yml", "--shard", "0/2"});
-    EXPECT_EQ(nowhere.code, 2);
-    EXPECT_THAT(nowhere.err, HasSubstr("--out: is missing; all shards of a run share a folder"));
-    const Outcome many = folder.make("0/4", "shards", {"--pings", "3"});
-    EXPECT_EQ(many.code, 2);
-    EXPECT_THAT(many.err, HasSubstr("the run has 3 pings, and so 3 shards at most"));
+    EXPECT_THAT(callInsonify(folder, {"run", "wall.yml", "--shard", "0/2"}),
+                isRefused(HasSubstr("--out: is missing; all shards of a run share a folder")));
+    EXPECT_THAT(folder.make("0/4", "shards", {"--pings", "3"}),
+                isRefused(HasSubstr("the run has 3 pings, and so 3 shards at most")));
     EXPECT_TRUE(fs::is_empty(folder / "shards"));
     EXPECT_EQ(folder.make("0/2", "shards", {"--call", "log.stop"}).code, 2);
 }
@@ -373,9 +362,8 @@ TEST(ShardRunTest, AFolderAcceptsTheShardsOfOneRunOnly) {
     const Shards folder;
     ASSERT_EQ(folder.make("0/2", "shards", {"--pings", "4"}).code, 0);
     const auto expectRefused = [&](const std::string& shard, std::vector<std::string> more, const std::string& why) {
-        const Outcome outcome = folder.make(shard, "shards", more);
-        EXPECT_EQ(outcome.code, 2);
-        EXPECT_THAT(outcome.err, AllOf(HasSubstr("shards: --out: holds shards of "), HasSubstr(why)));
+        EXPECT_THAT(folder.make(shard, "shards", more),
+                    isRefused(AllOf(HasSubstr("shards: --out: holds shards of "), HasSubstr(why))));
     };
     expectRefused("1/3", {"--pings", "4"}, "holds shards of 2, and this is one of 3");
     expectRefused("1/2", {"--pings", "5"}, "pings is 4 there, and 5 here");

@@ -16,8 +16,7 @@ struct Restarted {
     double z = 0;  ///< Height of the vehicle in WholeLabelsTest [m].
 };
 
-class RestartTest : public testing::TestWithParam<Restarted> {
-protected:
+struct RestartTest : testing::TestWithParam<Restarted> {
     Simulation made() const {
         SimulationOptions options;
         options.overrides = GetParam().set;

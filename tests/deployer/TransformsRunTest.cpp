@@ -16,8 +16,7 @@ namespace {
 
 constexpr int ping_count = 6;
 
-class TransformsRunTest : public testing::Test {
-protected:
+struct TransformsRunTest : testing::Test {
     void SetUp() override {
         if (!pythonHas("mcap, mcap_ros2, rosbags, numpy"))
             GTEST_SKIP() << "SKIPPED: Python packages mcap, mcap_ros2, rosbags and numpy; scripts/setup installs them";
@@ -50,9 +49,8 @@ protected:
         return {{"pings", json::array()}};
     }
     /** Whether each ping's frame is at the sonar's place by pose and mount. @param toWorld from Rock's axes */
-    template <class ToWorld>
     static void expectPlaces(const json& pings, const WallFolder& folder, const types::Mount& mount,
-                             const ToWorld& toWorld, bool z_forward) {
+                             const auto& toWorld, bool z_forward) {
         std::map<int64_t, types::Pose> poses;
         log::openLog(folder / "out/wall.0.log")
             ->forEach<types::Pose>("vehicle.pose", [&](const types::Pose& pose, const log::SampleRef&) {
@@ -103,9 +101,9 @@ TEST_F(TransformsRunTest, LeadFromEachPingByTheMountAndThePoseToTheWorld) {
         const types::Mount mount = randomMount();
         const WallFolder folder(deployment(mount, each.mcap));
         ASSERT_EQ(folder.run(six_pings).code, 0);
-        const Outcome logged =
-            callInsonify(folder, {"run", "wall.yml", "--out", "bag", "--pings", "6", "--set", "log.file=wall.0.mcap"});
-        ASSERT_EQ(logged.code, 0) << logged.err;
+        ASSERT_THAT(
+            callInsonify(folder, {"run", "wall.yml", "--out", "bag", "--pings", "6", "--set", "log.file=wall.0.mcap"}),
+            succeeds());
         const json found = followed(folder, "bag/wall.0.mcap");
         expectPlaces(found["pings"], folder, mount, each.to_world, each.z_forward);
         EXPECT_EQ(found["topics"]["/tf"], ping_count);
@@ -142,8 +140,7 @@ TEST_F(TransformsRunTest, AreInExportedAndCutBagsAndNotStreams) {
 TEST_F(TransformsRunTest, ABagReplaysAndScoresTheSameWithAndWithoutThem) {
     const WallFolder folder(deployment(types::Mount{{0.5, 0, 0}, 0, 5, 0}, "world_frame: ned"));
     const auto call = [&](std::vector<std::string> words) {
-        const Outcome outcome = callInsonify(folder, std::move(words));
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(folder, std::move(words)), succeeds());
     };
     for (const std::string transforms : {"true", "false"}) {
         call({"run", "wall.yml", "--out", transforms, "--pings", "6", "--set", "log.file=wall.0.mcap", "--set",

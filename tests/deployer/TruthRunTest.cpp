@@ -10,19 +10,17 @@ using namespace insonify::deployer;
 namespace {
 
 /** Two pings of a smaller sonar, in out/. */
-class TruthRunTest : public testing::Test {
-protected:
+struct TruthRunTest : testing::Test {
     void SetUp() override {
-        const Outcome ran = callInsonify(
-            folder_, {"run", fs::path(insonify::test::source_dir) / "deploy/truth.yml", "--pings", "2", "--out", "out",
-                      "--set", "sonar.beam_count=64", "--set", "sonar.bin_count=200", "--set", "picture.width=800"});
-        ASSERT_EQ(ran.code, 0) << ran.err;
+        ASSERT_THAT(callInsonify(folder_, {"run", fs::path(insonify::test::source_dir) / "deploy/truth.yml", "--pings",
+                                           "2", "--out", "out", "--set", "sonar.beam_count=64", "--set",
+                                           "sonar.bin_count=200", "--set", "picture.width=800"}),
+                    succeeds());
     }
     void exportTo(const std::string& file, const std::string& log, const std::string& stream) {
         std::vector<std::string> words = {"log", "export", log, "--to", file};
         if (!stream.empty()) words.insert(words.end(), {"--stream", stream});
-        const Outcome outcome = callInsonify(folder_, words);
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(callInsonify(folder_, words), succeeds());
     }
     /** Returns the output of python with numpy and json, with the arrays of a file as `x`. */
     std::string arraysSay(const std::string& file, const std::string& program) {
@@ -70,8 +68,7 @@ TEST_F(TruthRunTest, McapHasTheSame) {
     exportTo("told.mcap", "out/truth.0.log", "");
     exportTo("a.npz", "out/truth.0.log", "sonar.truth");
     exportTo("b.npz", "told.mcap", "sonar.truth");
-    const Outcome checked = callInsonify(folder_, {"log", "check", "told.mcap"});
-    EXPECT_EQ(checked.code, 0) << checked.err;
+    EXPECT_THAT(callInsonify(folder_, {"log", "check", "told.mcap"}), succeeds());
     if (!insonify::pythonHas("numpy")) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
     EXPECT_EQ(arraysSay("a.npz", "y = np.load('" + (folder_ / "b.npz").string() + R"(')
 print(all(x[k].tobytes() == y[k].tobytes() for k in x.files if k != 'meta'), len(x.files)))"),

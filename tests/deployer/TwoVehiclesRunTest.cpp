@@ -47,8 +47,7 @@ TEST(TwoVehiclesRunTest, EachReceivesTheOthersEchoAtItsRange) {
     const TestFolder folder;
     writeFile(folder / "case.world", world);
     writeFile(folder / "two.yml", two_vehicles);
-    const Outcome run = callInsonify(folder, {"run", "two.yml", "--pings", "2", "--out", "out"});
-    ASSERT_EQ(run.code, 0) << run.err;
+    ASSERT_THAT(callInsonify(folder, {"run", "two.yml", "--pings", "2", "--out", "out"}), succeeds());
     // sonars are 1.5 and 3 m in front of their hulls' middles, the other's bow is 2 and 1 m in front of its own: 16.5
     // and 16 m
     EXPECT_EQ(firstEcho(exportedPings(folder, "out/x.0.log", "red_sonar.ping").back()), 165u);

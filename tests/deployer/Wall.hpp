@@ -1,31 +1,17 @@
 #pragma once
 // A minimal deployment: a sonar 10 m in front of a wall, and a log.
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <vector>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Base64.hpp"
 
 namespace insonify::deployer {
 
-inline std::string base64(const std::string& bytes) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (size_t i = 0; i < bytes.size(); i += 3) {
-        uint32_t three = 0;
-        for (size_t k = 0; k < 3; ++k)
-            three = three << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0);
-        for (size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : digits[three >> (18 - 6 * k) & 63];
-    }
-    return text;
-}
-
 template <class T>
 std::string bytesOf(const std::vector<T>& values) {
-    std::string bytes(values.size() * sizeof(T), '\0');
-    std::memcpy(bytes.data(), values.data(), bytes.size());
-    return bytes;
+    return test::bytesOf(std::span(values));
 }
 
 /** A glTF file of one mesh; positions are x, y, z in glTF's own axes (y up). */
@@ -42,7 +28,7 @@ inline std::string gltfOf(const std::vector<float>& positions, const std::vector
            std::to_string(split) + R"(}, {"buffer": 0, "byteOffset": )" + std::to_string(split) +
            R"(, "byteLength": )" + std::to_string(data.size() - split) + R"(}],
 "buffers": [{"byteLength": )" +
-           std::to_string(data.size()) + R"(, "uri": "data:application/octet-stream;base64,)" + base64(data) +
+           std::to_string(data.size()) + R"(, "uri": "data:application/octet-stream;base64,)" + test::base64(data) +
            R"("}]})";
 }
 
@@ -102,8 +88,7 @@ inline std::string realtimeWall() {
 }
 
 /** A folder with wall.yml and wall.gltf. */
-class WallFolder : public TestFolder {
-public:
+struct WallFolder : TestFolder {
     explicit WallFolder(const std::string& deployment = wall_deployment, const std::string& gltf = wallGltf()) {
         writeFile(*this / "wall.yml", deployment);
         writeFile(*this / "wall.gltf", gltf);

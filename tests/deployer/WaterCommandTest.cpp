@@ -60,10 +60,9 @@ TEST(WaterCommandTest, OutsideAFormulasValidityWarnsOfTheRangeWithAFiniteResult)
 
 TEST(WaterCommandTest, PrintsATableForReaders) {
     const TestFolder folder;
-    const Outcome outcome = callInsonify(folder, {"water", "--frequency-khz", "750"});
-    EXPECT_EQ(outcome.code, 0);
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("leroy"), HasSubstr("1489."), HasSubstr("750 kHz"), HasSubstr("0.22"),
-                                   HasSubstr("warning: thorp at 750 kHz is extrapolated: 750 kHz (0.1 to 50)")));
+    EXPECT_THAT(callInsonify(folder, {"water", "--frequency-khz", "750"}),
+                prints(AllOf(HasSubstr("leroy"), HasSubstr("1489."), HasSubstr("750 kHz"), HasSubstr("0.22"),
+                             HasSubstr("warning: thorp at 750 kHz is extrapolated: 750 kHz (0.1 to 50)"))));
 }
 
 TEST(WaterCommandTest, RefusesInvalidOrInfiniteNumbers) {
@@ -83,8 +82,7 @@ TEST(WaterCommandTest, RefusesInvalidOrInfiniteNumbers) {
         std::vector<std::string> words{"water"};
         words.insert(words.end(), options.begin(), options.end());
         const Outcome outcome = callInsonify(folder, words);
-        EXPECT_EQ(outcome.code, 2) << options[0] << ' ' << options[1];
-        EXPECT_THAT(outcome.err, HasSubstr(options[0])) << options[1];
+        EXPECT_THAT(outcome, isRefused(HasSubstr(options[0]))) << options[0] << ' ' << options[1] << options[1];
         EXPECT_THAT(outcome.out, Not(HasSubstr("m/s"))) << options[1];
     }
 }

@@ -5,7 +5,6 @@
 
 #include "components/device/MicronEmulator.hpp"
 #include "tests/support/MicronDriver.hpp"
-#include "types/Angle.hpp"
 
 namespace insonify::device {
 namespace {
@@ -16,8 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-class MicronEmulatorTest : public ::testing::Test {
-protected:
+struct MicronEmulatorTest : ::testing::Test {
     MicronEmulatorTest() {
         emulator_.opened(client);
         advance(0);

@@ -62,8 +62,7 @@ private:
     int file_;
 };
 
-class NetworkTest : public testing::Test {
-protected:
+struct NetworkTest : testing::Test {
     /** Returns the next events, as soon as there are enough of a kind; fewer after ten seconds. */
     std::vector<NetworkEvent> await(Kind kind, size_t count = 1) { return await(network_, kind, count); }
     static std::vector<NetworkEvent> await(Network& network, Kind kind, size_t count = 1) {

@@ -16,8 +16,7 @@ OculusFire metres(double range, uint8_t rate = 0, uint8_t mode = 1) {
     return {.mode = mode, .rate = rate, .range = range};
 }
 
-class OculusEmulatorTest : public ::testing::Test {
-protected:
+struct OculusEmulatorTest : ::testing::Test {
     using Due = OculusEmulator::Due;
 
     explicit OculusEmulatorTest(OculusConfig config = {}) : emulator_(config, now_) {}

@@ -32,8 +32,7 @@ std::vector<Bytes> realPings() {
     return messages;
 }
 
-class OculusRecordingTest : public ::testing::Test {
-protected:
+struct OculusRecordingTest : ::testing::Test {
     /** Pings 1, 2, 3, at intervals of a tenth of a second. */
     void record() const {
         OculusRecorder recorder(file_, {.time = 1700000000});

@@ -53,8 +53,7 @@ private:
     }
 };
 
-class OculusTaskTest : public ::testing::Test {
-protected:
+struct OculusTaskTest : ::testing::Test {
     OculusTaskTest() {
         registry_.add<EchoTask>("test::EchoTask", "");
         registerTasks(registry_);

@@ -8,8 +8,7 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-class Ping1dEmulatorTest : public ::testing::Test {
-protected:
+struct Ping1dEmulatorTest : ::testing::Test {
     template <class Message>
     Message request() {
         bench_.say(PingGeneralRequest{Message::message});

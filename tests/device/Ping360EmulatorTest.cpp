@@ -14,8 +14,7 @@ constexpr double listened = 600 * 100 * 25e-9;  ///< [s]
 
 Ping360Transducer transmitAt(uint16_t angle) { return {1, angle, acoustics, 1, 0}; }
 
-class Ping360EmulatorTest : public ::testing::Test {
-protected:
+struct Ping360EmulatorTest : ::testing::Test {
     /** Returns the angles of a scan's next pings. */
     std::vector<int> anglesOf(int pings) {
         std::vector<int> angles;

@@ -35,10 +35,7 @@ class Driver {
 public:
     explicit Driver(DriverLine line) : line_(std::move(line)) {}
     void give(const Bytes& bytes) const { line_.send(bytes); }
-    template <class Message>
-    void say(const Message& message) const {
-        give(pingBytes(message));
-    }
+    void say(const auto& message) const { give(pingBytes(message)); }
     std::vector<PingFrame> received() {
         reader_.add(line_.receive(std::chrono::milliseconds(1)));
         std::vector<PingFrame> frames;
@@ -51,15 +48,13 @@ private:
     PingFrameReader reader_{4096};
 };
 
-class Ping360TaskTest : public ::testing::Test {
-protected:
+struct Ping360TaskTest : ::testing::Test {
     void SetUp() override {
         task_.environment().output_folder = folder_.path();
         task_.config.set(quickConfig());
         task_.settings.connectTo(asked_.port, framework::ConnPolicy::buffer(4));
         pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(4));
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     DriverLine udp() const { return DriverLine::udp("127.0.0.1", task_.portOf(PingDeviceTask::udp)); }
     DriverLine tcp() const {
@@ -207,8 +202,7 @@ TEST(Ping1dTaskTest, AnswersByDatagram) {
     Ping1dTaskConfig config;
     config.ends.port = 0;
     task.config.set(config);
-    ASSERT_TRUE(task.configure()) << task.lastError();
-    ASSERT_TRUE(task.start()) << task.lastError();
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     Driver driver(DriverLine::udp("127.0.0.1", task.portOf(PingDeviceTask::udp)));
     driver.say(PingGeneralRequest{PingDeviceInformation::message});
     std::optional<PingDeviceInformation> about;

@@ -30,8 +30,7 @@ public:
 
     types::Time now() const { return now_; }
     /** Sends a message as a client. */
-    template <class Message>
-    void say(const Message& message, PingClient client = 1, uint8_t destination = 0) {
+    void say(const auto& message, PingClient client = 1, uint8_t destination = 0) {
         give(pingBytes(message, 0, destination), client, false);
     }
     void give(const Bytes& bytes, PingClient client = 1, bool datagram = true) {

@@ -20,8 +20,7 @@ struct Datagram {
     Bytes bytes;
 };
 
-class Sonar3dEmulatorTest : public ::testing::Test {
-protected:
+struct Sonar3dEmulatorTest : ::testing::Test {
     HttpReply get(const std::string& path) { return emulator_.answer({"GET", prefix + path, ""}, now_); }
     HttpReply post(const std::string& path, const std::string& body) {
         return emulator_.answer({"POST", prefix + path, body}, now_);

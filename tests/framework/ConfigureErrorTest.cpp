@@ -13,10 +13,7 @@ struct Stickler : TaskContext {
     using TaskContext::TaskContext;
     struct Config {
         double port = 1;
-        template <class Self, class V>
-        static void describe(Self& self, V& visit) {
-            visit(types::Field{"port", "1", "to listen on"}, self.port);
-        }
+        static void describe(auto& self, auto& visit) { visit({"port", "1", "to listen on"}, self.port); }
     };
     Properties<Config> config{this};
     bool configureHook() override { throw types::ConfigError("", name() + ".port", "is taken"); }

@@ -251,10 +251,7 @@ TEST(DeploymentRunTest, TheRunsSeedReachesEveryTaskWithASeed) {
 /** Has a seed with too few bits for a hash. */
 struct NarrowConfig {
     int seed = 3;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"seed", "1", "of 31 bits", 0, 1e9}, self.seed);
-    }
+    static void describe(auto& self, auto& visit) { visit({"seed", "1", "of 31 bits", 0, 1e9}, self.seed); }
 };
 struct Narrow : TaskContext {
     using TaskContext::TaskContext;

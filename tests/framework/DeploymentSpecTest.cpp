@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "components/framework/DeploymentSpec.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Refused.hpp"

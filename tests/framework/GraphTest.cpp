@@ -101,8 +101,7 @@ TEST(GraphTest, ReportsErrorsOfSourcesAndFailures) {
     Graph graph;
     auto& gun = add<Misfire>(graph, "gun");
     graph.arrange();
-    ASSERT_TRUE(gun.configure());
-    ASSERT_TRUE(gun.start());
+    ASSERT_TRUE(gun.configure() && gun.start()) << gun.lastError();
     EXPECT_FALSE(graph.hasSourceInError());
     gun.update();
     EXPECT_TRUE(graph.hasSourceInError());

@@ -82,10 +82,9 @@ TEST(OperationTest, TransitionsAreOperationsThatReportWhyTheyAreRefused) {
 struct WheelConfig {
     double radius = 1;
     int spoke_count = 8;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"radius", "m", "of the rim", 0.1, 10}, self.radius);
-        visit(types::Field{"spoke_count", "1", "an even number", 2, 100}, self.spoke_count);
+    static void describe(auto& self, auto& visit) {
+        visit({"radius", "m", "of the rim", 0.1, 10}, self.radius);
+        visit({"spoke_count", "1", "an even number", 2, 100}, self.spoke_count);
     }
     void check(types::Diagnostics& diagnostics) const {
         if (spoke_count % 2) diagnostics.push_back({"spoke_count", "is odd; must be even"});

@@ -16,10 +16,9 @@ enum class Law { Rayleigh, Gaussian };
 struct Speckle {
     Law law = Law::Rayleigh;
     double mean = 0.4;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"law", "", "distribution"}, self.law);
-        visit(Field{"mean", "1", "of the factor", 0, 10}, self.mean);
+    static void describe(auto& self, auto& visit) {
+        visit({"law", "", "distribution"}, self.law);
+        visit({"mean", "1", "of the factor", 0, 10}, self.mean);
     }
 };
 
@@ -37,21 +36,20 @@ struct Config {
     std::vector<Speckle> layers;
     std::map<std::string, Speckle> materials;
     Speckle always;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"range", "m", "far edge", 0.1, 500}, self.range);
-        visit(Field{"bins", "1", "per beam", 1, 65536}, self.bins);
-        visit(Field{"seed", "1", "of the noise"}, self.seed);
-        visit(Field{"offset", "1", "any"}, self.offset);
-        visit(Field{"loud", "", "or not"}, self.loud);
-        visit(Field{"file", "", "to read"}, self.file);
-        visit(Field{"position", "m", "of the sensor", -100, 100}, self.position);
-        visit(Field{"speckle", "", "noise"}, self.speckle);
-        visit(Field{"gain", "dB", "if any"}, self.gain);
-        visit(Field{"bearings", "deg", "centres", -180, 180}, self.bearings);
-        visit(Field{"layers", "", "some"}, self.layers);
-        visit(Field{"materials", "", "by name"}, self.materials);
-        visit(Field{"always", "", "a block"}, self.always);
+    static void describe(auto& self, auto& visit) {
+        visit({"range", "m", "far edge", 0.1, 500}, self.range);
+        visit({"bins", "1", "per beam", 1, 65536}, self.bins);
+        visit({"seed", "1", "of the noise"}, self.seed);
+        visit({"offset", "1", "any"}, self.offset);
+        visit({"loud", "", "or not"}, self.loud);
+        visit({"file", "", "to read"}, self.file);
+        visit({"position", "m", "of the sensor", -100, 100}, self.position);
+        visit({"speckle", "", "noise"}, self.speckle);
+        visit({"gain", "dB", "if any"}, self.gain);
+        visit({"bearings", "deg", "centres", -180, 180}, self.bearings);
+        visit({"layers", "", "some"}, self.layers);
+        visit({"materials", "", "by name"}, self.materials);
+        visit({"always", "", "a block"}, self.always);
     }
     void check(types::Diagnostics& diagnostics) const {
         if (loud && file.empty()) diagnostics.push_back({"loud", "needs file"});

@@ -13,8 +13,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /** A deployment with property files in one folder. */
-class PropertySourcesTest : public testing::Test {
-protected:
+struct PropertySourcesTest : testing::Test {
     void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
     DeploymentSpec parse(const std::string& yaml) { return DeploymentSpec::parse(yaml, (folder_ / "a.yml").string()); }
     /** Returns the merged properties of task `t` in one line. */

@@ -48,12 +48,11 @@ struct Head {
     int turns = 1;
     double temperature_celsius = 10;
     double level_db = 0;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"step_deg", "deg", "turn", 0, 360}, self.step_deg);
-        visit(types::Field{"turns", "1", "how often", 0, 9}, self.turns);
-        visit(types::Field{"temperature_celsius", "degC", "of the water", -6, 50}, self.temperature_celsius);
-        visit(types::Field{"level_db", "dB", "of something"}, self.level_db);
+    static void describe(auto& self, auto& visit) {
+        visit({"step_deg", "deg", "turn", 0, 360}, self.step_deg);
+        visit({"turns", "1", "how often", 0, 9}, self.turns);
+        visit({"temperature_celsius", "degC", "of the water", -6, 50}, self.temperature_celsius);
+        visit({"level_db", "dB", "of something"}, self.level_db);
     }
 };
 

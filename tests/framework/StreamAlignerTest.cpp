@@ -28,8 +28,7 @@ struct AligningTask : TaskContext {
 };
 
 /** Times are in microseconds; the timeout is 100 us. */
-class StreamAlignerTest : public testing::Test {
-protected:
+struct StreamAlignerTest : testing::Test {
     StreamAlignerTest() {
         poses_.port.connectTo(task_.pose, ConnPolicy::buffer(100));
         pings_.port.connectTo(task_.ping, ConnPolicy::buffer(100));

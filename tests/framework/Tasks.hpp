@@ -13,10 +13,9 @@ namespace insonify::test {
 struct SourceConfig {
     int last = 3;
     uint64_t seed = 1;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"last", "1", "cycles until finished", 1, 1e6}, self.last);
-        visit(types::Field{"seed", "1", "of nothing"}, self.seed);
+    static void describe(auto& self, auto& visit) {
+        visit({"last", "1", "cycles until finished", 1, 1e6}, self.last);
+        visit({"seed", "1", "of nothing"}, self.seed);
     }
 };
 
@@ -90,8 +89,7 @@ private:
 };
 
 /** Reads texts, to have another type. */
-class Words : public framework::TaskContext {
-public:
+struct Words : framework::TaskContext {
     using TaskContext::TaskContext;
     framework::InputPort<std::string> in{this, "in", "words"};
 };

@@ -9,10 +9,7 @@ namespace insonify::fuzz {
 namespace {
 
 /** Calls, and ignores the exceptions that a reader of logs may throw. */
-template <class Call>
-void allowed(Call call) try {
-    call();
-} catch (const types::ConfigError& error) {
+void allowed(auto call) try { call(); } catch (const types::ConfigError& error) {
     expectOurWords(error.what());
 }
 

@@ -1,8 +1,6 @@
 // Requests of clients to the HTTP API of a Sonar 3D-15.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "components/device/Sonar3dEmulator.hpp"
 #include "tests/support/Fuzz.hpp"
 

@@ -27,8 +27,7 @@ namespace fortress {
 
 using ignition::msgs::Set;
 
-template <class Part>
-ignition::math::Pose3d poseOf(const Part& part) {
+ignition::math::Pose3d poseOf(const auto& part) {
     ignition::math::Pose3d pose;
     if (!part.SemanticPose().Resolve(pose).empty()) throw std::runtime_error("a pose is not resolved");
     return pose;

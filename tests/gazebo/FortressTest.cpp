@@ -14,7 +14,6 @@
 #include "tests/gazebo/FortressScene.hpp"
 #include "tests/gazebo/FortressWorld.hpp"
 #include "tests/support/Paths.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

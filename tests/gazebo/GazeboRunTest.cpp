@@ -17,8 +17,7 @@ namespace {
 
 const std::string deployment = test::sourceFile("deploy/gazebo_world.yml");
 
-class GazeboRunTest : public gazebo::OwnPartition {
-protected:
+struct GazeboRunTest : gazebo::OwnPartition {
     /** A world that offers its scene as Gazebo does, and publishes no poses by itself. */
     std::unique_ptr<gazebo::FortressWorld> makeWorld() const {
         auto world = std::make_unique<gazebo::FortressWorld>("/world/two_vehicles/pose/info");
@@ -54,8 +53,7 @@ TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
     const bool ended = pings && gazebo::becomesTrue([&] { return publish(), fs::exists(folder / "summary.json"); });
     if (!ended) sonar.signal(SIGKILL);
     EXPECT_TRUE(ended);
-    const Outcome outcome = sonar.wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(sonar.wait(), succeeds());
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 20);
 }
 
@@ -78,18 +76,15 @@ TEST_F(GazeboRunTest, PingsStopAndResumeWithTheWorld) {
     }));
     EXPECT_TRUE(gazebo::becomesTrue([&, before = pictures()] { return publish(true), pictures() > before + 2; }));
     sonar.signal(SIGINT);
-    const Outcome outcome = sonar.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(sonar.wait(), succeeds());
 }
 
 TEST_F(GazeboRunTest, ReportsAMissingWorldAndEnds) {
-    const Outcome outcome =
-        callInsonify(folder, {"run", deployment, "--out", "out", "--set", "scene.gazebo.timeout=0.5"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("gazebo.world: is two_vehicles; its service "
-                                       "/world/two_vehicles/scene/info is not offered in partition " +
-                                       partition + " within 0.5 s (timeout); "));
-    EXPECT_THAT(outcome.err, HasSubstr("deploy/gazebo_world.yml:16:"));
+    EXPECT_THAT(callInsonify(folder, {"run", deployment, "--out", "out", "--set", "scene.gazebo.timeout=0.5"}),
+                isRefused(AllOf(HasSubstr("gazebo.world: is two_vehicles; its service "
+                                          "/world/two_vehicles/scene/info is not offered in partition " +
+                                          partition + " within 0.5 s (timeout); "),
+                                HasSubstr("deploy/gazebo_world.yml:16:"))));
 }
 
 TEST_F(GazeboRunTest, WaitsWithoutPosesAndReportsIt) {

@@ -19,8 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using Settings = HarmonicWorld::Settings;
 
-class HarmonicTest : public OwnPartition, protected test::Listening<PoseTask> {
-protected:
+struct HarmonicTest : OwnPartition, protected test::Listening<PoseTask> {
     HarmonicTest() : Listening("world", true) {
         task.environment().warn = [this](const std::string& text) { warnings += text + "\n"; };
     }

@@ -14,8 +14,7 @@ namespace insonify::gazebo {
 using test::becomesTrue;
 
 /** A private partition of the test, on this machine only. */
-class OwnPartition : public testing::Test {
-protected:
+struct OwnPartition : testing::Test {
     OwnPartition() {
         for (const char* prefix : {"GZ_", "IGN_"}) {
             setenv((prefix + std::string("IP")).c_str(), "127.0.0.1", 1);

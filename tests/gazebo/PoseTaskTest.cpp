@@ -18,8 +18,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class PoseTaskTest : public OwnPartition, protected test::Listening<PoseTask> {
-protected:
+struct PoseTaskTest : OwnPartition, protected test::Listening<PoseTask> {
     PoseTaskTest() : Listening("world", true) {}
 
     static BodyConfig entity(const std::string& port, const std::string& name) { return {port, name, ""}; }

@@ -14,8 +14,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /** Removes the machine's variables of the transport, and restores them. */
-class TransportTest : public testing::Test {
-protected:
+struct TransportTest : testing::Test {
     TransportTest() {
         for (const char* name : names_) unsetenv(name);
     }

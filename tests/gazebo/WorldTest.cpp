@@ -21,8 +21,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-class WorldTest : public scene::SceneFiles {
-protected:
+struct WorldTest : scene::SceneFiles {
     World worldOf(const wire::Scene& message) const { return gazebo::worldOf(message.SerializeAsString(), folder_); }
     const std::vector<std::string> noticesOf(const wire::Scene& message) const {
         return worldOf(message).scene.geometry->notices;

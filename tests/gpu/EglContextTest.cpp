@@ -3,14 +3,13 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
-#include <memory>
 #include <thread>
 #include <vector>
 
 #include "components/gpu/EglContext.hpp"
 #include "components/gpu/Objects.hpp"
 #include "tests/support/Refused.hpp"
+#include "tests/support/Variable.hpp"
 
 namespace insonify::gpu {
 namespace {
@@ -21,37 +20,17 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 /** Calls errorOf() on a separate thread. */
-template <class Job>
-std::string errorElsewhere(const Job& job) {
+std::string errorElsewhere(const auto& job) {
     std::string text;
     std::thread([&] { text = test::errorOf<GlError>(job); }).join();
     return text;
 }
 
-/** A variable of the environment for the length of a test. */
-class Variable {
-public:
-    Variable(const char* name, const char* value) : name_(name) {
-        if (const char* before = std::getenv(name)) before_ = std::make_unique<std::string>(before);
-        setenv(name, value, 1);
-    }
-    ~Variable() {
-        if (before_)
-            setenv(name_, before_->c_str(), 1);
-        else
-            unsetenv(name_);
-    }
-
-private:
-    const char* name_;
-    std::unique_ptr<std::string> before_;
-};
-
-struct DeviceVariable : Variable {
+struct DeviceVariable : test::Variable {
     explicit DeviceVariable(const char* value) : Variable("INSONIFY_EGL_DEVICE", value) {}
 };
 
-struct DebugVariable : Variable {
+struct DebugVariable : test::Variable {
     explicit DebugVariable(const char* value) : Variable("INSONIFY_GL_DEBUG", value) {}
 };
 

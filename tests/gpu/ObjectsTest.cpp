@@ -2,7 +2,6 @@
 
 #include <array>
 #include <numeric>
-#include <string>
 #include <vector>
 
 #include "components/gpu/EglContext.hpp"
@@ -11,8 +10,7 @@
 namespace insonify::gpu {
 namespace {
 
-class ObjectsTest : public testing::Test {
-protected:
+struct ObjectsTest : testing::Test {
     void TearDown() override { EXPECT_NO_THROW(context.check()); }
     EglContext context{"software"};
 };

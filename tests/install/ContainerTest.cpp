@@ -25,9 +25,9 @@ TEST(ContainerTest, ItIsMadeOfTheDebianPackagesAndRunsAsAUserOfItsOwn) {
 TEST(ContainerTest, AUserWithoutAHomeRunsTheCommand) {
     const TestFolder folder;
     install(folder);
-    const Outcome ran = call(
-        folder, {"env", "--ignore-environment", "HOME=/nowhere", "XDG_CACHE_HOME=/tmp", folder / "prefix/bin/insonify",
-                 "run", folder / "prefix/share/insonify/deploy/minimal.yml", "--out", "out"});
-    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(call(folder, {"env", "--ignore-environment", "HOME=/nowhere", "XDG_CACHE_HOME=/tmp",
+                              folder / "prefix/bin/insonify", "run",
+                              folder / "prefix/share/insonify/deploy/minimal.yml", "--out", "out"}),
+                succeeds());
     EXPECT_TRUE(fs::exists(folder / "out/fan_000000.png"));
 }

@@ -23,10 +23,9 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
     const WallFolder folder;
     for (const char* tool : {"dpkg-deb", "dpkg-shlibdeps"})
         if (call(folder, {tool, "--version"}).code != 0) GTEST_SKIP() << "there is no " << tool << " on this system";
-    const Outcome packed =
-        call(folder, {INSONIFY_CPACK, "-G", "DEB", "--config",
-                      std::string(insonify::test::build_dir) + "/CPackConfig.cmake", "-B", "packages"});
-    ASSERT_EQ(packed.code, 0) << packed.out << packed.err;
+    ASSERT_THAT(call(folder, {INSONIFY_CPACK, "-G", "DEB", "--config",
+                              std::string(insonify::test::build_dir) + "/CPackConfig.cmake", "-B", "packages"}),
+                succeeds());
     for (const char* name : {"insonify", "insonify-dev", "insonify-nav"})
         ASSERT_EQ(call(folder, {"dpkg-deb", "-x", package(folder, name), "root"}).code, 0);
 
@@ -44,12 +43,10 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
     const Outcome listed = call(folder, {folder / "root/usr/bin/insonify", "libraries"});
     EXPECT_THAT(listed.out, testing::AllOf(HasSubstr("nav        here"), HasSubstr("dds        absent")));
 
-    const Outcome ran =
-        call(folder, {folder / "root/usr/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"});
-    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(call(folder, {folder / "root/usr/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"}),
+                succeeds());
     const insonify::test::Page page = insonify::test::readPage("components/framework/README.md");
     writeFile(folder / "CMakeLists.txt", codeOf(page, "cmake", "Use it from a project of your own"));
     writeFile(folder / "mean_echo.cpp", codeOf(page, "cpp", "A component of your own"));
-    const Outcome built = buildOutside(folder, folder / "root/usr");
-    EXPECT_EQ(built.code, 0) << built.out << built.err;
+    EXPECT_THAT(buildOutside(folder, folder / "root/usr"), succeeds());
 }

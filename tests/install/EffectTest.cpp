@@ -28,8 +28,7 @@ add_library(afterglow MODULE afterglow.cpp)
 set_target_properties(afterglow PROPERTIES PREFIX "")
 target_link_libraries(afterglow PRIVATE Insonify::core)
 )");
-    const Outcome built = buildOutside(folder, folder / "prefix");
-    ASSERT_EQ(built.code, 0) << built.out << built.err;
+    ASSERT_THAT(buildOutside(folder, folder / "prefix"), succeeds());
 }
 
 }  // namespace
@@ -38,8 +37,7 @@ TEST(EffectTest, ALibrarysEffectIsPlannedRenderedAndRefusedLikeOurs) {
     const WallFolder folder(deploymentWith("{afterglow: {kept: 0.5}}"));
     buildEffect(folder);
     const std::string insonify = folder / "prefix/bin/insonify";
-    const Outcome ran = call(folder, {insonify, "run", "wall.yml", "--pings", "3", "--out", "out"});
-    ASSERT_EQ(ran.code, 0) << ran.err;
+    ASSERT_THAT(call(folder, {insonify, "run", "wall.yml", "--pings", "3", "--out", "out"}), succeeds());
     ASSERT_EQ(
         call(folder, {insonify, "log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "p.npz"}).code, 0);
     const std::string ratios =
@@ -58,19 +56,15 @@ TEST(EffectTest, ALibrarysEffectIsPlannedRenderedAndRefusedLikeOurs) {
         {"{afterglw: {kept: 0.5}}", "did you mean afterglow?"}};
     for (const auto& [effects, why] : refused) {
         writeFile(folder / "wall.yml", deploymentWith(effects));
-        const Outcome outcome = call(folder, {insonify, "check", "wall.yml"});
-        EXPECT_EQ(outcome.code, 2) << effects;
-        EXPECT_THAT(outcome.err, HasSubstr(why)) << effects;
+        EXPECT_THAT(call(folder, {insonify, "check", "wall.yml"}), isRefused(HasSubstr(why))) << effects << effects;
     }
 }
 
 TEST(EffectTest, AnEffectThatNoLibraryHasAddedIsRefused) {
     const WallFolder folder(
         replaced(wall_deployment, "      range: 20\n", "      range: 20\n      effects: {bubbles: {}}\n"));
-    const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("effects.bubbles: is no effect; effects are: edge_diffraction\n"));
-    const Outcome set = callInsonify(folder, {"check", "wall.yml", "--set", "sonar.effects.bubles.size=1"});
-    EXPECT_EQ(set.code, 2);
-    EXPECT_THAT(set.err, HasSubstr("--set: tasks.sonar.properties.effects.bubles: is no effect;"));
+    EXPECT_THAT(callInsonify(folder, {"check", "wall.yml"}),
+                isRefused(HasSubstr("effects.bubbles: is no effect; effects are: edge_diffraction\n")));
+    EXPECT_THAT(callInsonify(folder, {"check", "wall.yml", "--set", "sonar.effects.bubles.size=1"}),
+                isRefused(HasSubstr("--set: tasks.sonar.properties.effects.bubles: is no effect;")));
 }

@@ -27,12 +27,10 @@ TEST(InstallTest, AProjectOutsideBuildsAComponentThatTheInstalledCommandRuns) {
     const insonify::test::Page page = insonify::test::readPage("components/framework/README.md");
     writeFile(folder / "CMakeLists.txt", codeOf(page, "cmake", "Use it from a project of your own"));
     writeFile(folder / "mean_echo.cpp", codeOf(page, "cpp", "A component of your own"));
-    const Outcome built = buildOutside(folder, folder / "prefix");
-    ASSERT_EQ(built.code, 0) << built.out << built.err;
+    ASSERT_THAT(buildOutside(folder, folder / "prefix"), succeeds());
 
     const std::string insonify = folder / "prefix/bin/insonify";
-    const Outcome ran = call(folder, {insonify, "run", "wall.yml", "--pings", "2", "--out", "out"});
-    ASSERT_EQ(ran.code, 0) << ran.err;
+    ASSERT_THAT(call(folder, {insonify, "run", "wall.yml", "--pings", "2", "--out", "out"}), succeeds());
     ASSERT_EQ(
         call(folder, {insonify, "log", "export", "out/wall.0.log", "--stream", "mean.mean", "--to", "mean.csv"}).code,
         0);
@@ -50,18 +48,16 @@ TEST(InstallTest, AProjectOutsideBuildsAComponentThatTheInstalledCommandRuns) {
     EXPECT_EQ(count, 2);
 
     // The command's own reader refuses values that the component's property may not have.
-    const Outcome refused = call(folder, {insonify, "run", "wall.yml", "--set", "mean.beyond=-1"});
-    EXPECT_EQ(refused.code, 2);
-    EXPECT_THAT(refused.err, HasSubstr("tasks.mean.properties.beyond"));
+    EXPECT_THAT(call(folder, {insonify, "run", "wall.yml", "--set", "mean.beyond=-1"}),
+                isRefused(HasSubstr("tasks.mean.properties.beyond")));
 }
 
 TEST(InstallTest, TheExamplesRunFromThePrefix) {
     const TestFolder folder;
     install(folder);
     const std::string insonify = folder / "prefix/bin/insonify";
-    const Outcome ran =
-        call(folder, {insonify, "run", folder / "prefix/share/insonify/deploy/minimal.yml", "--out", "out"});
-    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(call(folder, {insonify, "run", folder / "prefix/share/insonify/deploy/minimal.yml", "--out", "out"}),
+                succeeds());
     EXPECT_TRUE(fs::exists(folder / "out/fan_000000.png"));
     EXPECT_THAT(call(folder, {"ldd", insonify}).out, testing::Not(HasSubstr(insonify::test::build_dir)));
 }
@@ -104,10 +100,8 @@ TEST(InstallTest, AFirstDeploymentIsMadeAndRunsAndTheManualPageIsThere) {
     const TestFolder folder;
     install(folder);
     const std::string insonify = folder / "prefix/bin/insonify";
-    const Outcome made = call(folder, {insonify, "init", "dive", "--sonar", "micron"});
-    ASSERT_EQ(made.code, 0) << made.err;
-    const Outcome ran = call(folder, {insonify, "run", "dive", "--pings", "2", "--out", "out"});
-    EXPECT_EQ(ran.code, 0) << ran.err;
+    ASSERT_THAT(call(folder, {insonify, "init", "dive", "--sonar", "micron"}), succeeds());
+    EXPECT_THAT(call(folder, {insonify, "run", "dive", "--pings", "2", "--out", "out"}), succeeds());
     EXPECT_TRUE(fs::exists(folder / "out/micron.0.log"));
     EXPECT_EQ(readFile(folder / "prefix/share/man/man1/insonify.1"), call(folder, {insonify, "man"}).out);
 }
@@ -127,8 +121,7 @@ endforeach()
 )";
     writeFile(folder / "CMakeLists.txt", project);
     writeFile(folder / "main.cpp", "int main() {}\n");
-    const Outcome built = buildOutside(folder, folder / "prefix");
-    EXPECT_EQ(built.code, 0) << built.out << built.err;
+    EXPECT_THAT(buildOutside(folder, folder / "prefix"), succeeds());
 }
 
 TEST(InstallTest, RefusesAnUnknownComponentByItsName) {

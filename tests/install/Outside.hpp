@@ -13,8 +13,8 @@ inline Outcome call(const TestFolder& folder, std::vector<std::string> words) {
 
 /** `cmake --install` into a prefix in the folder. */
 inline void install(const TestFolder& folder) {
-    const Outcome outcome = call(folder, {INSONIFY_CMAKE, "--install", test::build_dir, "--prefix", folder / "prefix"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(call(folder, {INSONIFY_CMAKE, "--install", test::build_dir, "--prefix", folder / "prefix"}),
+                succeeds());
 }
 
 /** Configures the project in the folder with only the prefix, and builds it in its folder `build`. */

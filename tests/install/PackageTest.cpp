@@ -34,8 +34,7 @@ void runArchive(const WallFolder& folder) {
     const std::string archive = packed(".tar.zst"), name = fs::path(archive).stem().stem();
     ASSERT_EQ(call(folder, {"tar", "--zstd", "-xf", archive}).code, 0);
     const std::string program = folder / (name + "/bin/insonify");
-    const Outcome ran = call(folder, {"env", "-i", program, "run", "wall.yml", "--pings", "1", "--out", "out"});
-    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(call(folder, {"env", "-i", program, "run", "wall.yml", "--pings", "1", "--out", "out"}), succeeds());
     EXPECT_TRUE(fs::exists(folder / "out"));
 
     const fs::path package = folder / (name + "/insonify");
@@ -56,10 +55,8 @@ void runWheel(const WallFolder& folder) {
     const std::string wheel = packed(".whl");
     EXPECT_THAT(wheel, HasSubstr("-py3-none-manylinux_2_"));
     ASSERT_EQ(call(folder, {"/usr/bin/python3", "-m", "venv", "--system-site-packages", "env"}).code, 0);
-    const Outcome installed = call(folder, {"env/bin/pip", "install", "--no-index", "--no-deps", wheel});
-    ASSERT_EQ(installed.code, 0) << installed.err;
-    const Outcome ran = call(folder, {"env/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"});
-    EXPECT_EQ(ran.code, 0) << ran.err;
+    ASSERT_THAT(call(folder, {"env/bin/pip", "install", "--no-index", "--no-deps", wheel}), succeeds());
+    EXPECT_THAT(call(folder, {"env/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"}), succeeds());
     const Outcome stepped =
         call(folder, {"env/bin/python", "-c",
                       "import insonify, glob\n"

@@ -52,8 +52,7 @@ find_package(Insonify REQUIRED COMPONENTS sonar)
 add_executable(renderer main.cpp)
 target_link_libraries(renderer PRIVATE Insonify::sonar)
 )");
-    const Outcome built = buildOutside(folder, folder / "prefix");
-    ASSERT_EQ(built.code, 0) << built.out << built.err;
+    ASSERT_THAT(buildOutside(folder, folder / "prefix"), succeeds());
     EXPECT_EQ(call(folder, {folder / "build/renderer"}).out, "10.0 m\n");
     const std::string link = readFile(folder / "build/CMakeFiles/renderer.dir/link.txt");
     EXPECT_THAT(link, HasSubstr("insonify_sonar"));

@@ -13,8 +13,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-class FunctionTest : public ::testing::Test {
-protected:
+struct FunctionTest : ::testing::Test {
     void SetUp() override {
         if (!pythonHas("lizard")) GTEST_SKIP() << "python has no lizard; scripts/setup installs it";
     }

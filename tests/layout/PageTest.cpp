@@ -1,8 +1,6 @@
 // The project's pages are consistent: links and anchors, names of files, tests and messages, the way in and back.
 #include <gmock/gmock.h>
 
-#include <map>
-
 #include "tests/layout/Sources.hpp"
 #include "tests/support/Pages.hpp"
 #include "tests/support/Paths.hpp"

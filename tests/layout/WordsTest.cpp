@@ -80,8 +80,7 @@ class Divider {
 public:
     Divider(std::string_view code, bool is_python) : code_(code), is_python_(is_python) {}
 
-    template <class Comment, class Name>
-    void divide(const Comment& comment, const Name& name) {
+    void divide(const auto& comment, const auto& name) {
         while (at_ < code_.size()) {
             if (startsComment())
                 comment(upTo("\n"));

@@ -21,8 +21,7 @@ std::string deploymentOf(const std::string& type) {
 }
 
 /** An installed Insonify in its own folder, so that libraries may be absent or broken. */
-class ComponentLibraryTest : public testing::Test {
-protected:
+struct ComponentLibraryTest : testing::Test {
     ComponentLibraryTest() {
         fs::create_directories(folder_ / "lib/insonify");
         fs::create_directories(folder_ / "parts");
@@ -48,10 +47,9 @@ protected:
     /** Expects that a library of this name with these bytes is one error at the place of its type, without a crash. */
     void expectRefused(const std::string& bytes, const std::string& why) const {
         writeFile(folder_ / "parts/mine.so", bytes);
-        const Outcome outcome = check("mine::Task", partsOfUser());
-        EXPECT_EQ(outcome.code, 2) << outcome.err;
-        EXPECT_THAT(outcome.err, HasSubstr("a.yml:2:13: tasks.a.type: is mine::Task: "));
-        EXPECT_THAT(outcome.err, HasSubstr("parts/mine.so: " + why));
+        EXPECT_THAT(check("mine::Task", partsOfUser()),
+                    isRefused(AllOf(HasSubstr("a.yml:2:13: tasks.a.type: is mine::Task: "),
+                                    HasSubstr("parts/mine.so: " + why))));
     }
 
     /** Makes a simulation in Python with an additional task: prints "made", or its error. */
@@ -73,8 +71,7 @@ protected:
 
 TEST_F(ComponentLibraryTest, AUsersLibraryIsLoadedByTheNamespaceOfAType) {
     give("one_type");
-    const Outcome outcome = check("one_type::CounterTask", partsOfUser());
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(check("one_type::CounterTask", partsOfUser()), succeeds());
     EXPECT_THAT(call({"describe"}, partsOfUser()).out, HasSubstr("one_type::CounterTask"));
     EXPECT_THAT(call({"schema"}, partsOfUser()).out, HasSubstr("one_type::CounterTask"));
     EXPECT_THAT(call({"completion", "bash"}, partsOfUser()).out, HasSubstr("one_type::CounterTask"));
@@ -88,29 +85,26 @@ TEST_F(ComponentLibraryTest, TheWorkingFolderIsNotSearched) {
     }
     EXPECT_THAT(check("one_type::CounterTask").err, HasSubstr("is one_type::CounterTask; known: "));
     for (const char* relative : {".", "insonify", ":", "/nowhere:.", "/nowhere::/nowhere"}) {
-        const Outcome outcome = check("one_type::CounterTask", relative);
-        EXPECT_EQ(outcome.code, 2) << relative;
-        EXPECT_THAT(outcome.err, HasSubstr("INSONIFY_COMPONENT_PATH: has the folder \"")) << relative;
+        EXPECT_THAT(check("one_type::CounterTask", relative),
+                    isRefused(HasSubstr("INSONIFY_COMPONENT_PATH: has the folder \"")))
+            << relative << relative;
     }
     EXPECT_EQ(check("../one_type::CounterTask", folder_.path()).code, 2);
 }
 
 TEST_F(ComponentLibraryTest, RefusesALibraryOfAnotherVersionBeforeItRuns) {
     give("other_version");
-    const Outcome outcome = check("other_version::Task", partsOfUser());
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("other_version.so: is for Insonify 0.0.9 00000000; this is 0.1.0 "));
-    EXPECT_THAT(outcome.err, HasSubstr("rebuild it"));
+    EXPECT_THAT(check("other_version::Task", partsOfUser()),
+                isRefused(AllOf(HasSubstr("other_version.so: is for Insonify 0.0.9 00000000; this is 0.1.0 "),
+                                HasSubstr("rebuild it"))));
     give("no_interface");
     EXPECT_THAT(check("no_interface::Task", partsOfUser()).err, HasSubstr("has no line INSONIFY_COMPONENT_LIBRARY"));
 }
 
 TEST_F(ComponentLibraryTest, AMissingSymbolIsNamed) {
     give("missing_symbol");
-    const Outcome outcome = check("missing_symbol::Task", partsOfUser());
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("missing_symbol.so: cannot be loaded: "));
-    EXPECT_THAT(outcome.err, HasSubstr("neverWritten"));
+    EXPECT_THAT(check("missing_symbol::Task", partsOfUser()),
+                isRefused(AllOf(HasSubstr("missing_symbol.so: cannot be loaded: "), HasSubstr("neverWritten"))));
 }
 
 TEST_F(ComponentLibraryTest, RefusesBrokenLibrariesWithoutACrash) {
@@ -134,9 +128,8 @@ TEST_F(ComponentLibraryTest, RefusesTwoLibrariesOfOneName) {
     fs::create_directories(folder_ / "more");
     fs::copy_file(parts / "one_type.so", folder_ / "more/one_type.so");
     const std::string both = partsOfUser() + ":" + (folder_ / "more").string();
-    const Outcome outcome = check("one_type::CounterTask", both);
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("is the component library one_type, and so is "));
+    EXPECT_THAT(check("one_type::CounterTask", both),
+                isRefused(HasSubstr("is the component library one_type, and so is ")));
     fs::remove(folder_ / "more/one_type.so");
     fs::create_symlink(folder_ / "parts/one_type.so", folder_ / "more/one_type.so");
     EXPECT_EQ(check("one_type::CounterTask", both).code, 0) << "the same file";
@@ -145,23 +138,19 @@ TEST_F(ComponentLibraryTest, RefusesTwoLibrariesOfOneName) {
 TEST_F(ComponentLibraryTest, ReportsHowToInstallAnAbsentLibrary) {
     const std::string nav =
         "which needs the component library nav, which is not here; `apt install insonify-nav` installs it";
-    const Outcome by_type = check("nav::ImuTask");
-    EXPECT_EQ(by_type.code, 2);
-    EXPECT_THAT(by_type.err, HasSubstr("a.yml:2:13: tasks.a.type: is nav::ImuTask, " + nav));
+    EXPECT_THAT(check("nav::ImuTask"), isRefused(HasSubstr("a.yml:2:13: tasks.a.type: is nav::ImuTask, " + nav)));
     writeFile(folder_ / "b.world", "<sdf version='1.9'><world name='w'></world></sdf>\n");
-    const Outcome by_file = call({"scene", "b.world"});
-    EXPECT_EQ(by_file.code, 2);
-    EXPECT_THAT(by_file.err, HasSubstr("b.world: needs the component library sdf, which is not here"));
+    EXPECT_THAT(call({"scene", "b.world"}),
+                isRefused(HasSubstr("b.world: needs the component library sdf, which is not here")));
     for (const char* command : {"study", "dataset", "device"}) {
-        const Outcome by_command = call({command, "error", "--scene", "flat_bottom"});
-        EXPECT_EQ(by_command.code, 2) << command;
-        EXPECT_THAT(by_command.err, HasSubstr(std::string(command) + ": is in the component library " + command +
-                                              ", which is not here"));
+        EXPECT_THAT(call({command, "error", "--scene", "flat_bottom"}),
+                    isRefused(HasSubstr(std::string(command) + ": is in the component library " + command +
+                                        ", which is not here")))
+            << command;
     }
     EXPECT_THAT(call({"--help"}).out, HasSubstr("(not installed)"));
-    const Outcome described = call({"describe", "nav::ImuTask"});
-    EXPECT_EQ(described.code, 2);
-    EXPECT_THAT(described.err, HasSubstr("nav::ImuTask: is in the component library nav, which is not here"));
+    EXPECT_THAT(call({"describe", "nav::ImuTask"}),
+                isRefused(HasSubstr("nav::ImuTask: is in the component library nav, which is not here")));
     for (const char* list : {"describe", "schema"})
         EXPECT_THAT(call({list}).out, testing::AllOf(HasSubstr("sonar::SonarTask"), Not(HasSubstr("nav::ImuTask"))));
     add("nav");
@@ -176,16 +165,15 @@ TEST_F(ComponentLibraryTest, ReportsAPropertyThatNeedsAnAbsentLibraryBeforeAnyPi
     for (const auto& [property, library] : std::map<std::string, std::string>{
              {"bathymetry: {file: floor.tif}", "survey"}, {"gazebo: {world: sea}", "gazebo"}, {"file: a.sdf", "sdf"}}) {
         writeFile(folder_ / "a.yml", replaced(wall_deployment, file, property));
-        const Outcome outcome = call({"check", "a.yml"});
-        EXPECT_EQ(outcome.code, 2) << property;
-        EXPECT_THAT(outcome.err, HasSubstr("needs the component library " + library + ", which is not here; `apt "));
+        EXPECT_THAT(call({"check", "a.yml"}),
+                    isRefused(HasSubstr("needs the component library " + library + ", which is not here; `apt ")))
+            << property;
     }
     const std::string picture = "  fan: {type: output::FanImageTask, properties: {video: fan.mp4}}\n";
     writeFile(folder_ / "a.yml",
               replaced(wall_deployment, sonar, picture + sonar) + "  - {from: sonar.ping, to: fan.ping}\n");
-    const Outcome outcome = call({"run", "a.yml", "--pings", "1"});
-    EXPECT_EQ(outcome.code, 2) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("tasks.fan.properties.video: needs the component library video, which is not"));
+    EXPECT_THAT(call({"run", "a.yml", "--pings", "1"}),
+                isRefused(HasSubstr("tasks.fan.properties.video: needs the component library video, which is not")));
     INSONIFY_NEEDS("video");
     add("video");
     EXPECT_EQ(call({"run", "a.yml", "--pings", "2"}).code, 0);

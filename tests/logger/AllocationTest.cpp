@@ -19,8 +19,7 @@ TEST(AllocationTest, TheTasksThreadAllocatesNothingOnceItRuns) {
     test::Writer<types::Pose> vehicle("vehicle");
     sonar.port.connectTo(*task.makeInput("ping", sonar.port), framework::ConnPolicy::buffer(8));
     vehicle.port.connectTo(*task.makeInput("pose", vehicle.port), framework::ConnPolicy::buffer(8));
-    ASSERT_TRUE(task.configure());
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto ping = std::make_shared<const types::Sonar>();
     types::Pose pose;
     pose.source_frame = "body";

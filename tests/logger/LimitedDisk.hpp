@@ -15,8 +15,7 @@
 namespace insonify::logger {
 
 /** Logs texts until the task fails, at most 5000. */
-template <class Text>
-void logUntilFailure(LoggerTask& task, test::Writer<std::string>& source, Text&& text) {
+void logUntilFailure(LoggerTask& task, test::Writer<std::string>& source, auto&& text) {
     for (int i = 0; i < 5000 && task.state() == framework::TaskState::Running; ++i) {
         source.port.write(text());
         task.update();
@@ -26,8 +25,7 @@ void logUntilFailure(LoggerTask& task, test::Writer<std::string>& source, Text&&
 
 /** Logs texts to a file limited to 50000 bytes; exits 0 when the task ends in Exception and its error has `words`. With
  *  a queue of one sample the file is flushed every few samples, for any order of the threads. */
-template <class Text>
-[[noreturn]] void fillLimitedDisk(const std::filesystem::path& file, Text&& text, const std::string& words = "") {
+[[noreturn]] void fillLimitedDisk(const std::filesystem::path& file, auto&& text, const std::string& words = "") {
     const rlimit limit{50000, 50000};
     setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, SIG_IGN);

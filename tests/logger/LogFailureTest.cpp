@@ -56,8 +56,7 @@ TEST(LogFailureTest, AFullDiskEndsInExceptionWithTheSystemsReason) {
     task.config.set(configFor("x.0.log"));
     test::Writer<std::string> source;
     source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
-    ASSERT_TRUE(task.configure());
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     logUntilFailure(task, source, thousandBytes);
     EXPECT_EQ(task.state(), TaskState::Exception);
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
@@ -85,8 +84,7 @@ TEST(LogFailureTest, StopReportsADiskThatIsFullAtTheEnd) {
     LoggerConfig config = configFor("x.0.log");
     config.flush_period = 1;
     task.config.set(config);
-    ASSERT_TRUE(task.configure());
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     EXPECT_FALSE(task.stop());
     EXPECT_EQ(task.state(), TaskState::Exception);
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
@@ -112,8 +110,7 @@ public:
     void declare(const char* name) {
         thread_.declare([this, name](log::Writer& file) { return file.add(text_.index(), name, {}); });
     }
-    template <class Done>
-    bool until(size_t stream, Done&& done) {
+    bool until(size_t stream, auto&& done) {
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
         while (!done() && std::chrono::steady_clock::now() < end) {
             thread_.push(stream, types::Time{static_cast<int64_t>(++pushed)}, text_);

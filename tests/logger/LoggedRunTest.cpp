@@ -21,10 +21,9 @@ namespace {
 struct PlannerConfig {
     double range = 50;
     std::optional<double> gain;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"range", "m", "range"}, self.range);
-        visit(types::Field{"gain", "1", "gain"}, self.gain);
+    static void describe(auto& self, auto& visit) {
+        visit({"range", "m", "range"}, self.range);
+        visit({"gain", "1", "gain"}, self.gain);
     }
 };
 
@@ -79,8 +78,7 @@ connections:
 )";
 }
 
-class LoggedRunTest : public testing::Test {
-protected:
+struct LoggedRunTest : testing::Test {
     LoggedRunTest() {
         registerTasks(registry_);
         registry_.add<PlannerTask>("test::PlannerTask", "a sonar");

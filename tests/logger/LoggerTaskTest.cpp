@@ -55,10 +55,9 @@ types::SonarPtr ping(int64_t time) {
 struct Described {
     double range = 50;
     std::string range_rounding = "exact";
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"range", "m"}, self.range);
-        visit(types::Field{"range_rounding"}, self.range_rounding);
+    static void describe(auto& self, auto& visit) {
+        visit({"range", "m"}, self.range);
+        visit({"range_rounding"}, self.range_rounding);
     }
 };
 struct DescribedSonar : framework::TaskContext {
@@ -103,8 +102,7 @@ TEST(LoggerTaskTest, EverySampleIsLoggedUnderItsSourcesNameWithBothTimes) {
     Bench bench;
     Source<types::SonarPtr> sonar(bench.task, "sonar");
     Source<types::Pose> vehicle(bench.task, "vehicle");
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.start());
+    ASSERT_TRUE(bench.task.configure() && bench.task.start()) << bench.task.lastError();
     sonar.write(ping(3'000'000));
     vehicle.write({});
     bench.task.update();
@@ -161,8 +159,7 @@ TEST(LoggerTaskTest, TheDeploymentIsOnceInALogAndInCutsOfIt) {
     bench.task.environment().deployment_text = "tasks: {}";
     Source<double> depth(bench.task, "depth");
     Source<int32_t> counter(bench.task, "counter");
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.start());
+    ASSERT_TRUE(bench.task.configure() && bench.task.start()) << bench.task.lastError();
     counter.write(1);
     depth.write(2.5);
     bench.task.update();
@@ -180,8 +177,7 @@ TEST(LoggerTaskTest, AFileSlowerThanTheSamplesLosesNone) {
     config.queue = 1;
     Bench bench(config);
     Source<int32_t> source(bench.task, "counter");
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.start());
+    ASSERT_TRUE(bench.task.configure() && bench.task.start()) << bench.task.lastError();
     for (int32_t i = 0; i < 2000; ++i) source.write(i);
     bench.task.update();
     bench.finish();
@@ -196,8 +192,7 @@ TEST(LoggerTaskTest, LoggedSamplesAreInTheFileWithinTheFlushPeriod) {
     config.flush_period = 0.05;
     Bench bench(config);
     Source<double> source(bench.task, "depth");
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.start());
+    ASSERT_TRUE(bench.task.configure() && bench.task.start()) << bench.task.lastError();
     source.write(1.5);
     bench.task.update();
     const auto logged = [&] {
@@ -266,8 +261,7 @@ TEST(LoggerTaskTest, ALoggerWithoutConnectionsGivesANotice) {
 TEST(LoggerTaskTest, RecordingStopsAndResumesDuringTheRunWithoutOtherChanges) {
     Bench bench;
     Source<types::SonarPtr> sonar(bench.task, "sonar");
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.start());
+    ASSERT_TRUE(bench.task.configure() && bench.task.start()) << bench.task.lastError();
     const auto set = [&](const char* setter, const char* value) { bench.task.operation(setter)->callText({value}); };
     for (const char* record : {"true", "false", "true"}) {
         set("setRecord", record);

@@ -28,8 +28,7 @@ types::SonarPtr pingAt(int64_t time) {
     return std::make_shared<const types::Sonar>(ping);
 }
 
-class McapLogTest : public testing::Test {
-protected:
+struct McapLogTest : testing::Test {
     McapLogTest() {
         config.file = "x.0.mcap";
         task.environment().output_folder = folder.path();
@@ -39,8 +38,7 @@ protected:
     }
     void start() {
         task.config.set(config);
-        ASSERT_TRUE(task.configure());
-        ASSERT_TRUE(task.start());
+        ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     }
     void cycle(const types::SonarPtr& ping) {
         sonar.port.write(ping);
@@ -143,10 +141,7 @@ TEST_F(McapLogTest, PingsMayBecomeEightBits) {
 /** The parts of a sonar and its scene that a logger reads. */
 struct Mounted {
     types::Mount mount;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"mount"}, self.mount);
-    }
+    static void describe(auto& self, auto& visit) { visit({"mount"}, self.mount); }
 };
 struct MountedSonar : framework::TaskContext {
     MountedSonar(const std::string& name, const types::Mount& mount) : TaskContext(name) {

@@ -12,8 +12,7 @@
 namespace insonify::logger {
 namespace {
 
-class RotationTest : public testing::Test {
-protected:
+struct RotationTest : testing::Test {
     /** Logs texts of 100 kB at intervals of 0.1 s to x.0.log and the following files. */
     void log(LoggerConfig config, int count) {
         config.file = "x.0.log";
@@ -26,8 +25,7 @@ protected:
         source.port.connectTo(*task.makeInput("text", source.port), framework::ConnPolicy::buffer(8));
         test::Writer<double> silent("silent");
         silent.port.connectTo(*task.makeInput("silent", silent.port), framework::ConnPolicy::buffer(8));
-        ASSERT_TRUE(task.configure());
-        ASSERT_TRUE(task.start());
+        ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
         for (int i = 0; i < count; ++i) {
             source.port.write(std::to_string(i) + std::string(100'000, ' '));
             task.update();

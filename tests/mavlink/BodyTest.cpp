@@ -27,10 +27,8 @@ AttitudeQuaternion turned(double radians, glm::vec3 axis, uint32_t ms = 0) {
 
 void expectNear(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-6) << a.x << " " << a.y << " " << a.z; }
 
-class BodyTest : public testing::Test {
-protected:
-    template <class Message>
-    Body::Taken take(const Message& message, double seconds, uint8_t component = 1, uint64_t way = 1) {
+struct BodyTest : testing::Test {
+    Body::Taken take(const auto& message, double seconds, uint8_t component = 1, uint64_t way = 1) {
         return body.take(frameOf(message, 1, component), way, Time::fromSeconds(seconds));
     }
     Body body{{}, {0, 0, 0}};

@@ -18,8 +18,7 @@ namespace {
 
 const std::string deployment = test::sourceFile("deploy/mavlink_poses.yml");
 
-class MavlinkRunTest : public testing::Test {
-protected:
+struct MavlinkRunTest : testing::Test {
     std::vector<std::string> words(std::vector<std::string> more) const {
         std::vector<std::string> all = {"run",   deployment,        "--out", "out",
                                         "--set", "vehicles.port=0", "--set", "scene.pose_timeout=60"};
@@ -54,8 +53,7 @@ TEST_F(MavlinkRunTest, RequestsPosesOfTwoVehiclesForPings) {
     const mavlink::Vehicle red(listening, "heartbeat 1"), blue(listening, "heartbeat 2 12");
     const bool pings = becomesTrue([&] { return fs::exists(folder / "out/fan_000000.png"); });
     if (!pings) run.signal(SIGKILL);
-    const Outcome outcome = run.wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(run.wait(), succeeds());
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 20);
     EXPECT_FALSE(fs::is_empty(folder / "out"));
@@ -88,8 +86,7 @@ TEST_F(MavlinkRunTest, PingsStopAndResumeWithAVehicle) {
     };
     EXPECT_TRUE(becomesTrue([&, before = pictures()] { return pictures() > before + 1; }));
     run.signal(SIGINT);
-    const Outcome outcome = run.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(run.wait(), succeeds());
 }
 
 TEST_F(MavlinkRunTest, TheDeploymentIsValidAndErrorsAreReportedWithTheirPlace) {
@@ -114,7 +111,6 @@ TEST_F(MavlinkRunTest, LockstepDoesNotReadPoses) {
     text.replace(text.find("realtime"), 8, "lockstep");
     text.replace(text.find("scenes/"), 7, test::sourceFile("deploy/scenes/"));
     writeFile(folder / "x.yml", text);
-    const Outcome outcome = callInsonify(folder, {"check", "x.yml"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("tasks.vehicles.properties: messages arrive by the wall clock"));
+    EXPECT_THAT(callInsonify(folder, {"check", "x.yml"}),
+                isRefused(HasSubstr("tasks.vehicles.properties: messages arrive by the wall clock")));
 }

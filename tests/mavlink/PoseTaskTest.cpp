@@ -17,8 +17,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class PoseTaskTest : public testing::Test, protected test::Listening<PoseTask> {
-protected:
+struct PoseTaskTest : testing::Test, protected test::Listening<PoseTask> {
     PoseTaskTest() : Listening("vehicle") {}
     void SetUp() override {
         if (!Vehicle::available())

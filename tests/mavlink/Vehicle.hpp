@@ -7,8 +7,7 @@
 namespace insonify::mavlink {
 
 /** A program that sends until its destructor. */
-class Vehicle : public test::Peer {
-public:
+struct Vehicle : test::Peer {
     /** @param work job of vehicle.py: "poses2 1" */
     Vehicle(uint16_t port, const std::string& work)
         : Peer("tests/mavlink/vehicle.py", std::to_string(port) + " " + work) {}

@@ -11,8 +11,7 @@ using namespace scene;
 using namespace sdf;
 namespace {
 
-class MeshFileTest : public SdfFiles {
-protected:
+struct MeshFileTest : SdfFiles {
     /** A rectangle from (0, 0, 0) to (1, 2, 3) of the file, twice: node "near" and, 10 along x, node "far". */
     std::filesystem::path writeDae(const std::string& unit, const std::string& up_axis) const {
         Dae dae;

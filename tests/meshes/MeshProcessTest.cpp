@@ -22,8 +22,7 @@ using namespace scene;
 using namespace sdf;
 namespace {
 
-class MeshProcessTest : public SdfFiles {
-protected:
+struct MeshProcessTest : SdfFiles {
     /** Returns the error of a mesh file; empty if it was read, and then it must be sound. */
     std::string diagnosticOfMesh(const std::filesystem::path& file) const {
         try {

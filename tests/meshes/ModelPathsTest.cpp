@@ -6,8 +6,7 @@ namespace insonify::sdf {
 using namespace scene;
 namespace {
 
-class ModelPathsTest : public SdfFiles {
-protected:
+struct ModelPathsTest : SdfFiles {
     ModelPathsTest() {
         for (const char* folder : {"one", "two", "gazebo", "sdf", "world"})
             std::filesystem::create_directories(folder_ / folder);

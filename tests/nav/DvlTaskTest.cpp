@@ -9,8 +9,7 @@
 namespace insonify::nav {
 namespace {
 
-class DvlTaskTest : public test::TaskBench<DvlTask, types::Pose, types::DvlPtr> {
-protected:
+struct DvlTaskTest : test::TaskBench<DvlTask, types::Pose, types::DvlPtr> {
     DvlTaskTest() : TaskBench(&DvlTask::pose, &DvlTask::dvl) {}
 
     void connectScene() { scene_.port.connectTo(task_.snapshot, {}); }

@@ -8,8 +8,7 @@
 namespace insonify::nav {
 namespace {
 
-class ImuTaskTest : public test::TaskBench<ImuTask, types::Pose, types::Imu> {
-protected:
+struct ImuTaskTest : test::TaskBench<ImuTask, types::Pose, types::Imu> {
     ImuTaskTest() : TaskBench(&ImuTask::pose, &ImuTask::imu) {}
 
     ImuConfig noisy() {

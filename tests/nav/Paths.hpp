@@ -3,11 +3,8 @@
 #include <cmath>
 #include <functional>
 #include <glm/gtc/quaternion.hpp>
-#include <numbers>
-#include <vector>
 
 #include "components/nav/Motion.hpp"
-#include "types/Angle.hpp"
 
 namespace insonify::nav {
 

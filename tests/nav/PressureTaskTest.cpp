@@ -7,8 +7,7 @@
 namespace insonify::nav {
 namespace {
 
-class PressureTaskTest : public test::TaskBench<PressureTask, types::Pose, types::Pressure> {
-protected:
+struct PressureTaskTest : test::TaskBench<PressureTask, types::Pose, types::Pressure> {
     PressureTaskTest() : TaskBench(&PressureTask::pose, &PressureTask::pressure) {}
 };
 

@@ -64,8 +64,7 @@ inline double correlation(const float* a, const float* b, size_t count) {
 }
 
 /** Returns values as shares of a distribution: uniform in [0, 1] if they follow it. */
-template <class Cdf>
-std::vector<double> shares(const std::vector<float>& values, Cdf cdf) {
+std::vector<double> shares(const std::vector<float>& values, auto cdf) {
     std::vector<double> all;
     for (const float value : values) all.push_back(cdf(value));
     std::sort(all.begin(), all.end());

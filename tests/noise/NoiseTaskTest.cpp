@@ -9,8 +9,7 @@ namespace {
 
 types::SonarPtr makePing(int64_t time) { return test::shared(test::pingOf(2, 100, 1, time)); }
 
-class NoiseTaskTest : public test::TaskBench<NoiseTask, types::SonarPtr> {
-protected:
+struct NoiseTaskTest : test::TaskBench<NoiseTask, types::SonarPtr> {
     NoiseTaskTest() : TaskBench(&NoiseTask::clean, &NoiseTask::noisy) {}
 };
 

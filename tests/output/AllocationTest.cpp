@@ -42,8 +42,7 @@ void expectNoAllocation(uint32_t beams) {
     auto config = *task.config;
     config.width = 640;
     task.config.set(config);
-    ASSERT_TRUE(task.configure()) << task.lastError();
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto cycle = [&](int i) {
         in.port.write(pingAt(i, beams));
         poses.port.write(poseAt(i));

@@ -23,8 +23,7 @@ ArisFrame smallFrame(uint64_t after_us = 0) {
     return frame;
 }
 
-class ArisFileTest : public RecordedFileTest<FanFile> {
-protected:
+struct ArisFileTest : RecordedFileTest<FanFile> {
     ArisFileTest() : RecordedFileTest("fish.aris", openFan) {}
 };
 

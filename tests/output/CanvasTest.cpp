@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "components/output/Canvas.hpp"
 
 namespace insonify::output {

@@ -7,16 +7,8 @@ namespace insonify::output {
 namespace {
 
 /** A disc in gray on a fixed scale, to which a head adds one beam after the other. */
-class DiscImageTest : public ::testing::Test {
-protected:
-    DiscImageTest() : disc_(display()) {}
-    static DisplayConfig display() {
-        DisplayConfig config;
-        config.width = 600;
-        config.reference_db = 0;
-        config.colour_map = ColourMap::Gray;
-        return config;
-    }
+struct DiscImageTest : ::testing::Test {
+    DiscImageTest() : disc_(test::grayPicture(600)) {}
     static types::Sonar beamAt(double bearing_deg, float value, uint32_t bins = 100) {
         types::Sonar ping = test::emptyPing(3, 1, bins);
         ping.bearings[0] = types::Angle::fromDeg(bearing_deg);

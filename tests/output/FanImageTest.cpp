@@ -14,15 +14,6 @@ using test::emptyPing;
 using test::pixelsOf;
 using test::withEcho;
 
-/** Returns gray on a fixed scale, so that a pixel's value is its level. */
-DisplayConfig plain() {
-    DisplayConfig config;
-    config.width = 800;
-    config.reference_db = 0;
-    config.colour_map = ColourMap::Gray;
-    return config;
-}
-
 cv::Mat paint(FanImage& fan, const types::Sonar& ping) {
     types::Image picture;
     fan.paint(ping, picture);
@@ -39,7 +30,7 @@ double levelAt(const cv::Mat& picture, cv::Point2d at) {
 }
 
 TEST(FanImageTest, AheadIsUpAndPortIsLeft) {
-    FanImage fan(plain());
+    FanImage fan(test::grayPicture(800));
     const types::Sonar empty = emptyPing(120, 121);
     const cv::Point2d ahead = placeOf(fan, empty, 60, 80), port = placeOf(fan, empty, 110, 80);
     const cv::Point2d starboard = placeOf(fan, empty, 10, 80);
@@ -51,7 +42,7 @@ TEST(FanImageTest, AheadIsUpAndPortIsLeft) {
 }
 
 TEST(FanImageTest, ShowsAnEchoAtItsBearingAndRange) {
-    FanImage fan(plain());
+    FanImage fan(test::grayPicture(800));
     const types::Sonar empty = emptyPing(130, 128);
     paint(fan, empty);
     const cv::Point2d origin = fan.layout().origin();
@@ -66,7 +57,7 @@ TEST(FanImageTest, ShowsAnEchoAtItsBearingAndRange) {
 }
 
 TEST(FanImageTest, DrawsRingsAtRoundRanges) {
-    FanImage fan(plain());
+    FanImage fan(test::grayPicture(800));
     const cv::Mat picture = paint(fan, emptyPing(120, 60, 1000));
     const double range = fan.layout().range();
     const double between_spokes = types::radians(15.5);
@@ -78,7 +69,7 @@ TEST(FanImageTest, DrawsRingsAtRoundRanges) {
 }
 
 TEST(FanImageTest, TheLevelOfAnEchoIsItsDecibelsWithinTheDynamicRange) {
-    FanImage fan(plain());
+    FanImage fan(test::grayPicture(800));
     types::Sonar ping = emptyPing(120, 60);
     paint(fan, ping);
     const cv::Point2d place = fan.layout().pixel(33.3, types::radians(13));
@@ -89,7 +80,7 @@ TEST(FanImageTest, TheLevelOfAnEchoIsItsDecibelsWithinTheDynamicRange) {
 }
 
 TEST(FanImageTest, KeepsTablesUntilTheShapeChanges) {
-    FanImage fan(plain());
+    FanImage fan(test::grayPicture(800));
     types::Sonar ping = emptyPing(120, 60);
     for (int i = 0; i < 3; ++i) paint(fan, withEcho(ping, 3, static_cast<uint32_t>(i)));
     EXPECT_EQ(fan.tablesBuilt(), 1);
@@ -102,7 +93,7 @@ TEST(FanImageTest, KeepsTablesUntilTheShapeChanges) {
 }
 
 TEST(FanImageTest, ShowsUnevenBearingsInAnyOrderAtTheirPlace) {
-    FanImage fan(plain());
+    FanImage fan(test::grayPicture(800));
     types::Sonar ping = emptyPing(100, 5);
     const double bearings[] = {40, -45, 5, std::numeric_limits<double>::quiet_NaN(), -10};
     for (size_t beam = 0; beam < 5; ++beam) ping.bearings[beam].rad = types::radians(bearings[beam]);
@@ -118,7 +109,7 @@ TEST(FanImageTest, ShowsUnevenBearingsInAnyOrderAtTheirPlace) {
 }
 
 TEST(FanImageTest, PaintsBackgroundOutsideTheFan) {
-    FanImage fan(plain());
+    FanImage fan(test::grayPicture(800));
     types::Sonar ping = emptyPing(120, 60);
     ping.bins.assign(ping.bins.size(), 1);
     const cv::Mat picture = paint(fan, ping);
@@ -128,7 +119,7 @@ TEST(FanImageTest, PaintsBackgroundOutsideTheFan) {
 }
 
 TEST(FanImageTest, AFullCircleHasNoSeamAstern) {
-    FanImage fan(plain());
+    FanImage fan(test::grayPicture(800));
     types::Sonar ping = emptyPing(360, 90);
     ping.bins.assign(ping.bins.size(), 1);
     const cv::Mat picture = paint(fan, ping);
@@ -138,7 +129,7 @@ TEST(FanImageTest, AFullCircleHasNoSeamAstern) {
 }
 
 TEST(FanImageTest, ATitleDescribesThePicture) {
-    FanImage fan(plain());
+    FanImage fan(test::grayPicture(800));
     types::Image picture;
     fan.paint(emptyPing(120, 60), picture);
     EXPECT_EQ(picture.time, types::Time::fromSeconds(1));
@@ -150,7 +141,7 @@ TEST(FanImageTest, ATitleDescribesThePicture) {
 }
 
 TEST(FanImageTest, SizesAreEvenForVideoCodecs) {
-    DisplayConfig config = plain();
+    DisplayConfig config = test::grayPicture(800);
     config.width = 801;
     for (const double field_of_view : {1.0, 20.0, 130.0, 270.0, 360.0}) {
         FanImage fan(config);

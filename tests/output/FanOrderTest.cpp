@@ -17,18 +17,9 @@ using test::nearestBeam;
 using test::RandomFan;
 using test::randomFans;
 
-/** Returns gray on a fixed scale, so that a pixel's value is its level. */
-DisplayConfig wholeFan() {
-    DisplayConfig config;
-    config.width = 400;
-    config.reference_db = 0;
-    config.colour_map = ColourMap::Gray;
-    return config;
-}
-
 template <class Picture>
 types::Image fanPicture(const types::Sonar& ping) {
-    Picture painter(wholeFan());
+    Picture painter(test::grayPicture(400));
     types::Image picture;
     painter.paint(ping, picture);
     return picture;
@@ -51,7 +42,7 @@ void paintInto(DiscImage& painter, types::Sonar ping, types::Image& picture) {
 /** Expects that a picture shows echoes at beams and nothing in gaps. */
 template <class Picture>
 void expectWater(const types::Sonar& ping, const std::string& name, double margin) {
-    Picture loud_picture(wholeFan()), silent_picture(wholeFan());
+    Picture loud_picture(test::grayPicture(400)), silent_picture(test::grayPicture(400));
     types::Image loud, silent;
     paintInto(loud_picture, filled(ping, 1), loud);
     paintInto(silent_picture, filled(ping, 0), silent);
@@ -123,7 +114,7 @@ TEST(FanOrderTest, ATruthPictureEqualsThatOfTheBeamsInAscendingOrder) {
         for (size_t i = 0; i < truth.object.size(); ++i)
             truth.object[i] = static_cast<int32_t>(ping.bins[i] * 1e4f) % 3;
         std::ranges::fill(truth.shadow, uint8_t{0});
-        TruthImage painter(wholeFan());
+        TruthImage painter(test::grayPicture(400));
         painter.setTruth(truth);
         types::Image picture;
         painter.paint(ping, picture);
@@ -161,8 +152,8 @@ TEST(FanOrderTest, TheSimilarityOfPingsDoesNotDependOnTheOrderOfBeams) {
     for (const RandomFan& fan : randomFans(1, 40)) {
         types::Sonar other = fan.ping;
         for (size_t i = 0; i < other.bins.size(); i += 3) other.bins[i] *= 0.3f;
-        EXPECT_DOUBLE_EQ(structuralSimilarity(fan.ping, other, wholeFan()),
-                         structuralSimilarity(fan.ascending, test::reordered(other, fan.order), wholeFan()))
+        EXPECT_DOUBLE_EQ(structuralSimilarity(fan.ping, other, test::grayPicture(400)),
+                         structuralSimilarity(fan.ascending, test::reordered(other, fan.order), test::grayPicture(400)))
             << fan.name;
     }
 }

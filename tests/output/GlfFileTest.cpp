@@ -47,8 +47,7 @@ GlfImage smallImage(double after_s = 0) {
     return image;
 }
 
-class GlfFileTest : public RecordedFileTest<FanFile> {
-protected:
+struct GlfFileTest : RecordedFileTest<FanFile> {
     GlfFileTest() : RecordedFileTest("dive.glf", openFan) {}
 };
 

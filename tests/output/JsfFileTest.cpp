@@ -1,13 +1,10 @@
 // Reading of JSF files, made here by EdgeTech's published layout, intact and damaged.
 #include <gmock/gmock.h>
 
-#include <fstream>
-
 #include "components/output/JsfFile.hpp"
 #include "tests/output/RecordedFileTest.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/RecordedBytes.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::output {
 namespace {
@@ -57,8 +54,7 @@ std::vector<char> joined(const std::vector<std::vector<char>>& messages) {
     return bytes;
 }
 
-class JsfFileTest : public RecordedFileTest<SideScanFile> {
-protected:
+struct JsfFileTest : RecordedFileTest<SideScanFile> {
     JsfFileTest() : RecordedFileTest("line.jsf", openSideScan) {}
 };
 

@@ -9,16 +9,14 @@
 namespace insonify::test {
 
 template <class Task, class Second>
-class PictureBench : public ::testing::Test {
-protected:
+struct PictureBench : ::testing::Test {
     explicit PictureBench(framework::InputPort<Second> Task::*second) {
         pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(100));
         second_.port.connectTo(task_.*second, framework::ConnPolicy::buffer(100));
         task_.image.connectTo(out_.port, framework::ConnPolicy::buffer(100));
     }
     void start() {
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     void give(const types::Sonar& ping) {
         pings_.port.write(std::make_shared<const types::Sonar>(ping));

@@ -7,8 +7,7 @@
 namespace insonify::output {
 namespace {
 
-class PictureTaskTest : public ::testing::Test {
-protected:
+struct PictureTaskTest : ::testing::Test {
     PictureTaskTest() {
         auto environment = std::make_shared<framework::Environment>(task_.environment());
         environment->output_folder = folder_.path();
@@ -18,8 +17,7 @@ protected:
     }
     void start() {
         task_.config.set(config_);
-        ASSERT_TRUE(task_.configure());
-        ASSERT_TRUE(task_.start());
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     void give(int64_t time) {
         types::Sonar ping = test::emptyPing(120, 60);

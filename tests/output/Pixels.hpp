@@ -3,13 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
-#include <string>
 
+#include "components/output/PictureConfig.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Pings.hpp"
 #include "types/Image.hpp"
 
 namespace insonify::test {
+
+/** Returns gray on a fixed scale, so that a pixel's value is its level. */
+template <class Config = output::DisplayConfig>
+Config grayPicture(uint32_t width) {
+    Config config;
+    config.width = width;
+    config.reference_db = 0;
+    config.colour_map = output::ColourMap::Gray;
+    return config;
+}
 
 inline cv::Mat pixelsOf(const types::Image& picture) {
     return cv::Mat(picture.size.height, picture.size.width, CV_8UC3, const_cast<uint8_t*>(picture.image.data()))

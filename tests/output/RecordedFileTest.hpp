@@ -20,8 +20,7 @@ using test::RecordedBytes;
 
 /** Tests of the pings of a `File`, which next() returns one by one. */
 template <class File>
-class RecordedFileTest : public testing::Test {
-protected:
+struct RecordedFileTest : testing::Test {
     using Opener = std::function<std::unique_ptr<File>(const std::filesystem::path&)>;
     using Ping = typename decltype(std::declval<File&>().next())::value_type;
 

@@ -13,8 +13,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /** Checks where the task shows an echo 10 m straight ahead. */
-class ScanMosaicTaskTest : public test::PictureBench<ScanMosaicTask, types::Pose> {
-protected:
+struct ScanMosaicTaskTest : test::PictureBench<ScanMosaicTask, types::Pose> {
     ScanMosaicTaskTest() : PictureBench(&ScanMosaicTask::pose) {
         MosaicConfig config;
         config.width = 1200;

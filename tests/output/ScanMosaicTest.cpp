@@ -7,16 +7,8 @@ namespace insonify::output {
 namespace {
 
 /** A mosaic in gray on a fixed scale; 3 pixels a bin. */
-class ScanMosaicTest : public ::testing::Test {
-protected:
-    ScanMosaicTest() : mosaic_(display()) {}
-    static DisplayConfig display() {
-        DisplayConfig config;
-        config.width = 2 * (2 * 360 + 112);
-        config.reference_db = 0;
-        config.colour_map = ColourMap::Gray;
-        return config;
-    }
+struct ScanMosaicTest : ::testing::Test {
+    ScanMosaicTest() : mosaic_(test::grayPicture(2 * (2 * 360 + 112))) {}
     void turnInRoom() {
         types::Image picture;
         for (int i = 0; i < test::pings_in_room; ++i) {

@@ -19,14 +19,6 @@ types::Sonar lineWith(uint32_t starboard, uint32_t port) {
     return ping;
 }
 
-SideScanPictureConfig display() {
-    SideScanPictureConfig config;
-    config.width = 600;
-    config.reference_db = 0;
-    config.colour_map = ColourMap::Gray;
-    return config;
-}
-
 /** Returns the pixel of a range in the newest row; positive to starboard [m]. */
 cv::Point at(const SideScanImage& image, double range) {
     const cv::Rect water = image.water();
@@ -34,7 +26,7 @@ cv::Point at(const SideScanImage& image, double range) {
 }
 
 TEST(SideScanImageTest, PortIsLeftAndStarboardIsRightOfTheMiddle) {
-    SideScanImage image(display());
+    SideScanImage image(test::grayPicture<SideScanPictureConfig>(600));
     types::Image picture;
     const types::Sonar ping = lineWith(20, 60);
     const double bin = ping.binStart(1);
@@ -46,7 +38,7 @@ TEST(SideScanImageTest, PortIsLeftAndStarboardIsRightOfTheMiddle) {
 }
 
 TEST(SideScanImageTest, RowsAlongTheGroundHaveNoWaterColumn) {
-    SideScanPictureConfig config = display();
+    auto config = test::grayPicture<SideScanPictureConfig>(600);
     config.ground_range.emplace();
     config.ground_range->altitude = 15;
     SideScanImage image(config);
@@ -60,7 +52,7 @@ TEST(SideScanImageTest, RowsAlongTheGroundHaveNoWaterColumn) {
 }
 
 TEST(SideScanImageTest, TheHeightIsMeasuredOrThatOfTheFirstReturn) {
-    SideScanPictureConfig config = display();
+    auto config = test::grayPicture<SideScanPictureConfig>(600);
     config.ground_range.emplace();
     SideScanImage image(config);
     types::Image picture;
@@ -74,33 +66,9 @@ TEST(SideScanImageTest, TheHeightIsMeasuredOrThatOfTheFirstReturn) {
     EXPECT_GT(levelAt(picture, at(image, std::sqrt(std::pow(40.5 * bin, 2) - 100))), 200);
 }
 
-TEST(SideScanImageTest, ThePortAltitudeReplacesTheFirstReturn) {
+TEST(SideScanImageTest, EachPingUsesThePortsAltitudeAtItsTime) {
     SideScanImageTask task("side_scan");
-    SideScanPictureConfig config = display();
-    config.ground_range.emplace();
-    task.config.set(config);
-    test::Writer<types::SonarPtr> pings;
-    test::Writer<types::Range> altitudes;
-    test::Reader<types::ImagePtr> pictures;
-    pings.port.connectTo(task.ping, framework::ConnPolicy::buffer(4));
-    altitudes.port.connectTo(task.altitude, framework::ConnPolicy::buffer(4));
-    task.image.connectTo(pictures.port, framework::ConnPolicy::buffer(4));
-    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
-    types::Range measured;
-    measured.range = 12;
-    altitudes.port.write(measured);
-    const types::Sonar ping = lineWith(40, 60);
-    pings.port.write(test::shared(ping));
-    task.update();
-    types::ImagePtr picture;
-    ASSERT_TRUE(pictures.port.readNew(picture));
-    const SideScanImage layout(config);
-    EXPECT_GT(levelAt(*picture, at(layout, std::sqrt(std::pow(40.5 * ping.binStart(1), 2) - 144))), 200);
-}
-
-TEST(SideScanImageTest, EachPingUsesTheAltitudeAtItsTime) {
-    SideScanImageTask task("side_scan");
-    SideScanPictureConfig config = display();
+    auto config = test::grayPicture<SideScanPictureConfig>(600);
     config.ground_range.emplace();
     task.config.set(config);
     test::Writer<types::SonarPtr> pings;
@@ -133,7 +101,7 @@ TEST(SideScanImageTest, EachPingUsesTheAltitudeAtItsTime) {
 }
 
 TEST(SideScanImageTest, APingWithoutASideLeavesItBlank) {
-    SideScanImage image(display());
+    SideScanImage image(test::grayPicture<SideScanPictureConfig>(600));
     types::Image picture;
     types::Sonar ping = lineWith(20, 20);
     ping.bearings[1] = {-0.5};

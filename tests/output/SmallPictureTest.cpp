@@ -84,8 +84,7 @@ TEST(SmallPictureTest, OmitsTheColourBarIfItDoesNotFit) {
 }
 
 /** Draws nothing: OpenCV refuses. */
-class RefusedPicture final : public Painter {
-public:
+struct RefusedPicture final : Painter {
     explicit RefusedPicture(const DisplayConfig& /*config*/) {}
     void paint(const types::Sonar& /*ping*/, types::Image& /*picture*/) override { cv::Mat(2, 2, CV_8U).row(5); }
 };

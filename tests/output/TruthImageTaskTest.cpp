@@ -33,8 +33,7 @@ types::SonarTruth truthOf(const types::Sonar& ping) {
     return truth;
 }
 
-class TruthImageTaskTest : public test::PictureBench<TruthImageTask, types::SonarTruthPtr> {
-protected:
+struct TruthImageTaskTest : test::PictureBench<TruthImageTask, types::SonarTruthPtr> {
     TruthImageTaskTest() : PictureBench(&TruthImageTask::truth) {
         TruthImageConfig config;
         config.width = 1200;

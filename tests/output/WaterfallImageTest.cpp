@@ -8,16 +8,8 @@ namespace {
 
 using test::levelAt;
 
-DisplayConfig shownAs() {
-    DisplayConfig config;
-    config.width = 600;
-    config.reference_db = 0;
-    config.colour_map = ColourMap::Gray;
-    return config;
-}
-
 TEST(WaterfallImageTest, TheNewestPingIsOnTopAndRangeGrowsToTheRight) {
-    WaterfallImage waterfall(shownAs());
+    WaterfallImage waterfall(test::grayPicture(600));
     types::Image picture;
     waterfall.paint(test::withEcho(test::emptyPing(3, 1), 0, 25), picture);
     waterfall.paint(test::withEcho(test::emptyPing(3, 1), 0, 75), picture);
@@ -29,7 +21,7 @@ TEST(WaterfallImageTest, TheNewestPingIsOnTopAndRangeGrowsToTheRight) {
 }
 
 TEST(WaterfallImageTest, ARowIsTheMeanOverTheBeams) {
-    WaterfallImage waterfall(shownAs());
+    WaterfallImage waterfall(test::grayPicture(600));
     types::Sonar ping = test::emptyPing(90, 10);
     for (uint32_t bin = 0; bin < 100; ++bin) ping.bins[bin] = 0.1f;  // 0.01 over ten beams: 20 dB of 40
     types::Image picture;
@@ -38,7 +30,7 @@ TEST(WaterfallImageTest, ARowIsTheMeanOverTheBeams) {
 }
 
 TEST(WaterfallImageTest, OldPingsLeaveAtTheBottom) {
-    WaterfallImage waterfall(shownAs());
+    WaterfallImage waterfall(test::grayPicture(600));
     types::Sonar bright = test::emptyPing(3, 1);
     bright.bins.assign(bright.bins.size(), 1);
     waterfall.skip(bright);
@@ -52,7 +44,7 @@ TEST(WaterfallImageTest, OldPingsLeaveAtTheBottom) {
 }
 
 TEST(WaterfallImageTest, DrawsAPingWithoutBeams) {
-    WaterfallImage waterfall(shownAs());
+    WaterfallImage waterfall(test::grayPicture(600));
     types::Image picture;
     waterfall.paint(types::Sonar{}, picture);
     EXPECT_EQ(picture.size.width, 600);

@@ -1,8 +1,6 @@
 // Reading of XTF files: files written here, those of other programs, and damaged files.
 #include <gmock/gmock.h>
 
-#include <fstream>
-
 #include "components/output/XtfFile.hpp"
 #include "components/output/XtfLayout.hpp"
 #include "tests/output/RecordedFileTest.hpp"
@@ -48,8 +46,7 @@ types::Pose headed(double yaw_deg) {
     return pose;
 }
 
-class XtfFileTest : public RecordedFileTest<SideScanFile> {
-protected:
+struct XtfFileTest : RecordedFileTest<SideScanFile> {
     XtfFileTest()
         : RecordedFileTest("line.xtf",
                            [](const std::filesystem::path& path) { return std::make_unique<XtfFile>(path); }) {}

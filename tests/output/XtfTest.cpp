@@ -43,8 +43,7 @@ types::Pose towed(int64_t time, double yaw_deg = 0) {
     return pose;
 }
 
-class XtfTest : public ::testing::Test {
-protected:
+struct XtfTest : ::testing::Test {
     XtfTest() {
         auto environment = std::make_shared<framework::Environment>(task_.environment());
         environment->output_folder = folder_.path();
@@ -59,8 +58,7 @@ protected:
         config.samples = samples;
         config.frequency_khz = 450;
         task_.config.set(config);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     void give(const types::Sonar& ping) {
         pings_.port.write(test::shared(ping));

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <fstream>
 #include <memory>
 
@@ -14,8 +13,7 @@ namespace insonify::pose {
 namespace {
 
 /** A task on a clock that the test sets; the run starts at 1 s. */
-class TrajectoryTaskTest : public ::testing::Test {
-protected:
+struct TrajectoryTaskTest : ::testing::Test {
     TrajectoryTaskTest() {
         auto environment = std::make_shared<framework::Environment>();
         environment->now = [this] { return time_; };
@@ -40,8 +38,7 @@ protected:
 
 TEST_F(TrajectoryTaskTest, TimesCountFromTheStartOfTheRun) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 2, .position = {4, 0, 0}}}});
-    ASSERT_TRUE(task_.configure());
-    ASSERT_TRUE(task_.start());
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     const types::Pose pose = poseAt(1.5);
     EXPECT_DOUBLE_EQ(pose.position.x, 1);
     EXPECT_EQ(pose.time, types::Time::fromSeconds(1.5));
@@ -50,8 +47,7 @@ TEST_F(TrajectoryTaskTest, TimesCountFromTheStartOfTheRun) {
 TEST_F(TrajectoryTaskTest, IsFinishedWithTheLastPoseOnTheTrajectory) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 1}}});
     task_.activity().configure({.period = 0.3, .trigger = {}, .cpus = {}});
-    ASSERT_TRUE(task_.configure());
-    ASSERT_TRUE(task_.start());
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     poseAt(1.6);
     EXPECT_FALSE(task_.finished());
     poseAt(1.9);
@@ -64,8 +60,7 @@ TEST_F(TrajectoryTaskTest, IsFinishedWithTheLastPoseOnTheTrajectory) {
 TEST_F(TrajectoryTaskTest, CountsThePosesThatItHoldsAfterTheLastStamp) {
     task_.config.set(
         {.file = {}, .waypoints = {{.time = 0, .position = {0, 0, 0}}, {.time = 2, .position = {2, 0, 0}}}});
-    ASSERT_TRUE(task_.configure());
-    ASSERT_TRUE(task_.start());
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     for (const double time : {1.0, 2.0, 3.0}) poseAt(time);
     EXPECT_THAT(task_.notices(), testing::IsEmpty());
     for (const double time : {3.5, 4.0}) EXPECT_EQ(poseAt(time).position.x, 2);
@@ -85,8 +80,7 @@ TEST_F(TrajectoryTaskTest, WarnsOfQuaternionsOfOddLengths) {
 TEST_F(TrajectoryTaskTest, APeriodThatDividesTheTrajectoryReachesItsLastStamp) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 1}}});
     task_.activity().configure({.period = 1.0 / 3, .trigger = {}, .cpus = {}});
-    ASSERT_TRUE(task_.configure());
-    ASSERT_TRUE(task_.start());
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     poseAt(1 + 2.0 / 3);
     EXPECT_FALSE(task_.finished());
     poseAt(2);
@@ -95,8 +89,7 @@ TEST_F(TrajectoryTaskTest, APeriodThatDividesTheTrajectoryReachesItsLastStamp) {
 
 TEST_F(TrajectoryTaskTest, AFixedPoseIsFinishedAfterOnePose) {
     task_.config.set({.file = {}, .waypoints = {{.time = 100, .position = {1, 2, 3}}}});
-    ASSERT_TRUE(task_.configure());
-    ASSERT_TRUE(task_.start());
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     EXPECT_FALSE(task_.finished());
     EXPECT_EQ(poseAt(1).position, glm::dvec3(1, 2, 3));
     EXPECT_TRUE(task_.finished());
@@ -107,8 +100,7 @@ TEST_F(TrajectoryTaskTest, ALoopRestartsAtItsFirstStamp) {
         {.file = {},
          .waypoints = {{.time = 2}, {.time = 4, .position = {4, 0, 0}}, {.time = 6, .position = {0, 0, 0}}},
          .loop = true});
-    ASSERT_TRUE(task_.configure());
-    ASSERT_TRUE(task_.start());
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     EXPECT_EQ(poseAt(2).position.x, 0) << "before the first stamp it waits, as without a loop";
     for (const double turn : {0.0, 4.0, 400'000.0}) {
         EXPECT_DOUBLE_EQ(poseAt(1 + 3 + turn).position.x, 2) << "on its way, turn after " << turn << " s";
@@ -121,8 +113,7 @@ TEST_F(TrajectoryTaskTest, ALoopRestartsAtItsFirstStamp) {
 
 TEST_F(TrajectoryTaskTest, ALoopOfOneWaypointHoldsItsPose) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0, .position = {1, 2, 3}}}, .loop = true});
-    ASSERT_TRUE(task_.configure());
-    ASSERT_TRUE(task_.start());
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     for (const double time : {1.0, 50.0, 1e6}) {
         EXPECT_EQ(poseAt(time).position, glm::dvec3(1, 2, 3));
         EXPECT_FALSE(task_.finished());
@@ -132,8 +123,7 @@ TEST_F(TrajectoryTaskTest, ALoopOfOneWaypointHoldsItsPose) {
 TEST_F(TrajectoryTaskTest, FindsAFileNextToTheDeployment) {
     std::ofstream(folder_ / "trajectory.csv") << "time,x,y,z,qw,qx,qy,qz\n0,7,8,9,1,0,0,0\n";
     task_.config.set({.file = "trajectory.csv", .waypoints = {}});
-    ASSERT_TRUE(task_.configure());
-    ASSERT_TRUE(task_.start());
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     EXPECT_EQ(poseAt(1).position, glm::dvec3(7, 8, 9));
 }
 

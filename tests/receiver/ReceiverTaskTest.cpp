@@ -9,8 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class ReceiverTaskTest : public test::TaskBench<ReceiverTask, types::SonarPtr> {
-protected:
+struct ReceiverTaskTest : test::TaskBench<ReceiverTask, types::SonarPtr> {
     ReceiverTaskTest() : TaskBench(&ReceiverTask::intensity, &ReceiverTask::ping) {}
 };
 
@@ -85,8 +84,7 @@ TEST_F(ReceiverTaskTest, ReportsTheRangeOfTheGainsClamp) {
 }
 
 /** A receiver of eight bits whose warnings are kept. */
-class FlawTest : public ReceiverTaskTest {
-protected:
+struct FlawTest : ReceiverTaskTest {
     FlawTest() {
         const auto environment = std::make_shared<framework::Environment>();
         environment->warn = [this](const std::string& text) { reported_.push_back(text); };

@@ -2,7 +2,6 @@
 // A log and a task that replays it.
 #include <gtest/gtest.h>
 
-#include "components/framework/Activity.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "tests/support/Folder.hpp"
@@ -59,8 +58,7 @@ struct Bench {
     template <class T>
     void start(const std::string& stream, test::Reader<T>& reader) {
         connect(stream, reader);
-        ASSERT_TRUE(task.configure());
-        ASSERT_TRUE(task.start());
+        ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     }
     void updateAt(int64_t time) {
         clock = {time};

@@ -189,8 +189,7 @@ std::string made(std::type_identity<std::string>) { return "a \"word\"\n"; }
 template <class T>
 requires std::is_arithmetic_v<T> T made(std::type_identity<T>) { return static_cast<T>(-3); }
 
-template <class T>
-std::vector<char> marshalled(const T& sample) {
+std::vector<char> marshalled(const auto& sample) {
     std::vector<char> bytes;
     log::pocolog::marshal(sample, bytes);
     return bytes;
@@ -237,8 +236,7 @@ T replayed(const Folder& folder, const std::string& file) {
 }
 
 template <class T>
-class SampleTypesTest : public testing::Test {
-protected:
+struct SampleTypesTest : testing::Test {
     /** Returns the sample as MCAP files and replays return it: Rock's older sonar samples become pings. */
     using Read = typename ros::MessagesOf<T>::read_as;
     static Read asRead(const T& sample) {

@@ -15,8 +15,7 @@ std::vector<char> bytesOf(const T& message) {
 }
 
 /** Returns a message such as "Time(1 0)" in hexadecimal, without the header. */
-template <class T>
-std::string bodyOf(const T& message) {
+std::string bodyOf(const auto& message) {
     std::string text;
     const std::vector<char> bytes = bytesOf(message);
     for (size_t i = 4; i < bytes.size(); ++i) {

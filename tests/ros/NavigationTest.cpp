@@ -24,8 +24,7 @@ types::Imu smallImu() {
     return imu;
 }
 
-template <class Sample>
-Imu imuOf(const Sample& sample, WorldFrame frame) {
+Imu imuOf(const auto& sample, WorldFrame frame) {
     Imu message;
     convert(sample, frame, "imu", message);
     return message;

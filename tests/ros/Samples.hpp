@@ -1,7 +1,4 @@
 #pragma once
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include "components/ros/Messages.hpp"
 #include "types/Pose.hpp"

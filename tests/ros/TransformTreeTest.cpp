@@ -24,8 +24,7 @@ TransformStamped place(const std::string& parent, const std::string& child, Vect
 /** A quarter turn to the left, about z. */
 constexpr Quaternion left{0, 0, half, half};
 
-class TransformTreeTest : public testing::Test {
-protected:
+struct TransformTreeTest : testing::Test {
     std::string moving(const TransformStamped& transform, double stamp) {
         return tree.add(transform, false, at(stamp), at(stamp));
     }

@@ -6,8 +6,7 @@
 namespace insonify::scene {
 namespace {
 
-class AnimationFileTest : public SceneFiles {
-protected:
+struct AnimationFileTest : SceneFiles {
     Scene read(const std::string& rest) const { return readScene(write("case.gltf", gltf(rest))); }
     /** The scene at a time, with every animation playing. */
     static types::Snapshot at(const std::shared_ptr<const Scene>& scene, double seconds,

@@ -1,54 +1,35 @@
 // A scene's task plays animations by the time of poses, or by a port.
 #include <gmock/gmock.h>
 
-#include "components/scene/SceneTask.hpp"
 #include "tests/scene/AnimatedFiles.hpp"
+#include "tests/scene/SceneTaskFiles.hpp"
 #include "tests/support/Allocations.hpp"
-#include "tests/support/Ports.hpp"
 
 namespace insonify::scene {
 namespace {
 
-class AnimationTaskTest : public SceneFiles {
-protected:
-    AnimationTaskTest() {
+struct AnimationTaskTest : SceneTaskFiles {
+    AnimationTaskTest() : SceneTaskFiles(eelText(Tube(5, 6, 0.1f))) {
         environment_->now = [this] { return now_; };
         environment_->start_time = [] { return types::Time::fromSeconds(1); };
         task_.setEnvironment(environment_);
-        config_.file = write("eel.gltf", gltf(eelText(Tube(5, 6, 0.1f)))).string();
-        vehicle_.port.connectTo(task_.pose, framework::ConnPolicy::buffer(8));
-        task_.snapshot.connectTo(out_.port, framework::ConnPolicy::buffer(8));
-    }
-    void start() {
-        task_.config.set(config_);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start());
     }
     /** The snapshot at a time after the start of the run [s]. */
-    types::SnapshotPtr at(double seconds) {
-        types::Pose pose;
-        pose.time = now_ = types::Time::fromSeconds(1 + seconds);
-        pose.orientation = {1, 0, 0, 0};
-        vehicle_.port.write(pose);
-        task_.update();
-        types::SnapshotPtr snapshot;
-        out_.port.readNew(snapshot);
-        return snapshot;
+    types::SnapshotPtr snapshotAt(double seconds) {
+        now_ = types::Time::fromSeconds(1 + seconds);
+        return ping(at(1 + seconds, {0, 0, 0}));
     }
     /** How far the eel has gone along x [m]; none where nothing moves it. */
     std::optional<double> wayAt(double seconds) {
-        const types::SnapshotPtr snapshot = at(seconds);
+        const types::SnapshotPtr snapshot = snapshotAt(seconds);
         if (snapshot->moved.empty()) return {};
         return snapshot->moved[0].world_from_object[3].x;
     }
 
     types::Time now_ = types::Time::fromSeconds(1);
     std::shared_ptr<framework::Environment> environment_ = std::make_shared<framework::Environment>();
-    SceneConfig config_;
-    SceneTask task_{"scene"};
-    test::Writer<types::Pose> vehicle_{"vehicle"}, eel_{"eel"};
+    test::Writer<types::Pose> eel_{"eel"};
     test::Writer<double> clock_{"clock"};
-    test::Reader<types::SnapshotPtr> out_;
 };
 
 TEST_F(AnimationTaskTest, AllAnimationsPlayFromTheStartOfTheRun) {
@@ -56,7 +37,7 @@ TEST_F(AnimationTaskTest, AllAnimationsPlayFromTheStartOfTheRun) {
     EXPECT_NEAR(*wayAt(0), 0, 1e-12);
     EXPECT_NEAR(*wayAt(1.5), 0.75, 1e-12);
     EXPECT_NEAR(*wayAt(2.5), 0.25, 1e-12);
-    EXPECT_EQ(at(0.5)->deformed.size(), 1u);
+    EXPECT_EQ(snapshotAt(0.5)->deformed.size(), 1u);
     EXPECT_THAT(task_.notices(),
                 testing::Contains(testing::HasSubstr("animations that play: waves (1 s), advance (2 s)")));
 }
@@ -64,7 +45,7 @@ TEST_F(AnimationTaskTest, AllAnimationsPlayFromTheStartOfTheRun) {
 TEST_F(AnimationTaskTest, AnimationsThatAreNotToPlayLeaveTheSceneAtRest) {
     config_.animations["*"].play = false;
     start();
-    const types::SnapshotPtr snapshot = at(0.5);
+    const types::SnapshotPtr snapshot = snapshotAt(0.5);
     EXPECT_TRUE(snapshot->moved.empty());
     EXPECT_TRUE(snapshot->deformed.empty());
     EXPECT_TRUE(snapshot->joints.empty());
@@ -83,7 +64,7 @@ TEST_F(AnimationTaskTest, APortSetsTheTimeWithinAnAnimation) {
     EXPECT_NEAR(*wayAt(0.6), 0.5, 1e-12);
     EXPECT_NEAR(*wayAt(0.7), 0.5, 1e-12);  // the newest stays
     clock_.port.write(1.2);
-    const types::SnapshotPtr snapshot = at(0.8);
+    const types::SnapshotPtr snapshot = snapshotAt(0.8);
     EXPECT_NEAR(snapshot->moved[0].world_from_object[3].x, 0.6, 1e-12);
     EXPECT_NEAR((*snapshot->moved[0].rate)[3].x, 0.5 * 0.2 / 0.2, 1e-9);  // 0.2 s of it within 0.2 s
     clock_.port.write(std::numeric_limits<double>::quiet_NaN());
@@ -104,7 +85,7 @@ TEST_F(AnimationTaskTest, APoseMovesANodeInPlaceOfItsAnimation) {
     pose.orientation = {1, 0, 0, 0};
     eel_.port.write(pose);
     EXPECT_NEAR(*wayAt(0.6), 50, 1e-12);
-    EXPECT_EQ(at(0.7)->deformed.size(), 1u);
+    EXPECT_EQ(snapshotAt(0.7)->deformed.size(), 1u);
 }
 
 TEST_F(AnimationTaskTest, ATargetMovesWithAnAnimatedNode) {
@@ -115,7 +96,7 @@ TEST_F(AnimationTaskTest, ATargetMovesWithAnAnimatedNode) {
     target.strength_db = -30;
     config_.targets = {target};
     start();
-    EXPECT_LT(glm::distance(at(1)->targets.at(0).position, glm::dvec3(0.5, 0, 2.125)), 1e-12);
+    EXPECT_LT(glm::distance(snapshotAt(1)->targets.at(0).position, glm::dvec3(0.5, 0, 2.125)), 1e-12);
 }
 
 TEST_F(AnimationTaskTest, AnUnknownAnimationIsRefused) {
@@ -133,10 +114,10 @@ TEST_F(AnimationTaskTest, AnimationsAllocateNothingAfterTheFirstPoses) {
     task_.config.set(config_);
     eel_.port.connectTo(*task_.makeInput("eel.pose", eel_.port), {});
     start();
-    types::SnapshotPtr last = at(0);
+    types::SnapshotPtr last = snapshotAt(0);
     EXPECT_THAT(test::allocationsOn(task_,
                                     [&] {
-                                        for (int i = 1; i < 100; ++i) last = at(0.05 * i);
+                                        for (int i = 1; i < 100; ++i) last = snapshotAt(0.05 * i);
                                     }),
                 testing::IsEmpty());
     EXPECT_EQ(last->deformed.size(), 1u);

@@ -6,8 +6,7 @@
 namespace insonify::scene {
 namespace {
 
-class BadInputTest : public SceneFiles {
-protected:
+struct BadInputTest : SceneFiles {
     void expectDiagnostic(const std::filesystem::path& file, const std::string& part) const {
         const std::string diagnostic = diagnosticOf(file);
         EXPECT_NE(diagnostic.find(file.string()), std::string::npos) << diagnostic;

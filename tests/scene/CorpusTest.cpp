@@ -10,8 +10,7 @@
 namespace insonify::scene {
 namespace {
 
-class CorpusTest : public ::testing::Test {
-protected:
+struct CorpusTest : ::testing::Test {
     void SetUp() override {
         if (!std::filesystem::is_directory(models_))
             GTEST_SKIP() << "NO MODELS AT " << models_ << ": NOTHING WAS TESTED";

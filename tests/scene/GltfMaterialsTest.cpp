@@ -10,8 +10,7 @@ namespace {
 const std::string png =
     "data:image/"
     "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR4nGP439DAJSIHAArlAjybukczAAAAAElFTkSuQmCC";
-class GltfMaterialsTest : public SceneFiles {
-protected:
+struct GltfMaterialsTest : SceneFiles {
     types::Material acoustics(const std::string& json) const {
         return load(R"("materials":[{"name":"m","doubleSided":true,"extras":{"acoustics":)" + json + "}}]")
             ->materials.at(0);
@@ -119,8 +118,7 @@ TEST_F(GltfMaterialsTest, ReportsAWrongShellWithItsPlace) {
 }
 
 /** A triangle whose uvs are those of `mapped`, with a surface map. */
-class SurfaceMapsTest : public SceneFiles {
-protected:
+struct SurfaceMapsTest : SceneFiles {
     /** `map`: the block in extras.acoustics; `more`: inside the material; `uvs`: whether the mesh has coordinates. */
     static std::string painted(const std::string& map, const std::string& more = "", bool uvs = true) {
         return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0)" +

@@ -12,8 +12,7 @@ const std::string triangle = R"("meshes":[{"name":"tri","primitives":[{"attribut
     "bufferViews":[{"buffer":0,"byteLength":36}],)" +
                              buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 0}));
 
-class GltfNodesTest : public SceneFiles {
-protected:
+struct GltfNodesTest : SceneFiles {
     types::GeometryPtr nodes(const std::string& json) const { return load(R"("nodes":)" + json + "," + triangle); }
     std::string diagnosticOfNodes(const std::string& json) const {
         return diagnosticOfGltf(R"("nodes":)" + json + "," + triangle);

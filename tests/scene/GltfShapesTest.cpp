@@ -7,8 +7,7 @@ namespace {
 const std::string square = bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
 const std::string one_node = R"("nodes":[{"mesh":0}],)";
 
-class GltfShapesTest : public SceneFiles {
-protected:
+struct GltfShapesTest : SceneFiles {
     /** The square as a primitive of this mode, with these indices. */
     types::GeometryPtr squareOf(int mode, const std::string& indices, int component_type, size_t count) const {
         return load(one_node + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":)" +

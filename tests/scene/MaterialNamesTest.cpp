@@ -45,8 +45,7 @@ TEST(MaterialNamesTest, ANameOfTwoHasBoth) {
     EXPECT_THAT(matterIn("sandOnConcrete"), ElementsAre("medium_sand", "concrete"));
 }
 
-class TakeNamesTest : public ::testing::Test {
-protected:
+struct TakeNamesTest : ::testing::Test {
     static types::GeometryPtr sceneOf(std::vector<types::Material> materials) {
         auto geometry = std::make_shared<types::Geometry>();
         geometry->materials = std::move(materials);

@@ -4,8 +4,7 @@
 namespace insonify::scene {
 namespace {
 
-class OverridesTest : public SceneFiles {
-protected:
+struct OverridesTest : SceneFiles {
     /** Two walls of one mesh and material, the second below a group. */
     Scene walls() const {
         return readScene(write("walls.gltf", gltf(R"("scenes":[{"nodes":[0,1]}],

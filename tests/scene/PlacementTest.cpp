@@ -8,15 +8,13 @@
 #include "components/scene/Placement.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/scene/SceneFiles.hpp"
-#include "types/Angle.hpp"
 
 namespace insonify::scene {
 namespace {
 
 using types::WorldFrame;
 
-class PlacementTest : public SceneFiles {
-protected:
+struct PlacementTest : SceneFiles {
     /** A node with a child, a corner of whose triangle is at (1, 2, 3) + (0, 1, 0) of the file. */
     Scene scene() const {
         return readScene(write(

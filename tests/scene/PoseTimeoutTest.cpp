@@ -3,10 +3,7 @@
 
 #include <numbers>
 
-#include "components/framework/Activity.hpp"
-#include "components/scene/SceneTask.hpp"
-#include "tests/scene/SceneFiles.hpp"
-#include "tests/support/Ports.hpp"
+#include "tests/scene/SceneTaskFiles.hpp"
 #include "types/Pose.hpp"
 
 namespace insonify::scene {
@@ -16,19 +13,14 @@ using framework::TaskState;
 using testing::HasSubstr;
 using testing::Not;
 
-class PoseTimeoutTest : public SceneFiles {
-protected:
-    PoseTimeoutTest() {
-        config_.file = write("empty.gltf", gltf(R"("scenes":[{"nodes":[]}],"nodes":[],)" + buffers("    "))).string();
-        vehicle_.port.connectTo(task_.pose, framework::ConnPolicy::data());
-        task_.snapshot.connectTo(out_.port, framework::ConnPolicy::buffer(8));
+struct PoseTimeoutTest : SceneTaskFiles {
+    PoseTimeoutTest()
+        : SceneTaskFiles(R"("scenes":[{"nodes":[]}],"nodes":[],)" + buffers("    "), framework::ConnPolicy::data()) {
         task_.environment().now = [this] { return now_; };
     }
-    void start(std::optional<double> timeout) {
+    void startWith(std::optional<double> timeout) {
         config_.pose_timeout = timeout;
-        task_.config.set(config_);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start());
+        start();
     }
     /** Runs a cycle at this time [s], with a pose of that stamp if given; returns whether there was a snapshot. */
     bool cycle(double now, std::optional<double> stamp = {}) {
@@ -42,14 +34,10 @@ protected:
     }
 
     types::Time now_ = types::Time::fromSeconds(10);
-    SceneConfig config_;
-    SceneTask task_{"scene"};
-    test::Writer<types::Pose> vehicle_{"vehicle"};
-    test::Reader<types::SnapshotPtr> out_;
 };
 
 TEST_F(PoseTimeoutTest, MissingPosesAreAnErrorUntilTheyReturn) {
-    start(0.5);
+    startWith(0.5);
     EXPECT_TRUE(cycle(10.1, 10.1));
     EXPECT_FALSE(cycle(10.5));
     EXPECT_EQ(task_.state(), TaskState::Running);
@@ -65,7 +53,7 @@ TEST_F(PoseTimeoutTest, MissingPosesAreAnErrorUntilTheyReturn) {
 TEST_F(PoseTimeoutTest, WaitingForTheFirstPoseIsReportedOnceAndIsNoError) {
     std::vector<std::string> reported;
     task_.environment().warn = [&](const std::string& text) { reported.push_back(text); };
-    start(0.5);
+    startWith(0.5);
     EXPECT_FALSE(cycle(10.4));
     EXPECT_THAT(reported, testing::IsEmpty());
     EXPECT_FALSE(cycle(10.6));
@@ -78,7 +66,7 @@ TEST_F(PoseTimeoutTest, WaitingForTheFirstPoseIsReportedOnceAndIsNoError) {
 }
 
 TEST_F(PoseTimeoutTest, WaitsForMissingPosesButNotForInvalidPoses) {
-    start(0.5);
+    startWith(0.5);
     EXPECT_TRUE(cycle(10.1, 10.1));
     EXPECT_FALSE(task_.waits());
     EXPECT_FALSE(cycle(11));
@@ -93,7 +81,7 @@ TEST_F(PoseTimeoutTest, WaitsForMissingPosesButNotForInvalidPoses) {
 }
 
 TEST_F(PoseTimeoutTest, AnOldPoseGivesNoSnapshot) {
-    start(0.5);
+    startWith(0.5);
     EXPECT_FALSE(cycle(11, 10.4));
     EXPECT_EQ(task_.state(), TaskState::RunTimeError);
     EXPECT_FALSE(cycle(11.1, 10.5));
@@ -104,7 +92,7 @@ TEST_F(PoseTimeoutTest, AnOldPoseGivesNoSnapshot) {
 TEST_F(PoseTimeoutTest, AQuaternionThatIsNotOfUnitLengthIsReportedOnce) {
     std::vector<std::string> warnings;
     task_.environment().warn = [&](const std::string& text) { warnings.push_back(text); };
-    start(0.5);
+    startWith(0.5);
     types::Pose body;
     for (int i = 0; i < 3; ++i) {
         body.time = now_ = types::Time::fromSeconds(10.1 + i / 10.0);
@@ -120,7 +108,7 @@ TEST_F(PoseTimeoutTest, AQuaternionThatIsNotOfUnitLengthIsReportedOnce) {
 }
 
 TEST_F(PoseTimeoutTest, StampsOfAnotherClockAreReportedWithTheRemedy) {
-    start(0.5);
+    startWith(0.5);
     EXPECT_FALSE(cycle(110, 10));
     EXPECT_THAT(task_.lastError(), HasSubstr("have stamps 100 s behind this clock"));
     EXPECT_THAT(task_.lastError(), HasSubstr("`stamp: arrival`"));
@@ -130,7 +118,7 @@ TEST_F(PoseTimeoutTest, StampsOfAnotherClockAreReportedWithTheRemedy) {
 }
 
 TEST_F(PoseTimeoutTest, HasNoDefaultTimeoutOutsideOfRealtime) {
-    start({});
+    startWith({});
     EXPECT_TRUE(cycle(10, 10));
     EXPECT_FALSE(cycle(1000));
     EXPECT_TRUE(cycle(1000, 10));
@@ -148,7 +136,7 @@ TEST_F(PoseTimeoutTest, TheSonarMovesWithTheBodyAndIsExtrapolatedOnRequest) {
         config_.mount.position = {1, 0, 0};
         config_.mount.pitch_deg = 90;  // looks down: its x is the body's -z
         task_.stop();
-        start({});
+        startWith({});
         vehicle_.port.write(pose);
         task_.update();
         types::SnapshotPtr snapshot;
@@ -181,7 +169,7 @@ TEST(CarriedOnTest, ExtrapolatesAPoseByItsVelocitiesUpToTheLimit) {
 }
 
 TEST_F(PoseTimeoutTest, AStampFarAheadIsStaleAsWell) {
-    start(0.5);
+    startWith(0.5);
     EXPECT_TRUE(cycle(10.1, 10.1));
     EXPECT_FALSE(cycle(5)) << "the clock was set back";
     EXPECT_EQ(task_.state(), TaskState::RunTimeError);
@@ -198,7 +186,7 @@ TEST_F(PoseTimeoutTest, MissingPosesOfANodeAreAnError) {
     framework::InputPortBase* const port = task_.makeInput("buoy.pose", other.port);
     ASSERT_NE(port, nullptr);
     other.port.connectTo(*port, framework::ConnPolicy::data());
-    start(0.5);
+    startWith(0.5);
     types::Pose still;
     still.time = types::Time::fromSeconds(10);
     other.port.write(still);

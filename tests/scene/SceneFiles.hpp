@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "components/scene/Scene.hpp"
+#include "tests/support/Base64.hpp"
 #include "tests/support/Folder.hpp"
 #include "types/ConfigError.hpp"
 
@@ -20,27 +20,13 @@ namespace insonify::scene {
 
 template <class T>
 std::string bytesOf(std::initializer_list<T> values) {
-    std::string bytes(values.size() * sizeof(T), '\0');
-    std::memcpy(bytes.data(), std::data(values), bytes.size());
-    return bytes;
-}
-
-inline std::string base64(const std::string& bytes) {
-    constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (size_t i = 0; i < bytes.size(); i += 3) {
-        uint32_t group = 0;
-        for (size_t k = 0; k < 3; ++k)
-            group = group << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0u);
-        for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
+    return test::bytesOf(std::span(values));
 }
 
 /** `"buffers":[...]` of one buffer with these bytes. */
 inline std::string buffers(const std::string& bytes) {
     return R"("buffers":[{"byteLength":)" + std::to_string(bytes.size()) +
-           R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}])";
+           R"(,"uri":"data:application/octet-stream;base64,)" + test::base64(bytes) + R"("}])";
 }
 
 /** `"accessors":[...],"bufferViews":[...],"buffers":[...]`: accessor 0 is the corners of a triangle. */
@@ -51,8 +37,7 @@ inline std::string triangle(const std::string& corners = bytesOf<float>({0, 0, 0
 }
 
 /** Has a separate folder for each test. */
-class SceneFiles : public ::testing::Test {
-protected:
+struct SceneFiles : ::testing::Test {
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;

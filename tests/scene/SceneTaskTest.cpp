@@ -1,50 +1,20 @@
 #include <gmock/gmock.h>
 
-#include "components/framework/Activity.hpp"
-#include "components/scene/SceneTask.hpp"
-#include "tests/scene/SceneFiles.hpp"
-#include "tests/support/Ports.hpp"
+#include "tests/scene/SceneTaskFiles.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::scene {
 namespace {
 
-class SceneTaskTest : public SceneFiles {
-protected:
-    SceneTaskTest() {
-        config_.file = write("harbour.gltf", gltf(R"("scenes":[{"nodes":[0,2]}],
+struct SceneTaskTest : SceneTaskFiles {
+    SceneTaskTest()
+        : SceneTaskFiles(R"("scenes":[{"nodes":[0,2]}],
             "nodes":[{"mesh":0,"name":"boat","translation":[1,2,3],"scale":[2,2,2],"children":[1]},
                      {"mesh":0,"name":"mast","translation":[0,5,0]},{"mesh":0,"name":"quay"}],
             "materials":[{"name":"wood"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],)" +
-                                                  triangle()))
-                           .string();
-        vehicle_.port.connectTo(task_.pose, framework::ConnPolicy::buffer(8));
-        task_.snapshot.connectTo(out_.port, framework::ConnPolicy::buffer(8));
-    }
-    void start() {
-        task_.config.set(config_);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start());
-    }
-    static types::Pose at(double seconds, glm::dvec3 position, glm::dquat orientation = {1, 0, 0, 0}) {
-        types::Pose pose;
-        pose.time = types::Time::fromSeconds(seconds);
-        pose.position = position;
-        pose.orientation = orientation;
-        return pose;
-    }
-    types::SnapshotPtr ping(const types::Pose& pose) {
-        vehicle_.port.write(pose);
-        task_.update();
-        types::SnapshotPtr snapshot;
-        out_.port.readNew(snapshot);
-        return snapshot;
-    }
+                         triangle()) {}
 
-    SceneConfig config_;
-    SceneTask task_{"scene"};
-    test::Writer<types::Pose> vehicle_{"vehicle"}, boat_{"boat"}, mast_{"mast"};
-    test::Reader<types::SnapshotPtr> out_;
+    test::Writer<types::Pose> boat_{"boat"}, mast_{"mast"};
 };
 
 glm::dquat turn(double deg, glm::dvec3 axis) { return glm::angleAxis(types::radians(deg), axis); }

@@ -8,8 +8,7 @@ namespace insonify::sdf {
 using namespace scene;
 namespace {
 
-class SdfBadInputTest : public SdfFiles {
-protected:
+struct SdfBadInputTest : SdfFiles {
     void expectDiagnostic(const std::string& diagnostic, const std::string& part) const {
         EXPECT_NE(diagnostic.find(part), std::string::npos) << diagnostic;
         EXPECT_NE(diagnostic.find(folder_.string()), std::string::npos) << diagnostic;

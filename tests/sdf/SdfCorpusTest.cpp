@@ -10,8 +10,7 @@ namespace {
 const std::filesystem::path shared_data = test::shared_data;
 const std::filesystem::path sdf_data = shared_data / "sdf";
 
-class SdfCorpusTest : public SdfFiles {
-protected:
+struct SdfCorpusTest : SdfFiles {
     void SetUp() override {
         if (!std::filesystem::is_directory(sdf_data))
             GTEST_SKIP() << "NO WORLDS AT " << sdf_data << ": NOTHING WAS TESTED";

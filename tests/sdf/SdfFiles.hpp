@@ -1,34 +1,18 @@
 #pragma once
 // Small worlds made inside a test.
-#include <cstdlib>
 #include <glm/gtc/matrix_transform.hpp>
-#include <optional>
 
 #include "components/scene/Scene.hpp"
 #include "tests/scene/SceneFiles.hpp"
+#include "tests/support/Variable.hpp"
 
 namespace insonify::sdf {
 
 using namespace scene;
 
-/** Sets a variable of the environment until the end of the test. */
-class Variable {
-public:
-    Variable(const char* name, const std::string& value) : name_(name) {
-        if (const char* before = std::getenv(name)) before_ = before;
-        setenv(name, value.c_str(), 1);
-    }
-    ~Variable() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
-    Variable(const Variable&) = delete;
-    Variable& operator=(const Variable&) = delete;
+using test::Variable;
 
-private:
-    const char* name_;
-    std::optional<std::string> before_;
-};
-
-class SdfFiles : public SceneFiles {
-protected:
+struct SdfFiles : SceneFiles {
     std::filesystem::path writeWorld(const std::string& body, const std::string& version = "1.9") const {
         return write("case.world", "<sdf version='" + version + "'><world name='w'>\n" + body + "</world></sdf>");
     }

@@ -7,8 +7,7 @@ namespace insonify::sdf {
 using namespace scene;
 namespace {
 
-class SdfTest : public SdfFiles {
-protected:
+struct SdfTest : SdfFiles {
     static std::vector<std::string> namesOf(const std::vector<Part>& parts, const Scene& scene) {
         std::vector<std::string> names;
         for (const Part& part : parts) names.push_back(scene.geometry->objects[part.object].name);

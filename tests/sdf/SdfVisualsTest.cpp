@@ -11,8 +11,7 @@ namespace insonify::sdf {
 using namespace scene;
 namespace {
 
-class SdfVisualsTest : public SdfFiles {
-protected:
+struct SdfVisualsTest : SdfFiles {
     types::GeometryPtr shape(const std::string& geometry) const { return world(model("m", geometry)).geometry; }
     static const types::Material& materialOf(const types::Geometry& geometry, size_t object) {
         const types::Mesh& mesh = geometry.meshes.at(static_cast<size_t>(geometry.objects.at(object).mesh));

@@ -1,5 +1,4 @@
 // Two vehicles in one world, each with its own SceneTask: each sees the other at the other's pose.
-#include "components/framework/Activity.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 #include "tests/support/Ports.hpp"
@@ -17,8 +16,7 @@ types::Pose at(double seconds, glm::dvec3 position, double yaw) {
     return pose;
 }
 
-class TwoVehiclesTest : public SdfFiles {
-protected:
+struct TwoVehiclesTest : SdfFiles {
     /** The scene of one vehicle, with the poses of both. */
     struct Eye {
         SceneTask task;

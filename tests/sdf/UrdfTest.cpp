@@ -10,8 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class UrdfTest : public SdfFiles {
-protected:
+struct UrdfTest : SdfFiles {
     std::filesystem::path robot(const std::string& body) const {
         return write("arm.urdf", "<?xml version='1.0'?>\n<robot name='rov'>\n" + body + "</robot>");
     }

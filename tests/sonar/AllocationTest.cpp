@@ -94,8 +94,7 @@ void expectNoAllocation(const Config& config, Truth truth = Truth::NotRead) {
     in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
     task.ping.connectTo(out.port, framework::ConnPolicy::data());
     task.config.set(config);
-    ASSERT_TRUE(task.configure()) << task.lastError();
-    ASSERT_TRUE(task.start()) << task.lastError();
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const std::vector<types::SnapshotPtr> snapshots = turning();
     const auto cycle = [&](const types::SnapshotPtr& snapshot) {
         in.port.write(snapshot);

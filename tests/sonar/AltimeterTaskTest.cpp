@@ -15,8 +15,7 @@ using test::sceneOf;
 
 constexpr double bin = 0.03;  // 20 us at 1500 m/s [m]
 
-class AltimeterTaskTest : public test::TaskBench<AltimeterTask, types::SnapshotPtr, types::Range> {
-protected:
+struct AltimeterTaskTest : test::TaskBench<AltimeterTask, types::SnapshotPtr, types::Range> {
     AltimeterTaskTest() : TaskBench(&AltimeterTask::snapshot, &AltimeterTask::range) {}
     void startWide(double opening_deg) {
         AltimeterConfig config;

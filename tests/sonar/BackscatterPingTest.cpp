@@ -7,7 +7,6 @@
 
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"
@@ -38,8 +37,7 @@ SonarConfig floorSonar(double fov_deg, double height_deg, double bin, int bins, 
     return config;
 }
 
-template <class Change>
-types::Snapshot changed(types::GeometryPtr scene, const Change& change) {
+types::Snapshot changed(types::GeometryPtr scene, const auto& change) {
     auto geometry = std::make_shared<types::Geometry>(*scene);
     change(geometry->materials.front());
     return test::snapshotOf(geometry);

@@ -6,6 +6,7 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"
 
@@ -67,16 +68,6 @@ types::Sonar plainPing(SonarConfig config, const types::Snapshot& snapshot) {
 
 std::vector<float> beamOf(const types::Sonar& ping, uint32_t k) {
     return {ping.bins.begin() + k * ping.bin_count, ping.bins.begin() + (k + 1) * ping.bin_count};
-}
-
-/** Relative L2 of their difference. */
-double maxDifference(const std::vector<float>& a, const std::vector<float>& b) {
-    double error = 0, norm = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-        error += std::pow(double{a[i]} - b[i], 2);
-        norm += std::pow(double{b[i]}, 2);
-    }
-    return std::sqrt(error / norm);
 }
 
 /** Inside of a room of 24 x 20 m, 6 m high, in the middle of which the sonar is. */
@@ -214,7 +205,8 @@ TEST(BeamFanTest, ABeamOfAFullTurnIsThatOfASonarOfTenDegrees) {
     for (int first : {0, 55, 117, 175, 236, 350}) {
         const auto few = plainPing(narrow, room(radians(first + 5 - 180)));
         for (uint32_t k = 0; k < 10; ++k)
-            EXPECT_LT(maxDifference(beamOf(all, static_cast<uint32_t>(first) + k), beamOf(few, k)), 1e-3) << first + k;
+            EXPECT_LT(test::relativeL2(beamOf(all, static_cast<uint32_t>(first) + k), beamOf(few, k)), 1e-3)
+                << first + k;
     }
 }
 
@@ -226,14 +218,14 @@ TEST(BeamFanTest, AWallThroughThreeFrustaHasNoSeam) {
     const auto straight = plainPing(config, test::snapshotOf(wall));
     const auto turned = plainPing(config, test::snapshotOf(wall, {}, radians(10)));
     for (uint32_t k = 10; k < 140; ++k)
-        EXPECT_LT(maxDifference(beamOf(straight, k), beamOf(turned, k - 10)), 1e-3) << k;
+        EXPECT_LT(test::relativeL2(beamOf(straight, k), beamOf(turned, k - 10)), 1e-3) << k;
 }
 
 TEST(BeamFanTest, LevelGroundIsTheSameInEveryBeamOfThreeFrusta) {
     SonarConfig config = plainFan(150, 150, 4);
     config.quality.rows = 512;
     const auto ping = plainPing(config, test::snapshotOf(test::sceneOf({test::ground(-5)})));
-    for (uint32_t k = 0; k < 150; ++k) EXPECT_LT(maxDifference(beamOf(ping, k), beamOf(ping, 75)), 1e-3) << k;
+    for (uint32_t k = 0; k < 150; ++k) EXPECT_LT(test::relativeL2(beamOf(ping, k), beamOf(ping, 75)), 1e-3) << k;
 }
 
 }  // namespace insonify::sonar

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "components/sonar/echo/Beamformer.hpp"
 #include "components/sonar/fan/Directivity.hpp"
@@ -35,8 +34,7 @@ std::vector<float> formed(Beamformer& beamformer, size_t beam, const std::vector
     return bins;
 }
 
-class BeamformerTest : public testing::Test {
-protected:
+struct BeamformerTest : testing::Test {
     Fan beams_ = sideBySide(radians(-30), radians(30), 30);
     Fan cells_ = sideBySide(radians(-60), radians(60), 237);  // the last group is not full
     Beamformer beamformer_{beams_, cells_, bin_count, {lobe, radians(8), 1e-6}};

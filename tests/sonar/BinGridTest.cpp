@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "components/sonar/fan/BinGrid.hpp"
 
 namespace insonify::sonar {

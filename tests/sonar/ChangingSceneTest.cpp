@@ -214,8 +214,7 @@ TEST(ChangingSceneTest, KeepsMeshesTreesAndThreads) {
 }
 
 /** A sonar that chooses its quality. */
-class ChosenQualityTest : public test::TaskBench<SonarTask, types::SnapshotPtr, types::SonarPtr> {
-protected:
+struct ChosenQualityTest : test::TaskBench<SonarTask, types::SnapshotPtr, types::SonarPtr> {
     ChosenQualityTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
 };
 

@@ -3,7 +3,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/echo/FacetCurves.hpp"
 #include "components/sonar/quality/Metrics.hpp"
 #include "components/study/FractalFloor.hpp"

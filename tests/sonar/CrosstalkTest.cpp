@@ -11,9 +11,9 @@
 
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
 #include "components/sonar/ways/Waveform.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
@@ -57,8 +57,6 @@ acoustics::BeamLaw lawOf(double width_deg) {
 }
 
 double decibelsOf(double ratio) { return 10 * std::log10(ratio); }
-
-double totalOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
 types::Snapshot openWaterWith(types::TransmissionPtr sent) {
     types::Snapshot snapshot = test::snapshotOf(openWater());
@@ -142,9 +140,9 @@ TEST(CrosstalkTest, NoPulseArrivesBehindAWallTooEarlyTooLateOrOutsideOfFanAndApe
     const SonarConfig config = receiving(test::sonarOf({.width_deg = 60, .bins = 300, .rows = 8}));
     const auto receivedFrom = [&](glm::dvec3 place, double delay, types::GeometryPtr scene = openWater()) {
         types::Snapshot snapshot = test::snapshotOf(scene);
-        const double alone = totalOf(pingOf(config, snapshot));
+        const double alone = test::sumOf(pingOf(config, snapshot));
         snapshot.transmissions = {sentFrom(place, delay)};
-        return totalOf(pingOf(config, snapshot)) - alone;
+        return test::sumOf(pingOf(config, snapshot)) - alone;
     };
     EXPECT_NEAR(receivedFrom({20, 0, 0}, 0), 1.0 / 400, 1e-6);
     EXPECT_EQ(receivedFrom({20, 0, 0}, 0, test::sceneOf({test::wall(10)})), 0);

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -70,8 +69,7 @@ types::GeometryPtr jointedPlate() {
     return test::sceneOf({test::jointed(test::quad({0, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}))});
 }
 
-class DeformingMeshTest : public scene::SceneFiles {
-protected:
+struct DeformingMeshTest : scene::SceneFiles {
     std::shared_ptr<const scene::Scene> read(const std::string& rest) const {
         return std::make_shared<const scene::Scene>(scene::readScene(write("case.gltf", gltf(rest))));
     }

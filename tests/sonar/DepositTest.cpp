@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/effects/Effects.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 
@@ -33,23 +33,11 @@ struct Kind {
     double field_of_view_deg;
 };
 
-class DepositTest : public testing::TestWithParam<Kind> {
-protected:
+struct DepositTest : testing::TestWithParam<Kind> {
     SonarConfig with(Deposit deposit) const {
         return depositFan(GetParam().model, GetParam().beams, deposit, GetParam().field_of_view_deg);
     }
 };
-
-double relativeL2(const types::Sonar& got, const types::Sonar& reference) {
-    double error = 0, norm = 0;
-    for (size_t i = 0; i < reference.bins.size(); ++i) {
-        error += std::pow(double{got.bins[i]} - reference.bins[i], 2);
-        norm += std::pow(reference.bins[i], 2);
-    }
-    return std::sqrt(error / norm);
-}
-
-double sum(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
 void expectAgreement(const types::Sonar& cpu, const types::Sonar& gpu) {
     const double floor = 1e-6 * *std::ranges::max_element(cpu.bins);
@@ -82,9 +70,9 @@ types::Snapshot asInUtm(types::Snapshot snapshot) {
 /** Energy in 2000 bins over that in one of the same length. */
 double manyOverOne(SonarConfig config, const types::Snapshot& snapshot) {
     config.bin_count = 2000;
-    const double many = sum(pingOf(config, snapshot));
+    const double many = test::sumOf(pingOf(config, snapshot));
     config.bin_count = 1;
-    return many / sum(pingOf(config, snapshot));
+    return many / test::sumOf(pingOf(config, snapshot));
 }
 
 /** Sums that the compute shader does not support. */
@@ -114,7 +102,8 @@ TEST_P(DepositTest, BothAgreeFarFromTheOriginOfTheWorld) {
     expectAgreement(pingOf(with(Deposit::Cpu), far), gpu);
     types::Snapshot aside = far;
     aside.sonar.position.x += 0.01;
-    EXPECT_GT(sum(difference(gpu, pingOf(with(Deposit::Cpu), aside))), 1e-3 * sum(gpu)) << "a centimetre is seen";
+    EXPECT_GT(test::sumOf(difference(gpu, pingOf(with(Deposit::Cpu), aside))), 1e-3 * test::sumOf(gpu))
+        << "a centimetre is seen";
 }
 
 TEST_P(DepositTest, EachIsRepeatableBitForBitInANewRenderer) {
@@ -137,7 +126,7 @@ TEST_P(DepositTest, BothAgreeInFewBinsAndInMoreThanAWorkGroupHas) {
     for (const int bins : {30, 6000}) {
         SonarConfig cpu = with(Deposit::Cpu), gpu = with(Deposit::Gpu);
         cpu.bin_count = gpu.bin_count = bins;
-        EXPECT_LT(relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5) << bins;
+        EXPECT_LT(test::relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5) << bins;
     }
 }
 
@@ -159,7 +148,7 @@ TEST(DepositPublishedTest, BothAgreeInThePublishedModelWhereMissesCount) {
     cpu.published = true;
     SonarConfig gpu = cpu;
     gpu.deposit = Deposit::Gpu;
-    EXPECT_LT(relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5);
+    EXPECT_LT(test::relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5);
 }
 
 TEST(DepositEffectTest, ReportsAnEffectThatKeepsTheDeviceFromSumming) {

@@ -3,9 +3,7 @@
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <iostream>
 #include <numbers>
-#include <numeric>
 #include <random>
 
 #include "components/acoustics/Wedge.hpp"
@@ -15,6 +13,7 @@
 #include "components/sonar/echo/StraightEdges.hpp"
 #include "components/sonar/ways/EdgeEchoes.hpp"
 #include "tests/support/EveryWay.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Weightings.hpp"
@@ -128,7 +127,6 @@ double echoAt(const types::Sonar& ping, double range) {
     }
     return sum;
 }
-double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 double decibels(double x) { return 10 * std::log10(x); }
 
 /** 1 / (1 / L^2 + 2 / (lambda r)) [m^2]. */
@@ -189,11 +187,11 @@ TEST(EdgeDiffractionTest, ASoftSheetEdgeOnIsItsNearEdge) {
     for (const SonarConfig& way : test::everyWay(edgeSonar())) {
         const types::Sonar ping = test::pingOf(way, test::snapshotOf(scene));
         EXPECT_NEAR(decibels(echoAt(ping, range) / expected), 0, 0.01);
-        EXPECT_LT(sumOf(ping), 1.01 * expected) << "nothing else";
+        EXPECT_LT(test::sumOf(ping), 1.01 * expected) << "nothing else";
     }
-    EXPECT_EQ(sumOf(test::pingOf(without(edgeSonar()), test::snapshotOf(scene))), 0);
+    EXPECT_EQ(test::sumOf(test::pingOf(without(edgeSonar()), test::snapshotOf(scene))), 0);
     const auto rigid = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, 1);
-    EXPECT_LT(sumOf(test::pingOf(edgeSonar(), test::snapshotOf(rigid))), 1e-3 * expected)
+    EXPECT_LT(test::sumOf(test::pingOf(edgeSonar(), test::snapshotOf(rigid))), 1e-3 * expected)
         << "a thin rigid sheet does not affect sound along its face";
 }
 
@@ -222,7 +220,7 @@ TEST(EdgeDiffractionTest, ATiltedStripEchoesFromBothEdgesByKellersCoefficients) 
                     EXPECT_NEAR(decibels(echoAt(ping, away) / expected), 0, 0.3)
                         << length << " m, " << reflection << ", " << tilt_deg << " deg, side " << side;
                 }
-                EXPECT_NEAR(decibels(sumOf(ping) / sum), 0, 0.3) << "the rest of the plate is silent";
+                EXPECT_NEAR(decibels(test::sumOf(ping) / sum), 0, 0.3) << "the rest of the plate is silent";
             }
 }
 
@@ -251,8 +249,8 @@ TEST(EdgeDiffractionTest, AFaceAlongItsNormalKeepsItsTargetStrength) {
     const double expected = std::pow(0.01 / wavelength, 2) / 1e4;
     SonarConfig narrow = edgeSonar();
     narrow.field_of_view_deg = narrow.beam_height_deg = 4;
-    const double plain = sumOf(test::pingOf(without(narrow), test::snapshotOf(scene)));
-    const double with = sumOf(test::pingOf(narrow, test::snapshotOf(scene)));
+    const double plain = test::sumOf(test::pingOf(without(narrow), test::snapshotOf(scene)));
+    const double with = test::sumOf(test::pingOf(narrow, test::snapshotOf(scene)));
     EXPECT_NEAR(decibels(plain / expected), 0, 0.5);
     EXPECT_NEAR(decibels(with / plain), 0, 0.2);
 }
@@ -311,7 +309,7 @@ TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndReportsWhy) {
         types::Sonar ping;
         renderer.render(test::snapshotOf(scene), ping);
         EXPECT_EQ(ping.bins, test::pingOf(without(edgeSonar()), test::snapshotOf(scene)).bins);
-        EXPECT_GT(sumOf(ping), 0);
+        EXPECT_GT(test::sumOf(ping), 0);
         const auto left = omitted(renderer);
         const Omitted* planned = renderer.renderPlan().findOmitted("edge diffraction");
         const Omitted what = left ? *left : planned ? *planned : Omitted{};

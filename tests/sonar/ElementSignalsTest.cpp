@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
@@ -171,8 +170,7 @@ TEST(ElementSignalsTest, RejectsInvalidArraysWithTheReason) {
                                       "beam_pattern.receive.azimuth is 0.0846")));
 }
 
-class ElementPortTest : public test::TaskBench<SonarTask, types::SnapshotPtr, types::SonarPtr> {
-protected:
+struct ElementPortTest : test::TaskBench<SonarTask, types::SnapshotPtr, types::SonarPtr> {
     ElementPortTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
     test::Reader<types::SonarElementsPtr> signals_;
 };

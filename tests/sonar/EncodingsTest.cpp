@@ -63,8 +63,7 @@ std::string indexed(size_t stride, int position_type, int index_type, size_t ind
            view(8 * stride, 36 * index_bytes) + "],";
 }
 
-class EncodingsTest : public scene::SceneFiles {
-protected:
+struct EncodingsTest : scene::SceneFiles {
     std::vector<float> pingOf(const std::string& rest) const { return pingOf(load(rest)); }
     static std::vector<float> pingOf(const types::GeometryPtr& geometry) {
         SonarConfig config;

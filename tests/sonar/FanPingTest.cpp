@@ -178,10 +178,8 @@ bool canHave(const test::Table& table, const SonarConfig& config) {
     return config.beam_geometry == BeamGeometry::Planar || isAhead(table);
 }
 
-class FanPingTest : public testing::TestWithParam<FanEffect> {
-protected:
-    template <class Use>
-    void forTables(int rounds, const Use& use) const {
+struct FanPingTest : testing::TestWithParam<FanEffect> {
+    void forTables(int rounds, const auto& use) const {
         std::mt19937 random(7);
         for (int round = 0; round < rounds; ++round)
             for (const test::Table& table : test::tablesOf(random)) {

@@ -1,8 +1,6 @@
 // Tables of bearings in any order, with gaps and overlaps, and across the seam at 180 degrees.
 #include <gmock/gmock.h>
 
-#include <numeric>
-
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/fan/Fan.hpp"
 #include "tests/support/Tables.hpp"

@@ -8,13 +8,12 @@
 #include <glm/geometric.hpp>
 #include <iostream>
 #include <numbers>
-#include <numeric>
 #include <random>
 
 #include "components/acoustics/Plate.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "tests/sonar/ShellScenes.hpp"
+#include "tests/support/Pings.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -36,9 +35,7 @@ types::Shell filled(double density, double speed, double loss = 0) {
             .fill_loss = loss};
 }
 acoustics::PlateResponse filmResponse(const types::Shell& shell, double cosine) {
-    return acoustics::plateResponse({shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss},
-                                    {1025, water_speed}, {shell.fill_density, shell.fill_speed}, 1000 * shell_khz,
-                                    cosine);
+    return shellResponse(shell, cosine, {shell.fill_density, shell.fill_speed});
 }
 /** Returns the share of the energy that passes into a fluid and back out at a cosine in the water. */
 double sharePassed(const types::Shell& shell, double cosine) {
@@ -47,10 +44,6 @@ double sharePassed(const types::Shell& shell, double cosine) {
     const double fluids =
         1025 * water_speed / cosine / (shell.fill_density * shell.fill_speed / std::sqrt(1 - sine * sine));
     return std::pow(std::norm(filmResponse(shell, cosine).transmitted) * fluids, 2);
-}
-double energyOfAll(const types::Sonar& ping) {
-    return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0,
-                           [](double sum, float bin) { return sum + static_cast<double>(bin); });
 }
 
 /** A ray from the origin through one surface of a body to the next, of any shape. */
@@ -135,7 +128,7 @@ TEST(FilledBodyTest, SpreadingAtTheNormalIsThatOfTextbooks) {
     const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(4), test::wall(9)}, 1, shell)));
     const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(9)}, 0)));
     const double expected = std::pow(speed / (4 + speed * 5), 2) * 81 * sharePassed(shell, 1);
-    EXPECT_NEAR(energyOf(both, 0, 7, 8) / energyOfAll(alone) / expected, 1, 0.01);
+    EXPECT_NEAR(energyOf(both, 0, 7, 8) / test::sumOf(alone) / expected, 1, 0.01);
 }
 
 /** The far side of a body from within, bin by bin, integrated over the directions of its outline. */
@@ -243,7 +236,7 @@ TEST(FilledBodyTest, AFilledSphereIsALensForObjectsBehindIt) {
                                                              {{centre, 0, 0}, {0, 0, 0}})));
         const double range = wall + 2 * radius * (n - 1);
         const double level =
-            energyOf(ping, 0, range - 0.3, range + 0.3) * range * range / (energyOfAll(alone) * wall * wall);
+            energyOf(ping, 0, range - 0.3, range + 0.3) * range * range / (test::sumOf(alone) * wall * wall);
         const double expected = std::pow(range / height * sharePassed(shell, 1), 2);
         std::cout << "lens of " << speed << " m/s: " << 10 * std::log10(level / expected) << " dB off "
                   << 10 * std::log10(expected) << " dB\n";
@@ -298,8 +291,8 @@ TEST(FilledBodyTest, AFillOfWaterIsWater) {
     by_numbers.fill_density = 1025, by_numbers.fill_speed = water_speed;
     const auto one = pingOf(config, snapshotOf(shellsOf({test::sphere(1, 128)}, 1, acrylic, {{8, 0, 0}})));
     const auto other = pingOf(config, snapshotOf(shellsOf({test::sphere(1, 128)}, 1, by_numbers, {{8, 0, 0}})));
-    EXPECT_NEAR(energyOfAll(one) / energyOfAll(other), 1, 1e-3);
-    for (size_t i = 0; i < one.bins.size(); ++i) EXPECT_NEAR(one.bins[i], other.bins[i], 2e-2 * energyOfAll(one)) << i;
+    EXPECT_NEAR(test::sumOf(one) / test::sumOf(other), 1, 1e-3);
+    for (size_t i = 0; i < one.bins.size(); ++i) EXPECT_NEAR(one.bins[i], other.bins[i], 2e-2 * test::sumOf(one)) << i;
 }
 
 TEST(FilledBodyTest, CoherentSpeckleAndPatternsKeepTheEnergyOfTheFarSide) {

@@ -129,8 +129,7 @@ struct AngularCell {
 };
 
 /** Expects the deposit to follow the cut: bins to `in_bins` (relative L2), their sum to `in_all`. */
-template <class Cell>
-void expectFollows(const Cell& cell, const Plane& plane, double in_bins, double in_all) {
+void expectFollows(const auto& cell, const Plane& plane, double in_bins, double in_all) {
     PointBins got, expected;
     cell.deposit(plane, got);
     cell.cut(plane, expected);

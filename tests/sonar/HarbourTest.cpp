@@ -34,8 +34,7 @@ struct View {
     size_t pose;
 };
 
-class HarbourTest : public testing::Test {
-protected:
+struct HarbourTest : testing::Test {
     static void SetUpTestSuite() {
         const auto scene = propertiesOf<scene::SceneConfig>("scene");
         geometry = scene::loadScene(deploy / scene.file);

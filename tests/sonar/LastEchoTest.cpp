@@ -13,16 +13,14 @@ namespace insonify::sonar {
 namespace {
 
 /** A sonar on its own thread, and the wall clock. */
-class LastEchoTest : public ::testing::Test {
-protected:
+struct LastEchoTest : ::testing::Test {
     void start(double range) {
         SonarConfig config = smallSonar();
         config.range = range;
         in_.port.connectTo(task_.snapshot, {});
         task_.ping.connectTo(out_.port, {});
         task_.config.set(config);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
         task_.activity().release();
     }
     /** Replaces the task's clock by a clock that the test sets. */

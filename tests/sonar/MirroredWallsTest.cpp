@@ -7,7 +7,6 @@
 #include <numeric>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 
 namespace insonify::sonar {
@@ -18,15 +17,8 @@ using test::snapshotOf;
 
 constexpr double mirrored_level = 0.81;  ///< Energy that the mirror reflects, one way.
 
-/** Returns 0.5 m apart, five bins, in water of 1000 m/s. */
-constexpr types::Shell ringing_plate{1, 2500, 2000, 0, 0, false};
 constexpr double range_between = 0.5, critical = 0.5;
 
-acoustics::PlateReturns returnsOfPlate(const types::Shell& shell) {
-    const acoustics::Fluid water{1025, water_speed};
-    return acoustics::plateReturns({shell.thickness, shell.density, shell.sound_speed, 0, shell.loss}, water, water,
-                                   1000 * shell_khz, WallLaw::max_returns);
-}
 double spacingAt(double cosine) { return range_between * std::sqrt(1 - (1 - cosine * cosine) / (critical * critical)); }
 
 /** Makes the object of one mesh a silent, flat mirror. */
@@ -168,7 +160,7 @@ TEST(MirroredWallsTest, APlateBySurfaceHasItsReturnsAtTheMirroredRangesAndLevels
     const auto [once, twice] = by.levels(scene);
     ASSERT_GT(once, 0);
     ASSERT_GT(twice, 0);
-    const std::vector<double> returns = returnsOfPlate(ringing_plate).reflected;
+    const std::vector<double> returns = returnsOf(ringing_plate).reflected;
     const double sum = std::accumulate(returns.begin(), returns.end(), 0.0);
     Arrivals arrivals;
     for (size_t k = 0; k < returns.size(); ++k) {
@@ -205,7 +197,7 @@ TEST(MirroredWallsTest, SoundThroughARingingWallArrivesAtTheTimesOfBothItsAngles
     const BySurface by;
     const types::Mesh screen = test::quad({8, -50, -50}, {0, 100, 0}, {0, 0, 51.9f});
     const auto [once, twice] = by.levels(shellsOf({by.plate()}, 0));
-    const acoustics::PlateReturns returns = returnsOfPlate(ringing_plate);
+    const acoustics::PlateReturns returns = returnsOf(ringing_plate);
     const auto relative = [](const std::vector<double>& all, size_t k) {
         return all[k] / std::accumulate(all.begin(), all.end(), 0.0);
     };

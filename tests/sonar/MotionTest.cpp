@@ -77,8 +77,7 @@ struct ReceivedAt {
     double range;
     glm::dvec3 direction;
 };
-template <class F>
-double rootOf(const F& f, double low, double high) {
+double rootOf(const auto& f, double low, double high) {
     for (int i = 0; i < 200; ++i) {
         const double middle = 0.5 * (low + high);
         (f(middle) < 0 ? low : high) = middle;
@@ -416,8 +415,7 @@ TEST(MotionTest, VelocitiesAreFromThePoseOrElseFromTwoSnapshots) {
     EXPECT_NEAR(glm::distance(motion.turn(), snapshot.sonar.orientation * glm::dvec3(0, 0.5, 0)), 0, 1e-12);
 }
 
-class SweepTest : public test::TaskBench<ScanningSonarTask, types::SnapshotPtr, types::SonarPtr> {
-protected:
+struct SweepTest : test::TaskBench<ScanningSonarTask, types::SnapshotPtr, types::SonarPtr> {
     SweepTest() : TaskBench(&ScanningSonarTask::snapshot, &ScanningSonarTask::ping) {}
     void start(bool sweeps) {
         ScanningSonarConfig config;

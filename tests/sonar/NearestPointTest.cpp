@@ -6,7 +6,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "components/scene/Clusters.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/places/NearestPoint.hpp"
 #include "components/sonar/places/ObjectPlaces.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"

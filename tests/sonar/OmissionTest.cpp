@@ -14,6 +14,7 @@
 #include "components/sonar/plan/PlanReport.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"
@@ -40,8 +41,7 @@ Bins binsOf(const SonarConfig& config, const types::GeometryPtr& geometry = test
 }
 
 /** Returns the scene after `change`. */
-template <class Change>
-types::GeometryPtr changed(Change change) {
+types::GeometryPtr changed(auto change) {
     auto geometry = test::surfaces();
     change(*geometry);
     return geometry;
@@ -62,16 +62,6 @@ std::optional<Omitted> findOmitted(const SonarConfig& config, std::string_view e
     const RenderPlan plan = makeRenderPlan(config, *unmapped());
     const Omitted* found = plan.findOmitted(effect);
     return found ? std::optional(*found) : std::nullopt;
-}
-
-/** Returns the relative L2 of the difference. */
-double difference(const Bins& a, const Bins& b) {
-    double error = 0, norm = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-        error += std::pow(double{a[i]} - b[i], 2);
-        norm += std::pow(double{b[i]}, 2);
-    }
-    return std::sqrt(error / norm);
 }
 
 Bins times(Bins bins, float factor) {
@@ -164,7 +154,7 @@ TEST(OmissionTest, TheModelOfCerqueiraHasNoSpreading) {
         });
         const Bins bins = binsOf(plainSonar(model));
         const float spreading = model == Model::Physical ? 4 : 1;  // 1 / r^2
-        EXPECT_LT(difference(times(binsOf(twice, larger), spreading), bins), 1e-6);
+        EXPECT_LT(test::relativeL2(times(binsOf(twice, larger), spreading), bins), 1e-6);
     }
 }
 
@@ -192,10 +182,11 @@ TEST(OmissionTest, NoNormalMapMatchesANeutralMap) {
         });
         EXPECT_EQ(binsOf(plainSonar(model), unused), bins) << "compiled, but no surface has it";
         const auto unscaled = changed([](types::Geometry& g) { g.materials[1].normal_scale = 0; });
-        EXPECT_LT(difference(binsOf(plainSonar(model), unscaled), bins), 1e-6) << "its cosine is of single precision";
+        EXPECT_LT(test::relativeL2(binsOf(plainSonar(model), unscaled), bins), 1e-6)
+            << "its cosine is of single precision";
         const auto flat = changed([](types::Geometry& g) { g.normal_maps = {test::flatMap()}; });
-        EXPECT_LT(difference(binsOf(plainSonar(model), flat), bins), 5e-3) << "(128, 128, 255) leans by 0.3 deg";
-        EXPECT_GT(difference(binsOf(plainSonar(model)), bins), 0.01);
+        EXPECT_LT(test::relativeL2(binsOf(plainSonar(model), flat), bins), 5e-3) << "(128, 128, 255) leans by 0.3 deg";
+        EXPECT_GT(test::relativeL2(binsOf(plainSonar(model)), bins), 0.01);
     }
 }
 
@@ -208,7 +199,7 @@ TEST(OmissionTest, OneFrustumMatchesSeveral) {
     EXPECT_FALSE(findOmitted(two, "further slabs"));
     const auto floor = test::sceneOf({test::ground(-5)});
     const Bins narrow = binsOf(one, floor), wide = binsOf(two, floor);
-    EXPECT_LT(difference(narrow, {wide.begin() + 400, wide.end() - 400}), 1e-3) << "beams 1 to 60 of 62";
+    EXPECT_LT(test::relativeL2(narrow, {wide.begin() + 400, wide.end() - 400}), 1e-3) << "beams 1 to 60 of 62";
 }
 
 TEST(OmissionTest, AheadConesAreNearlyPlanes) {
@@ -219,7 +210,7 @@ TEST(OmissionTest, AheadConesAreNearlyPlanes) {
     const double widest =
         1 / std::cos(types::radians(20)) - 1;  // of the cone against the plane, at the aperture's edge
     const Bins flat = binsOf(planar, unmapped()), cone = binsOf(conical, unmapped());
-    EXPECT_LT(difference(cone, flat), widest);
+    EXPECT_LT(test::relativeL2(cone, flat), widest);
     EXPECT_NE(cone, flat);
 }
 

@@ -1,7 +1,6 @@
 // Warnings of a sonar's task about empty pings, and their frequency.
 #include <gmock/gmock.h>
 
-#include "components/sonar/PingDiagnostics.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Deformed.hpp"
@@ -15,8 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-class PingDiagnosticsTest : public testing::Test {
-protected:
+struct PingDiagnosticsTest : testing::Test {
     PingDiagnosticsTest() {
         const auto environment = std::make_shared<framework::Environment>();
         environment->warn = [this](const std::string& text) { reported_.push_back(text); };

@@ -55,8 +55,7 @@ private:
     bool hides_;
 };
 
-class FollowerEffect final : public Effect {
-public:
+struct FollowerEffect final : Effect {
     std::string key() const override { return "follower"; }
     std::vector<types::Field> numbers() const override {
         return {{"hides", "1", "1: takes away what rays have met", 0, 1}};

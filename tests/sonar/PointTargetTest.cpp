@@ -4,7 +4,6 @@
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
-#include <numeric>
 #include <random>
 #include <span>
 
@@ -14,6 +13,7 @@
 #include "components/sonar/fan/BinGrid.hpp"
 #include "tests/sonar/BeamCut.hpp"
 #include "tests/support/EveryWay.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
@@ -47,8 +47,6 @@ glm::dvec3 towards(double azimuth_deg, double elevation_deg, double range) {
     const double a = radians(azimuth_deg), e = radians(elevation_deg);
     return range * glm::dvec3(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
 }
-
-double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
 /** Returns the pattern of one beam in a direction, only by the laws of a configuration. */
 double patternOf(const SonarConfig& config, double bearing, double azimuth, double elevation) {
@@ -269,7 +267,7 @@ BeamCut sweep(const SonarConfig& config, bool in_azimuth) {
     for (double angle = 0; angle < 12; angle += step) {
         const glm::dvec3 at = in_azimuth ? towards(angle, 0, 10.05) : towards(0, angle, 10.05);
         renderer.render(withPoint(geometry, at), ping);
-        level.push_back(sumOf(ping));
+        level.push_back(test::sumOf(ping));
     }
     return BeamCut(level, 0, step);
 }
@@ -296,20 +294,20 @@ TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureToTheFloor) {
     EXPECT_LT(10 * std::log10(top), -25);
     EXPECT_GT(10 * std::log10(top), -60);
     config.beam_pattern->floor_db = -20;
-    EXPECT_EQ(sumOf(pingOf(config, outside)), 0);
+    EXPECT_EQ(test::sumOf(pingOf(config, outside)), 0);
 }
 
 TEST(PointTargetTest, IsSilentBelowRangeMinAndOnlyItsPulseReachesIntoTheRange) {
     SonarConfig config = targetSonar(20, 1);
     config.range_min = 2;
     const auto geometry = openWater();
-    EXPECT_EQ(sumOf(pingOf(config, withPoint(geometry, {1.999, 0, 0}))), 0);
-    EXPECT_GT(sumOf(pingOf(config, withPoint(geometry, {2.001, 0, 0}))), 0);
-    EXPECT_EQ(sumOf(pingOf(config, withPoint(geometry, {0, 0, 0}))), 0);
-    EXPECT_EQ(sumOf(pingOf(config, withPoint(geometry, {20.01, 0, 0}))), 0);
+    EXPECT_EQ(test::sumOf(pingOf(config, withPoint(geometry, {1.999, 0, 0}))), 0);
+    EXPECT_GT(test::sumOf(pingOf(config, withPoint(geometry, {2.001, 0, 0}))), 0);
+    EXPECT_EQ(test::sumOf(pingOf(config, withPoint(geometry, {0, 0, 0}))), 0);
+    EXPECT_EQ(test::sumOf(pingOf(config, withPoint(geometry, {20.01, 0, 0}))), 0);
     config.pulse.emplace().duration_us = 1000;  // half a metre
-    EXPECT_GT(sumOf(pingOf(config, withPoint(geometry, {20.2, 0, 0}))), 0);
-    EXPECT_EQ(sumOf(pingOf(config, withPoint(geometry, {20.3, 0, 0}))), 0);
+    EXPECT_GT(test::sumOf(pingOf(config, withPoint(geometry, {20.2, 0, 0}))), 0);
+    EXPECT_EQ(test::sumOf(pingOf(config, withPoint(geometry, {20.3, 0, 0}))), 0);
 }
 
 /** A plate of 1 m square to the x axis. */
@@ -324,7 +322,7 @@ TEST(PointTargetTest, IsHiddenByObjectsInsideTheFanAndOutside) {
         const auto receivedOf = [&](const types::GeometryPtr& geometry, const glm::dvec3& at) {
             types::Snapshot with = withPoint(geometry, at, 20), without = with;
             without.targets.clear();
-            return sumOf(pingOf(way, with)) - sumOf(pingOf(way, without));
+            return test::sumOf(pingOf(way, with)) - test::sumOf(pingOf(way, without));
         };
         const double open = receivedOf(openWater(), {10, 0, 0});
         EXPECT_GT(open, 0);

@@ -18,8 +18,7 @@ using test::sceneOf;
 constexpr double profile_bin = 0.03;  // 20 us at 1500 m/s [m]
 constexpr double down = 90;
 
-class ProfilerTaskTest : public test::TaskBench<ProfilerTask, types::SnapshotPtr, types::PointCloudPtr> {
-protected:
+struct ProfilerTaskTest : test::TaskBench<ProfilerTask, types::SnapshotPtr, types::PointCloudPtr> {
     ProfilerTaskTest() : TaskBench(&ProfilerTask::snapshot, &ProfilerTask::soundings) {}
     static ProfilerConfig profiler() {
         ProfilerConfig config;

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"

@@ -2,10 +2,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <functional>
-#include <numeric>
 
 #include "components/acoustics/SoundProfile.hpp"
 #include "components/sonar/SonarRenderer.hpp"
@@ -13,7 +11,6 @@
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
 #include "tests/support/Folder.hpp"
-#include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"

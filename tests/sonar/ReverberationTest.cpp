@@ -4,11 +4,11 @@
 #include <cmath>
 #include <iostream>
 #include <numbers>
-#include <numeric>
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "tests/sonar/ShellScenes.hpp"
+#include "tests/support/Pings.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -37,7 +37,6 @@ SonarConfig facingWalls(double width_deg = 40, int beams = 1) {
     config.quality.columns_per_beam = 256 / beams;
     return config;
 }
-double sumOfWalls(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 /** Returns the energy about a range, in all beams, times the square of the range, relative to a rigid wall. */
 double levelAt(const types::Sonar& ping, double range, double rigid) {
     double sum = 0;
@@ -45,7 +44,7 @@ double levelAt(const types::Sonar& ping, double range, double rigid) {
     return sum * range * range / rigid;
 }
 double rigidLevel(const SonarConfig& config) {
-    return sumOfWalls(pingOf(config, snapshotOf(smoothWalls({test::wall(5)}, 0)))) * 25;
+    return test::sumOf(pingOf(config, snapshotOf(smoothWalls({test::wall(5)}, 0)))) * 25;
 }
 
 /** Return n is at r1 + (n + 1) d, with the level T^4 R^(2 + 4 n) of sound pressures. */

@@ -12,8 +12,7 @@ namespace {
 
 using framework::TaskState;
 
-class ScanningSonarTaskTest : public test::TaskBench<ScanningSonarTask, types::SnapshotPtr, types::SonarPtr> {
-protected:
+struct ScanningSonarTaskTest : test::TaskBench<ScanningSonarTask, types::SnapshotPtr, types::SonarPtr> {
     ScanningSonarTaskTest() : TaskBench(&ScanningSonarTask::snapshot, &ScanningSonarTask::ping) {}
     void start(const HeadConfig& head) {
         ScanningSonarConfig config;

@@ -62,8 +62,7 @@ std::vector<types::GeometryPtr> scenes() {
 }
 
 /** Calls use(plan, geometry) for each set of features of a rasterising sonar. */
-template <class Use>
-void forEachFeatureSet(const Use& use) {
+void forEachFeatureSet(const auto& use) {
     std::set<std::vector<std::string>> seen;
     const std::vector<types::GeometryPtr> geometries = scenes();
     for (const SonarConfig& config : rasterSonars())
@@ -109,8 +108,7 @@ std::set<std::string> featuresIn(std::string_view text, const std::string& patte
     return all;
 }
 
-class ShaderTest : public testing::Test {
-protected:
+struct ShaderTest : testing::Test {
     void SetUp() override {
         if (std::system("glslangValidator --version > /dev/null 2>&1") != 0)
             GTEST_SKIP() << "SKIPPED: no glslangValidator (Debian: glslang-tools; scripts/setup installs it)";

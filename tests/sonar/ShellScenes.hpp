@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "components/acoustics/Plate.hpp"
+#include "components/sonar/echo/WallLaws.hpp"
 #include "components/sonar/plan/SonarConfig.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -13,10 +14,19 @@ namespace insonify::sonar {
 constexpr double shell_khz = 200, water_speed = 1000;
 constexpr types::Shell acrylic{0.004, 1190, 2700, 1340, 5e-3, false};
 
-inline acoustics::PlateResponse shellResponse(const types::Shell& shell, double cosine) {
-    const acoustics::Fluid water{1025, water_speed};
-    return acoustics::plateResponse({shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss},
-                                    water, water, 1000 * shell_khz, cosine);
+constexpr acoustics::Fluid shell_water{1025, water_speed};
+/** Returns 0.5 m apart, five bins. */
+constexpr types::Shell ringing_plate{1, 2500, 2000, 0, 0, false};
+
+inline acoustics::Plate plateOf(const types::Shell& shell) {
+    return {shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss};
+}
+inline acoustics::PlateResponse shellResponse(const types::Shell& shell, double cosine,
+                                              const acoustics::Fluid& behind = shell_water) {
+    return acoustics::plateResponse(plateOf(shell), shell_water, behind, 1000 * shell_khz, cosine);
+}
+inline acoustics::PlateReturns returnsOf(const types::Shell& shell) {
+    return acoustics::plateReturns(plateOf(shell), shell_water, shell_water, 1000 * shell_khz, WallLaw::max_returns);
 }
 
 inline SonarConfig wallSonar(double width_deg, double height_deg, int beams, int bins = 300) {

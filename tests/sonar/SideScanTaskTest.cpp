@@ -18,8 +18,7 @@ using test::sceneOf;
 
 constexpr double height = 8;  // above the bottom [m]
 
-class SideScanTaskTest : public test::TaskBench<SideScanTask, types::SnapshotPtr, types::SonarPtr> {
-protected:
+struct SideScanTaskTest : test::TaskBench<SideScanTask, types::SnapshotPtr, types::SonarPtr> {
     SideScanTaskTest() : TaskBench(&SideScanTask::snapshot, &SideScanTask::ping) {}
     /** Beams from straight down to 10 deg below the horizontal. */
     static SideScanConfig sideScan() {

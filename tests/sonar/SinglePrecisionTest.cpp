@@ -7,7 +7,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 

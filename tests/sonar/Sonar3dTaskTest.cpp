@@ -15,8 +15,7 @@ using test::sceneOf;
 
 constexpr double cloud_bin = 0.03;  // 20 us at 1500 m/s [m]
 
-class Sonar3dTaskTest : public test::TaskBench<Sonar3dTask, types::SnapshotPtr, types::DepthMapPtr> {
-protected:
+struct Sonar3dTaskTest : test::TaskBench<Sonar3dTask, types::SnapshotPtr, types::DepthMapPtr> {
     Sonar3dTaskTest() : TaskBench(&Sonar3dTask::snapshot, &Sonar3dTask::range_image) {}
     static Sonar3dConfig grid() {
         Sonar3dConfig config;

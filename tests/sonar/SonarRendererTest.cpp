@@ -8,6 +8,7 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 
@@ -26,13 +27,6 @@ SonarConfig oneFan() {
 std::vector<float> binsSeen(const types::Snapshot& snapshot) { return test::pingOf(oneFan(), snapshot).bins; }
 
 double energy(const std::vector<float>& bins) { return std::accumulate(bins.begin(), bins.end(), 0.0); }
-
-/** Returns the relative L2 of the difference. */
-double differenceOf(const std::vector<float>& a, const std::vector<float>& b) {
-    double error = 0;
-    for (size_t i = 0; i < a.size(); ++i) error += std::pow(double{a[i]} - b[i], 2);
-    return std::sqrt(error / std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
-}
 
 types::Mesh farWall() { return test::quad({10, -50, -50}, {0, 100, 0}, {0, 0, 100}); }
 
@@ -143,7 +137,7 @@ TEST(SonarRendererTest, FarFromTheOriginOfTheWorldEchoesAreTheSame) {
     const glm::dvec3 offset(500'000, 4'500'000, -100);  // as in UTM
     for (types::Object& object : there->objects) object.world_from_object[3] += glm::dvec4(offset, 0);
     const auto bins = binsSeen(test::snapshotOf(here, {0, 0, 0}, 0.1, 0.1));
-    EXPECT_LT(differenceOf(binsSeen(test::snapshotOf(there, offset, 0.1, 0.1)), bins), 1e-6);
+    EXPECT_LT(test::relativeL2(binsSeen(test::snapshotOf(there, offset, 0.1, 0.1)), bins), 1e-6);
 }
 
 TEST(SonarRendererTest, FarFromTheOriginOfATileEchoesAreTheSame) {
@@ -163,12 +157,12 @@ TEST(SonarRendererTest, FarFromTheOriginOfATileEchoesAreTheSame) {
         SonarRenderer(config, scene).render(test::snapshotOf(scene, sonar, 0.3, 0.2), ping);
         return ping.bins;
     };
-    EXPECT_LT(differenceOf(bins(there, offset), bins(here, {})), 1e-5);
+    EXPECT_LT(test::relativeL2(bins(there, offset), bins(here, {})), 1e-5);
 }
 
 TEST(SonarRendererTest, ASeaFloorOfTwoHugeTrianglesIsASeaFloor) {
     const auto small = binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1000)}), {}, 0, 0.2));
-    EXPECT_LT(differenceOf(binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small),
+    EXPECT_LT(test::relativeL2(binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small),
               0.01);
 }
 

@@ -14,8 +14,7 @@ namespace {
 
 using framework::TaskState;
 
-class SonarTaskTest : public test::TaskBench<SonarTask, types::SnapshotPtr, types::SonarPtr> {
-protected:
+struct SonarTaskTest : test::TaskBench<SonarTask, types::SnapshotPtr, types::SonarPtr> {
     SonarTaskTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
     void start(const SonarConfig& config = smallSonar()) { startWith(config); }
     /** Returns the ping of one snapshot; null without a ping. */

@@ -30,8 +30,7 @@ std::vector<float> stiffBins(const SonarConfig& config, const types::GeometryPtr
 std::vector<types::Mesh> wallAndBall() { return {test::wall(12), test::sphere(1.5, 48)}; }
 
 /** Returns the wall and ball after `change`. */
-template <class Change>
-std::vector<float> receivedWith(const Change& change) {
+std::vector<float> receivedWith(const auto& change) {
     std::vector<types::Mesh> meshes = wallAndBall();
     for (types::Mesh& mesh : meshes) change(mesh);
     return stiffBins(stiffFan(), test::sceneOf(std::move(meshes), 0, {{0, 0, 0}, {9, 1, -0.5}}));

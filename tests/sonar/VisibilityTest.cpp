@@ -11,6 +11,7 @@
 #include "components/sonar/pictures/SurfacePass.hpp"
 #include "components/sonar/rays/RayVisibility.hpp"
 #include "tests/support/ClosedForms.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
@@ -120,13 +121,6 @@ std::vector<Scene> seenScenes() {
             {"far", farScene()}};
 }
 
-/** Returns the relative L2 of the difference. */
-double relativeDifference(const types::Sonar& a, const types::Sonar& b) {
-    double error = 0;
-    for (size_t i = 0; i < a.bins.size(); ++i) error += std::pow(double{a.bins[i]} - b.bins[i], 2);
-    return std::sqrt(error / std::inner_product(b.bins.begin(), b.bins.end(), b.bins.begin(), 0.0));
-}
-
 }  // namespace
 
 TEST(VisibilityTest, RaysMeetTheRasterisedTriangles) {
@@ -154,15 +148,15 @@ TEST(VisibilityTest, RayTracedPingsMatchRasterisedPingsUpToTheSampling) {
                 gl.model = cpu.model = model;
                 gl.beam_geometry = cpu.beam_geometry = beams;
                 // In a mean, bins with few samples count like other bins.
-                EXPECT_LT(relativeDifference(pingOf(cpu, scene.snapshot), pingOf(gl, scene.snapshot)),
+                EXPECT_LT(test::relativeL2(pingOf(cpu, scene.snapshot), pingOf(gl, scene.snapshot)),
                           model == Model::Physical ? 0.03 : 0.16)
                     << scene.name << (model == Model::Physical ? ", physical" : ", cerqueira2017")
                     << (beams == BeamGeometry::Planar ? ", planar" : ", conical");
             }
     SonarConfig other = seenFan(Visibility::Cpu);
     other.beam_height_deg = 40;
-    EXPECT_GT(relativeDifference(pingOf(other, seenScenes()[0].snapshot),
-                                 pingOf(seenFan(Visibility::Gl), seenScenes()[0].snapshot)),
+    EXPECT_GT(test::relativeL2(pingOf(other, seenScenes()[0].snapshot),
+                               pingOf(seenFan(Visibility::Gl), seenScenes()[0].snapshot)),
               0.03);
 }
 
@@ -171,8 +165,8 @@ TEST(VisibilityTest, NormalMapsHaveTheSameEffectInBoth) {
     SonarConfig gl = seenFan(Visibility::Gl), cpu = seenFan(Visibility::Cpu);
     const types::Sonar raster_ping = pingOf(gl, snapshot), traced_ping = pingOf(cpu, snapshot);
     const types::Sonar flat = pingOf(cpu, test::snapshotOf(plainSurfaces(), {10, 0, -2}));
-    EXPECT_LT(relativeDifference(traced_ping, raster_ping), 0.03);
-    EXPECT_GT(relativeDifference(flat, raster_ping), 0.06);
+    EXPECT_LT(test::relativeL2(traced_ping, raster_ping), 0.03);
+    EXPECT_GT(test::relativeL2(flat, raster_ping), 0.06);
 }
 
 TEST(VisibilityTest, PingsHaveTheSameBytesForAnyNumberOfThreads) {
@@ -210,8 +204,8 @@ TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
     renderer.render(later, after);
     renderer.render(still, again);
     EXPECT_EQ(after.bins, pingOf(seenFan(Visibility::Cpu), moved).bins);
-    EXPECT_LT(relativeDifference(again, before), 1e-6) << "at its place again, by a tree of its own";
-    EXPECT_GT(relativeDifference(after, before), 0.05);
+    EXPECT_LT(test::relativeL2(again, before), 1e-6) << "at its place again, by a tree of its own";
+    EXPECT_GT(test::relativeL2(after, before), 0.05);
 }
 
 TEST(VisibilityTest, APingDoesNotDependOnEarlierPings) {
@@ -243,7 +237,7 @@ TEST(VisibilityTest, InstancesOfLargeMeshesEchoTheSame) {
     geometry->objects.push_back({"ground", 1, glm::dmat4(1)});
     ASSERT_GT(geometry->triangleCount(), 4'000'000u);
     const auto snapshot = test::snapshotOf(geometry, {0, 0, 0}, 0, 0.15);
-    EXPECT_LT(relativeDifference(pingOf(seenFan(Visibility::Cpu), snapshot), pingOf(seenFan(Visibility::Gl), snapshot)),
+    EXPECT_LT(test::relativeL2(pingOf(seenFan(Visibility::Cpu), snapshot), pingOf(seenFan(Visibility::Gl), snapshot)),
               0.03);
 }
 

@@ -2,7 +2,6 @@
 // wrong variant, which must fail by the same measure.
 #include <gmock/gmock.h>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/effects/Effects.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "tests/support/ClosedForms.hpp"

@@ -11,6 +11,7 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "tests/sonar/ShellScenes.hpp"
+#include "tests/support/Pings.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -18,26 +19,14 @@ namespace {
 using test::pingOf;
 using test::snapshotOf;
 
-/** Returns 0.5 m apart, five bins, in water of 1000 m/s. */
-constexpr types::Shell plate{1, 2500, 2000, 0, 0, false};
 constexpr double frustum_spacing = 0.5, critical_sine = 0.5;
 
-acoustics::PlateReturns returnsOf(const types::Shell& shell) {
-    const acoustics::Fluid water{1025, water_speed};
-    return acoustics::plateReturns({shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss},
-                                   water, water, 1000 * shell_khz, WallLaw::max_returns);
-}
 double sumOfReturns(const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.0); }
-double energyOfPing(const types::Sonar& ping) {
-    return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0,
-                           [](double sum, float bin) { return sum + static_cast<double>(bin); });
-}
-
 TEST(WallReturnsTest, APlatesReturnsAreAtTheirRangesWithTheirLevelsOverAngles) {
     const SonarConfig config = wallSonar(50, 0.5, 64);
-    const auto rings = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, plate)));
+    const auto rings = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, ringing_plate)));
     const auto rigid = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 0)));
-    const acoustics::PlateReturns returns = returnsOf(plate);
+    const acoustics::PlateReturns returns = returnsOf(ringing_plate);
     ASSERT_GT(returns.reflected.size(), 4u);
     double worst_level = 0;
     for (uint32_t beam = 0; beam < 64; ++beam) {
@@ -59,7 +48,7 @@ TEST(WallReturnsTest, APlatesReturnsAreAtTheirRangesWithTheirLevelsOverAngles) {
 
 TEST(WallReturnsTest, AllReturnsTogetherAreTheMeanReflectionOverAResonance) {
     const SonarConfig config = wallSonar(2, 0.5, 1, 600);
-    const auto rings = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, plate)));
+    const auto rings = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, ringing_plate)));
     const auto rigid = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 0)));
     double level = 0;
     for (uint32_t k = 0; k < rings.bin_count; ++k) {
@@ -70,13 +59,15 @@ TEST(WallReturnsTest, AllReturnsTogetherAreTheMeanReflectionOverAResonance) {
     constexpr int steps = 2000;
     for (int i = 0; i < steps; ++i) {
         const acoustics::Fluid water{1025, water_speed};
-        const double frequency = 1000 * shell_khz + (i + 0.5) / steps * plate.sound_speed / (2 * plate.thickness);
-        mean += std::norm(acoustics::plateResponse({plate.thickness, plate.density, plate.sound_speed, 0, 0}, water,
-                                                   water, frequency, 1)
+        const double frequency =
+            1000 * shell_khz + (i + 0.5) / steps * ringing_plate.sound_speed / (2 * ringing_plate.thickness);
+        mean += std::norm(acoustics::plateResponse(
+                              {ringing_plate.thickness, ringing_plate.density, ringing_plate.sound_speed, 0, 0}, water,
+                              water, frequency, 1)
                               .reflected) /
                 steps;
     }
-    const double share = level / (energyOfPing(rigid) * 100) / 0.1;
+    const double share = level / (test::sumOf(rigid) * 100) / 0.1;
     std::cout << "sum of returns " << share << ", mean of |R|^2 " << mean << "\n";
     EXPECT_NEAR(share / mean, 1, 0.01);
     EXPECT_LE(share, 1);
@@ -84,12 +75,12 @@ TEST(WallReturnsTest, AllReturnsTogetherAreTheMeanReflectionOverAResonance) {
 
 TEST(WallReturnsTest, ObjectsBehindAreLateAndRingToo) {
     const SonarConfig config = wallSonar(2, 0.5, 1, 600);
-    const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(10), test::wall(40)}, 1, plate)));
+    const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(10), test::wall(40)}, 1, ringing_plate)));
     const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(40)}, 0)));
-    const acoustics::PlateReturns returns = returnsOf(plate);
-    const double there = energyOfPing(alone) * 40 * 40;
+    const acoustics::PlateReturns returns = returnsOf(ringing_plate);
+    const double there = test::sumOf(alone) * 40 * 40;
     for (size_t k = 0; k < 4; ++k) {
-        const double at = 40 - plate.thickness + frustum_spacing * static_cast<double>(k + 1);
+        const double at = 40 - ringing_plate.thickness + frustum_spacing * static_cast<double>(k + 1);
         const double level = energyOf(both, 0, at - 0.2, at + 0.3) * at * at / there;
         EXPECT_NEAR(level / returns.passed[k], 1, 0.05) << k;
     }
@@ -115,7 +106,7 @@ TEST(WallReturnsTest, TheFarWallOfABodyEchoesFromWithin) {
 /** A wall whose returns are less than half a bin, or half of the pulse's resolution, apart has one return. */
 TEST(WallReturnsTest, ReturnsWithinHalfABinMergeByTheResponseAtTheFrequency) {
     for (const double spacing : {0.049, 0.051}) {
-        types::Shell shell = plate;
+        types::Shell shell = ringing_plate;
         shell.thickness = 2 * spacing;
         for (const bool long_pulse : {false, true}) {
             SonarConfig config = wallSonar(2, 0.5, 1);
@@ -124,8 +115,8 @@ TEST(WallReturnsTest, ReturnsWithinHalfABinMergeByTheResponseAtTheFrequency) {
             const RenderPlan plan = makeRenderPlan(config, *scene);
             EXPECT_EQ(plan.laws.hasReturns(), spacing > 0.05 && !long_pulse);
             if (plan.laws.hasReturns()) continue;
-            const double level = energyOfPing(pingOf(config, snapshotOf(scene))) /
-                                 energyOfPing(pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 0))));
+            const double level = test::sumOf(pingOf(config, snapshotOf(scene))) /
+                                 test::sumOf(pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 0))));
             EXPECT_NEAR(level / (0.1 * std::norm(shellResponse(shell, 1).reflected)), 1, 1e-5);
         }
     }
@@ -136,7 +127,7 @@ TEST(WallReturnsTest, EchoesWithoutARingingWallAreTheSameBitForBit) {
     const types::Mesh left = test::quad({10, 1, -100}, {0, 100, 0}, {0, 0, 200}),
                       right = test::quad({10, -101, -100}, {0, 100, 0}, {0, 0, 200});
     SonarConfig config = wallSonar(60, 20, 16);
-    const auto with = pingOf(config, snapshotOf(shellsOf({left, right}, 1, plate)));
+    const auto with = pingOf(config, snapshotOf(shellsOf({left, right}, 1, ringing_plate)));
     const auto without = pingOf(config, snapshotOf(shellsOf({left, right}, 1)));
     bool differs = false;
     for (uint32_t beam = 0; beam < 16; ++beam)
@@ -153,13 +144,13 @@ TEST(WallReturnsTest, EchoesWithoutARingingWallAreTheSameBitForBit) {
 TEST(WallReturnsTest, AllReturnsAreInTheFirstIfMaxWallsIsZero) {
     SonarConfig config = wallSonar(2, 0.5, 1);
     config.max_walls = 0;
-    const auto ping = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, plate)));
+    const auto ping = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, ringing_plate)));
     const auto rigid = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 0)));
-    EXPECT_NEAR(energyOfPing(ping) / energyOfPing(rigid), 0.1 * sumOfReturns(returnsOf(plate).reflected), 1e-5);
+    EXPECT_NEAR(test::sumOf(ping) / test::sumOf(rigid), 0.1 * sumOfReturns(returnsOf(ringing_plate).reflected), 1e-5);
 }
 
 TEST(WallReturnsTest, PatternsPulsesAndCoherentSpeckleKeepTheirEnergy) {
-    types::Shell shell = plate;
+    types::Shell shell = ringing_plate;
     shell.thickness = 2;  // a metre apart
     const acoustics::PlateReturns returns = returnsOf(shell);
     for (const std::string effect : {"pattern", "pulse", "coherent", "all"}) {
@@ -197,7 +188,7 @@ TEST(WallReturnsTest, PatternsPulsesAndCoherentSpeckleKeepTheirEnergy) {
 
 TEST(WallReturnsTest, TheTruthNamesTheRingingWall) {
     const SonarConfig config = wallSonar(8, 2, 4, 300);
-    const auto snapshot = snapshotOf(shellsOf({test::wall(10), test::wall(25)}, 1, plate));
+    const auto snapshot = snapshotOf(shellsOf({test::wall(10), test::wall(25)}, 1, ringing_plate));
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar ping;
     types::SonarTruth truth;
@@ -244,8 +235,8 @@ TEST(WallReturnsTest, RandomPlatesReturnAtMostTheEnergyOfARigidPlate) {
         const auto ping = pingOf(config, snapshotOf(scene, {}, yaw, pitch));
         const auto rigid = pingOf(config, snapshotOf(shellsOf({test::wall(6)}, 0), {}, yaw, pitch));
         for (const float bin : ping.bins) EXPECT_TRUE(std::isfinite(bin) && bin >= 0) << i;
-        if (!(energyOfPing(rigid) > 0)) continue;
-        const double share = energyOfPing(ping) / (0.1 * energyOfPing(rigid));
+        if (!(test::sumOf(rigid) > 0)) continue;
+        const double share = test::sumOf(ping) / (0.1 * test::sumOf(rigid));
         EXPECT_LE(share, 1 + 1e-3) << i;
         maximum = std::max(maximum, share);
         ringing += makeRenderPlan(config, *scene).laws.hasReturns();

@@ -4,11 +4,11 @@
 
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <numeric>
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/sonar/ShellScenes.hpp"
+#include "tests/support/Pings.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -36,12 +36,10 @@ types::Snapshot pingedTarget(const types::GeometryPtr& scene, const glm::dvec3& 
     snapshot.targets = {{at, 0}};
     return snapshot;
 }
-double sumOfTargets(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
-
 /** Returns the energy of a target behind walls relative to that in open water. */
 double shareBehind(const SonarConfig& config, const types::GeometryPtr& scene, const glm::dvec3& at) {
-    return sumOfTargets(pingOf(config, pingedTarget(scene, at))) /
-           sumOfTargets(pingOf(config, pingedTarget(test::openWater(), at)));
+    return test::sumOf(pingOf(config, pingedTarget(scene, at))) /
+           test::sumOf(pingOf(config, pingedTarget(test::openWater(), at)));
 }
 
 TEST(WallTargetsTest, ATargetBehindAPlateIsWeakenedBothWaysAtItsAngle) {
@@ -122,7 +120,7 @@ TEST(WallTargetsTest, ATargetBehindARingingPlateIsLateAndRingsToo) {
     const auto returns = acoustics::plateReturns({1, 2500, 2000, 0, 0}, {1025, water_speed}, {1025, water_speed},
                                                  1000 * shell_khz, WallLaw::max_returns);
     const double there =
-        sumOfTargets(pingOf(config, pingedTarget(test::openWater(), {40.03, 0, 0}))) * std::pow(40.03, 4);
+        test::sumOf(pingOf(config, pingedTarget(test::openWater(), {40.03, 0, 0}))) * std::pow(40.03, 4);
     for (size_t k = 0; k < 4; ++k) {
         const double at = 40.03 - 1 + 0.5 * static_cast<double>(k + 1);
         const double level = energyOf(ping, 0, at - 0.2, at + 0.2) * std::pow(at, 4) / there;

@@ -6,7 +6,6 @@
 #include <iostream>
 #include <numbers>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 
 namespace insonify::sonar {

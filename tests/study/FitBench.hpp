@@ -2,13 +2,13 @@
 // Helpers for tests of fits to simulated recordings.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <random>
 #include <vector>
 
 #include "components/study/FitReport.hpp"
 #include "components/study/RecordingFit.hpp"
+#include "components/study/Shapes.hpp"
 
 namespace insonify::study {
 
@@ -23,6 +23,14 @@ public:
 private:
     std::mt19937 random_;
 };
+
+inline types::GeometryPtr floorAt(double z) {
+    auto geometry = std::make_shared<types::Geometry>();
+    geometry->materials = {{}};
+    geometry->meshes = {levelGround(static_cast<float>(z))};
+    geometry->objects.push_back({"floor", 0, glm::dmat4(1)});
+    return geometry;
+}
 
 /** Returns the mean level of the loudest block of a chain's ping, relative to full scale [dB]. */
 inline double loudestLevelDb(FitChain chain) {
@@ -46,6 +54,26 @@ inline void expectFound(const RecordingFit& fit, const char* name, double expect
 /** Returns the gain of a receiver's tvg at the end of the range minus that at a tenth of the range [dB]. */
 inline double tvgSpanDb(double log_coefficient, double db_per_m, double range) {
     return log_coefficient + 2 * db_per_m * 0.9 * range;
+}
+
+/** Expects what fits find of every simulated sonar. Returns whether the density of scatterers is determined. */
+inline bool expectTruth(const RecordingFit& fit, const auto& truth, double range) {
+    for (const Finding& finding : fit.findings) testing::Test::RecordProperty(finding.name, finding.text());
+    expectFound(fit, "full scale", truth.chain.receiver.code->full_scale_db, 1);
+    expectFound(fit, "noise", truth.noise_db, 1);
+    const double span = tvgSpanDb(truth.log_coefficient, truth.db_per_m, range);
+    expectFound(fit, "TVG span", span, 0.05 * span);
+    expectFound(fit, "pulse length", truth.pulse_m, 0.05 * truth.pulse_m);
+    const Finding* shape = fit.finding("scatterers per cell");
+    EXPECT_NE(shape, nullptr);
+    if (!shape) return false;
+    const double ratio = fit.chain.sonar.speckle->scatterers_per_m2.value_or(0) / truth.density;
+    const double true_shape = shape->found.value / ratio;  // because the cell is the same
+    EXPECT_TRUE(shape->found.low < true_shape && true_shape < shape->found.high) << shape->text();
+    if (shape->is_determined) {
+        EXPECT_NEAR(ratio, 1, 0.2) << shape->text();
+    }
+    return shape->is_determined;
 }
 
 /** Returns `few`, or the seeds from 2 to INSONIFY_FIT_SEEDS if that is set, for the numbers on the pages of studies. */

@@ -51,8 +51,7 @@ TEST(LikenessCommandTest, WithoutADeploymentDescribesTheRecordings) {
     const WallFolder folder;
     fs::create_directory(folder / "recordings");
     record(folder / "recordings/pings.raw");
-    const Outcome outcome = callInsonify(folder, {"study", "likeness", "--real", "recordings", "--out", "report"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(callInsonify(folder, {"study", "likeness", "--real", "recordings", "--out", "report"}), succeeds());
     EXPECT_EQ(json::parse(readFile(folder / "report/likeness.json"))["pings"].size(), 4u);
 }
 
@@ -70,8 +69,7 @@ TEST(LikenessCommandTest, ReadsALogOfCodesLikeARecording) {
         << "the wall is still: the same ping, the law from the log";
     ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "1", "--out", "plain"}).code, 0);
     outcome = callInsonify(folder, {"study", "likeness", "--real", "plain/wall.0.log", "--out", "report"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("has no stream of pings of codes"));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("has no stream of pings of codes")));
 }
 
 TEST(LikenessCommandTest, ASideScanIsAPictureOfItsLines) {
@@ -100,15 +98,12 @@ TEST(LikenessCommandTest, RefusesWhatCannotBeCompared) {
     const WallFolder folder;
     record(folder / "pings.raw");
     Outcome outcome = callInsonify(folder, {"study", "likeness", "wall.yml", "--real", "pings.raw", "--out", "report"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("has no receiver that outputs codes"));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("has no receiver that outputs codes")));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "wall.yml", "--out", "report"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("wall.yml: holds no ping of an Oculus"));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("wall.yml: holds no ping of an Oculus")));
     fs::create_directory(folder / "empty");
     outcome = callInsonify(folder, {"study", "likeness", "--real", "empty", "--out", "report"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("is a folder without a file"));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("is a folder without a file")));
     const auto small = OculusMessage{}.bytes();
     writeFile(folder / "small.raw", std::string(small.begin(), small.end()));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "small.raw", "--out", "report"});

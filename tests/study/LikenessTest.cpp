@@ -25,8 +25,7 @@ Histogram only(std::initializer_list<std::pair<size_t, double>> shares) {
 }
 
 /** Returns a picture of 64 beams x 256 bins whose codes are amplitudes. */
-template <class F>
-CodedPing pictureOf(const F& amplitude) {
+CodedPing pictureOf(const auto& amplitude) {
     CodedPing ping{.name = "made", .beam_count = 64, .bin_count = 256, .law = {.law = receiver::CodeLaw::Sqrt}};
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
         ping.bearings.push_back(0.5 - static_cast<double>(beam) / 63);

@@ -7,8 +7,7 @@ using testing::HasSubstr;
 
 TEST(MultipathCommandTest, WritesTableJsonAndDiagramAndEveryClaimHolds) {
     const WallFolder folder;
-    const Outcome outcome = callInsonify(folder, {"study", "multipath", "--out", "report"});
-    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(callInsonify(folder, {"study", "multipath", "--out", "report"}), succeeds());
     const json report = json::parse(readFile(folder / "report/multipath.json"));
     EXPECT_EQ(report["curves"].size(), 6u);
     EXPECT_EQ(report["verdicts"].size(), 8u);

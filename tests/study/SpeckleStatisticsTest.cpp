@@ -37,8 +37,7 @@ std::complex<double> gaussian(uint64_t seed, size_t a, size_t b) {
 }
 
 /** Returns intensities of a complex field. */
-template <class F>
-types::Sonar fieldOf(const F& field) {
+types::Sonar fieldOf(const auto& field) {
     types::Sonar ping = test::pingOf(beams, bins);
     for (size_t beam = 0; beam < beams; ++beam)
         for (size_t bin = 0; bin < bins; ++bin)

@@ -28,8 +28,7 @@ std::vector<std::string> allocationsOn(framework::TaskContext& task, Work&& work
 }
 
 /** Returns the calls of operator new in cycles 2 to 99, after a first cycle. */
-template <class Cycle>
-std::vector<std::string> allocationsAfterTheFirst(framework::TaskContext& task, const Cycle& cycle) {
+std::vector<std::string> allocationsAfterTheFirst(framework::TaskContext& task, const auto& cycle) {
     cycle(1);
     return allocationsOn(task, [&] {
         for (int64_t time = 2; time < 100; ++time) cycle(time);

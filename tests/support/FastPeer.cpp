@@ -37,8 +37,7 @@ using eprosima::fastrtps::rtps::InstanceHandle_t;
 using eprosima::fastrtps::rtps::SerializedPayload_t;
 
 /** Messages in their encoding on the wire. */
-class Raw : public TopicDataType {
-public:
+struct Raw : TopicDataType {
     explicit Raw(const std::string& name) {
         setName(name.c_str());
         m_typeSize = 2 << 20;

@@ -17,14 +17,12 @@ namespace insonify::test {
 /** A bench for a task that listens. The task runs by its own activity or, with `by_hand`, a cycle in each attempt of a
  *  wait. */
 template <class Task>
-class Listening {
-protected:
+struct Listening {
     explicit Listening(const std::string& name, bool by_hand = false) : task(name), by_hand_(by_hand) {}
     ~Listening() { task.activity().hold(); }
 
     /** Makes a reader for each entry of a list of the configuration. */
-    template <class Config, class Entries>
-    void start(const Config& config, const Entries& entries) {
+    void start(const auto& config, const auto& entries) {
         task.config.set(config);
         for (size_t i = 0; i < entries.size(); ++i)
             task.makeOutput(entries[i].port)->connectTo(readers[i].port, framework::ConnPolicy::buffer(10'000));

@@ -7,7 +7,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -199,8 +198,7 @@ private:
 
 /** A driver like liboculus of the University of Washington: version 2, 32 bits; it gives up when the status reports
  *  that the device boots. */
-class UwDriver : public OculusDriver {
-public:
+struct UwDriver : OculusDriver {
     UwDriver(const OculusStatus& status, uint16_t port) : OculusDriver(port) {
         if ((status.status & 7) < 2) throw std::runtime_error("the device boots");
     }

@@ -18,8 +18,7 @@ void expectNoAllocation(const Config& config, framework::InputPort<types::SonarP
     in.port.connectTo(task.*input, {});
     (task.*output).connectTo(out.port, {});
     task.config.set(config);
-    ASSERT_TRUE(task.configure());
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto cycle = [&](int64_t time) {
         in.port.write(shared(pingOf(16, 100, 1, time)));
         task.update();

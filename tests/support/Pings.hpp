@@ -1,6 +1,9 @@
 #pragma once
-// Pings built in code.
+// Pings built in code, and numbers that compare pings.
+#include <cmath>
 #include <memory>
+#include <numeric>
+#include <span>
 
 #include "types/Angle.hpp"
 #include "types/Sonar.hpp"
@@ -38,5 +41,20 @@ inline types::Sonar withEcho(types::Sonar ping, uint32_t beam, uint32_t bin, flo
 }
 
 inline types::SonarPtr shared(const types::Sonar& ping) { return std::make_shared<const types::Sonar>(ping); }
+
+/** Returns the relative L2 of the difference. */
+inline double relativeL2(std::span<const float> got, std::span<const float> expected) {
+    double error = 0, norm = 0;
+    for (size_t i = 0; i < expected.size(); ++i) {
+        error += std::pow(double{got[i]} - double{expected[i]}, 2);
+        norm += std::pow(double{expected[i]}, 2);
+    }
+    return std::sqrt(error / norm);
+}
+inline double relativeL2(const types::Sonar& got, const types::Sonar& expected) {
+    return relativeL2(got.bins, expected.bins);
+}
+
+inline double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
 }  // namespace insonify::test

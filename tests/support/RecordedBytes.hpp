@@ -7,13 +7,9 @@ namespace insonify::test {
 
 using RecordedBytes = std::vector<char>;
 
-template <class T>
-void putAt(RecordedBytes& bytes, size_t at, T value) {
-    std::memcpy(bytes.data() + at, &value, sizeof value);
-}
+void putAt(RecordedBytes& bytes, size_t at, auto value) { std::memcpy(bytes.data() + at, &value, sizeof value); }
 
-template <class T>
-void putBehind(RecordedBytes& bytes, T value) {
+void putBehind(RecordedBytes& bytes, auto value) {
     bytes.resize(bytes.size() + sizeof value);
     putAt(bytes, bytes.size() - sizeof value, value);
 }

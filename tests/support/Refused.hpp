@@ -14,16 +14,14 @@ inline std::vector<std::string> textsOf(const types::Diagnostics& diagnostics) {
 }
 
 /** Returns the texts of the diagnostics that check() of a configuration or task reports. */
-template <class Checked>
-std::vector<std::string> refusalsOf(const Checked& checked) {
+std::vector<std::string> refusalsOf(const auto& checked) {
     types::Diagnostics diagnostics;
     checked.check(diagnostics);
     return textsOf(diagnostics);
 }
 
 /** Returns the texts of the types::ConfigError that a call throws; empty if it throws none. */
-template <class Call>
-std::vector<std::string> refused(Call&& call) {
+std::vector<std::string> refused(auto&& call) {
     try {
         call();
     } catch (const types::ConfigError& error) {

@@ -1,6 +1,5 @@
 #pragma once
 // Random tables of bearings that no regular fan has.
-#include <algorithm>
 #include <cmath>
 #include <ostream>
 #include <random>

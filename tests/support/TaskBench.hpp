@@ -1,8 +1,7 @@
 #pragma once
 // A lone task that takes one kind of sample and gives another.
 //
-//     class NoiseTaskTest : public test::TaskBench<NoiseTask, types::SonarPtr> {
-//     protected:
+//     struct NoiseTaskTest : test::TaskBench<NoiseTask, types::SonarPtr> {
 //         NoiseTaskTest() : TaskBench(&NoiseTask::clean, &NoiseTask::noisy) {}
 //     };
 #include <gtest/gtest.h>
@@ -15,8 +14,7 @@
 namespace insonify::test {
 
 template <class Task, class In, class Out = In>
-class TaskBench : public ::testing::Test {
-protected:
+struct TaskBench : ::testing::Test {
     TaskBench(framework::InputPort<In> Task::*input, framework::OutputPort<Out> Task::*output) {
         in_.port.connectTo(task_.*input, framework::ConnPolicy::buffer(4));
         (task_.*output).connectTo(out_.port, framework::ConnPolicy::buffer(4));
@@ -25,8 +23,7 @@ protected:
 
     void startWith(const Config& config) {
         task_.config.set(config);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     /** Returns the output of one cycle for a sample; none if the task rejects the sample. */
     Out answerTo(const In& sample) {

@@ -11,8 +11,7 @@ namespace insonify::test {
 constexpr std::chrono::seconds patience{60};
 
 /** Waits until the condition is true; returns false after patience. */
-template <class Condition>
-bool becomesTrue(Condition&& condition) {
+bool becomesTrue(auto&& condition) {
     const auto end = std::chrono::steady_clock::now() + patience;
     while (!condition()) {
         if (std::chrono::steady_clock::now() > end) return false;

@@ -29,8 +29,7 @@ using testing::HasSubstr;
 /** Elevation at an easting and northing: no two posts have the same. */
 double elevation(double east, double north) { return -50 + 0.01 * (east - 1000) + 0.001 * (north - 5000); }
 
-class BathymetryTest : public testing::Test {
-protected:
+struct BathymetryTest : testing::Test {
     std::string write(const std::string& name, const std::string& text) {
         std::ofstream(folder_ / name) << text;
         return (folder_ / name).string();
@@ -66,9 +65,8 @@ protected:
     }
     types::GeometryPtr about(Bathymetry& floor, glm::dvec3 place) { return floor.about(place, rest_); }
     /** A mosaic of values `spacing` apart, whose south-west value is at an easting and northing; NaN: none. */
-    template <class Value>
     std::string mosaic(const std::string& name, int columns, int rows, double east, double north, double spacing,
-                       Value&& value) {
+                       auto&& value) {
         std::vector<float> values;
         for (int row = rows - 1; row >= 0; --row)
             for (int column = 0; column < columns; ++column) {
@@ -81,8 +79,7 @@ protected:
         return write(name + ".flt", {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
     }
     /** Value of a tile's map at a vertex, bilinear: by `valueOf(texel)`. */
-    template <class Value>
-    static double mapAt(const types::Mesh& mesh, size_t vertex, Value&& valueOf) {
+    static double mapAt(const types::Mesh& mesh, size_t vertex, auto&& valueOf) {
         const types::SurfaceMap& map = *mesh.maps.at(0).map;
         const glm::vec2 at = mesh.map_uvs[vertex] * glm::vec2(map.width, map.height) - 0.5f, low = glm::floor(at),
                         share = at - low;
@@ -416,8 +413,7 @@ TEST_F(BathymetryTest, AFileThatEndsTooEarlyIsAnErrorOfTheTaskAndTheRunContinues
     vehicle.port.connectTo(task.pose, framework::ConnPolicy::data());
     task.snapshot.connectTo(out.port, framework::ConnPolicy::buffer(8));
     task.config.set(config);
-    ASSERT_TRUE(task.configure()) << task.lastError();
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto snapshotAt = [&](double north) {
         types::Pose pose;
         pose.position = {north, -200, -10};

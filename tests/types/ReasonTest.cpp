@@ -12,8 +12,7 @@
 namespace insonify::types {
 namespace {
 
-template <class Act>
-std::string reasonFor(Act act) {
+std::string reasonFor(auto act) {
     try {
         act();
     } catch (const std::exception& failure) {

@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "components/framework/Activity.hpp"
 #include "components/viewer/ViewerTask.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"
@@ -52,8 +51,7 @@ struct Bench {
         viewer.environment().now = [] { return types::Time{3'500'000}; };
     }
     void start() {
-        ASSERT_TRUE(viewer.configure()) << viewer.lastError();
-        ASSERT_TRUE(viewer.start());
+        ASSERT_TRUE(viewer.configure() && viewer.start()) << viewer.lastError();
     }
     void show(const types::SonarPtr& ping) {
         sonar.write(ping);

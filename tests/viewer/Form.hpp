@@ -30,21 +30,20 @@ struct FormConfig {
     std::vector<double> weights{0.5, 0.25};
     QualityConfig quality{256, {}};
     std::optional<QualityConfig> spare;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"range", "m", "factor of the ping", 1, 100}, self.range);
-        visit(types::Field{"gain_db", "dB", "any"}, self.gain_db);
-        visit(types::Field{"frequency_khz", "kHz", "any", 1, 3000}, self.frequency_khz);
-        visit(types::Field{"enabled", "", "false is refused"}, self.enabled);
-        visit(types::Field{"shape", "", "flat is refused"}, self.shape);
-        visit(types::Field{"maybe", "", "any"}, self.maybe);
-        visit(types::Field{"count", "1", "any", 1, 1000}, self.count);
-        visit(types::Field{"seed", "1", "any"}, self.seed);
-        visit(types::Field{"title", "", "slow takes a second to be set"}, self.title);
-        visit(types::Field{"place", "m", "any"}, self.place);
-        visit(types::Field{"weights", "1", "any"}, self.weights);
-        visit(types::Field{"quality", "", "rows or a budget"}, self.quality);
-        visit(types::Field{"spare", "", "rows or a budget"}, self.spare);
+    static void describe(auto& self, auto& visit) {
+        visit({"range", "m", "factor of the ping", 1, 100}, self.range);
+        visit({"gain_db", "dB", "any"}, self.gain_db);
+        visit({"frequency_khz", "kHz", "any", 1, 3000}, self.frequency_khz);
+        visit({"enabled", "", "false is refused"}, self.enabled);
+        visit({"shape", "", "flat is refused"}, self.shape);
+        visit({"maybe", "", "any"}, self.maybe);
+        visit({"count", "1", "any", 1, 1000}, self.count);
+        visit({"seed", "1", "any"}, self.seed);
+        visit({"title", "", "slow takes a second to be set"}, self.title);
+        visit({"place", "m", "any"}, self.place);
+        visit({"weights", "1", "any"}, self.weights);
+        visit({"quality", "", "rows or a budget"}, self.quality);
+        visit({"spare", "", "rows or a budget"}, self.spare);
     }
 };
 

@@ -14,8 +14,7 @@ using nlohmann::json;
 // Beams 10 to 19 of 32 over 90 degrees are at -16.9 to 11.25 degrees, bins 40 to 49 at 6 to 7.5 m; all else is silent.
 inline const json brightest = {255, 252, 236}, darkest = {6, 5, 6};
 
-class PageTest : public testing::Test {
-protected:
+struct PageTest : testing::Test {
     void SetUp() override {
         if (!std::filesystem::exists(chromium)) GTEST_SKIP() << "NOT TESTED: there is no " << chromium;
         if (pythonWithWebsockets().empty()) GTEST_SKIP() << "NOT TESTED: no python has websockets";

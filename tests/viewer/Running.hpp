@@ -17,10 +17,9 @@ namespace insonify::viewer {
 /** Rows, or a budget instead. */
 struct QualityConfig {
     std::optional<double> rows, budget_ms;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"rows", "1", "of samples", 1, 1000}, self.rows);
-        visit(types::Field{"budget_ms", "ms", "instead", 1, 1000}, self.budget_ms);
+    static void describe(auto& self, auto& visit) {
+        visit({"rows", "1", "of samples", 1, 1000}, self.rows);
+        visit({"budget_ms", "ms", "instead", 1, 1000}, self.budget_ms);
     }
     void check(types::Diagnostics& diagnostics) const {
         if (rows && budget_ms) diagnostics.push_back({"rows", "is given in addition to budget_ms"});
@@ -31,11 +30,10 @@ struct LevelConfig {
     double level = 1;
     bool record = false;
     QualityConfig quality{256, {}};
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"level", "1", "of the echo", 0, 100}, self.level);
-        visit(types::Field{"record", "", "what a logger calls so"}, self.record);
-        visit(types::Field{"quality", "", "rows or a budget"}, self.quality);
+    static void describe(auto& self, auto& visit) {
+        visit({"level", "1", "of the echo", 0, 100}, self.level);
+        visit({"record", "", "what a logger calls so"}, self.record);
+        visit({"quality", "", "rows or a budget"}, self.quality);
     }
 };
 
@@ -60,11 +58,9 @@ private:
 struct WaterConfig {
     bool water = true;
     double raised = 0;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"water", "", "whether snapshots have a surface"}, self.water);
-        visit(types::Field{"raised", "m", "height by which the stone's mesh is deformed; 0: it is at rest"},
-              self.raised);
+    static void describe(auto& self, auto& visit) {
+        visit({"water", "", "whether snapshots have a surface"}, self.water);
+        visit({"raised", "m", "height by which the stone's mesh is deformed; 0: it is at rest"}, self.raised);
     }
 };
 

@@ -10,8 +10,7 @@ using testing::HasSubstr;
 
 const char* const red = "rgb(228, 87, 76)";
 
-class TypingTest : public PageTest {
-protected:
+struct TypingTest : PageTest {
     void SetUp() override {
         PageTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;

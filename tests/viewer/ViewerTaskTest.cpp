@@ -4,7 +4,6 @@
 #include <map>
 #include <span>
 
-#include "components/framework/Deployment.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/viewer/ViewerTask.hpp"
 #include "tests/support/Folder.hpp"
@@ -77,8 +76,7 @@ TEST(ViewerTaskTest, ReadsATokenFromAFile) {
     EXPECT_THAT(bench.viewer.configError()->what(), HasSubstr("viewer.token_file: is "));
     std::ofstream(folder / "token.txt") << "open sesame\n";
     ASSERT_TRUE(bench.viewer.recover());
-    ASSERT_TRUE(bench.viewer.configure()) << bench.viewer.lastError();
-    ASSERT_TRUE(bench.viewer.start());
+    ASSERT_TRUE(bench.viewer.configure() && bench.viewer.start()) << bench.viewer.lastError();
     EXPECT_THAT(Client(bench.port()).get("/?token=open%20sesame"), testing::StartsWith("HTTP/1.1 200"));
     EXPECT_THAT(Client(bench.port()).get("/"), testing::StartsWith("HTTP/1.1 401"));
 }

@@ -1,13 +1,9 @@
 #pragma once
-#include <atomic>
-#include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "components/command/Shard.hpp"
 #include "components/dataset/Instances.hpp"
 #include "components/dataset/SampleFiles.hpp"
 #include "components/dataset/Samples.hpp"

@@ -25,28 +25,26 @@ struct SweepKeys {
     Split split;
     output::PlainConfig picture;
     AnnotationConfig annotations;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"seed", "1", "of all that is drawn at random"}, self.seed);
-        visit(Field{"scenes", "", "files, or blocks of file and set"}, self.scenes);
-        visit(Field{"poses", "", "of the vehicle: grid, random or trajectory"}, self.poses);
-        visit(Field{"lines", "", "of a side-scan, a run for each sample"}, self.lines);
-        visit(Field{"settings", "", "by task.property: lists of values, or what they are drawn from"}, self.settings);
-        visit(Field{"objects", "", "objects to place"}, self.objects);
-        visit(Field{"split", "", "shares of train, val and test"}, self.split);
-        visit(Field{"classes", "", "names of objects by class"}, self.classes);
-        visit(Field{"picture", "", "how samples look"}, self.picture);
-        visit(Field{"annotations", "", "what is annotated"}, self.annotations);
+    static void describe(auto& self, auto& visit) {
+        visit({"seed", "1", "of all that is drawn at random"}, self.seed);
+        visit({"scenes", "", "files, or blocks of file and set"}, self.scenes);
+        visit({"poses", "", "of the vehicle: grid, random or trajectory"}, self.poses);
+        visit({"lines", "", "of a side-scan, a run for each sample"}, self.lines);
+        visit({"settings", "", "by task.property: lists of values, or what they are drawn from"}, self.settings);
+        visit({"objects", "", "objects to place"}, self.objects);
+        visit({"split", "", "shares of train, val and test"}, self.split);
+        visit({"classes", "", "names of objects by class"}, self.classes);
+        visit({"picture", "", "how samples look"}, self.picture);
+        visit({"annotations", "", "what is annotated"}, self.annotations);
     }
 };
 
 struct PoseKeys {
     YAML::Node grid = absent(), random = absent(), trajectory = absent();
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"grid", "", "all combinations of coordinates"}, self.grid);
-        visit(Field{"random", "", "coordinates that are drawn"}, self.random);
-        visit(Field{"trajectory", "", "poses along a path"}, self.trajectory);
+    static void describe(auto& self, auto& visit) {
+        visit({"grid", "", "all combinations of coordinates"}, self.grid);
+        visit({"random", "", "coordinates that are drawn"}, self.random);
+        visit({"trajectory", "", "poses along a path"}, self.trajectory);
     }
     void check(types::Diagnostics& diagnostics) const {
         if (grid.IsDefined() + random.IsDefined() + trajectory.IsDefined() != 1)
@@ -59,13 +57,12 @@ struct SceneKeys {
     std::vector<uint32_t> seeds;
     std::optional<uint32_t> count;
     YAML::Node set = absent();
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"file", "", "scene, relative to the sweep; absent: that of the deployment"}, self.file);
-        visit(Field{"make", "", "instead: recipe of scenes, relative to the sweep"}, self.make);
-        visit(Field{"seeds", "", "of the recipe: a scene for each"}, self.seeds);
-        visit(Field{"count", "1", "instead: the seeds 1 to this number", 1, 100000}, self.count);
-        visit(Field{"set", "", "values by task.property"}, self.set);
+    static void describe(auto& self, auto& visit) {
+        visit({"file", "", "scene, relative to the sweep; absent: that of the deployment"}, self.file);
+        visit({"make", "", "instead: recipe of scenes, relative to the sweep"}, self.make);
+        visit({"seeds", "", "of the recipe: a scene for each"}, self.seeds);
+        visit({"count", "1", "instead: the seeds 1 to this number", 1, 100000}, self.count);
+        visit({"set", "", "values by task.property"}, self.set);
     }
     void check(types::Diagnostics& diagnostics) const {
         if (!file.empty() && !make.empty()) diagnostics.push_back({"make", "is given with file; give one of them"});
@@ -78,11 +75,10 @@ struct SceneKeys {
 struct DrawnKeys {
     std::vector<double> uniform, normal;
     YAML::Node choice = absent();
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"uniform", "", "drawn uniformly: [min, max]", -1e12, 1e12}, self.uniform);
-        visit(Field{"normal", "", "drawn from a normal law: [mean, deviation]", -1e12, 1e12}, self.normal);
-        visit(Field{"choice", "", "one of a list"}, self.choice);
+    static void describe(auto& self, auto& visit) {
+        visit({"uniform", "", "drawn uniformly: [min, max]", -1e12, 1e12}, self.uniform);
+        visit({"normal", "", "drawn from a normal law: [mean, deviation]", -1e12, 1e12}, self.normal);
+        visit({"choice", "", "one of a list"}, self.choice);
     }
     void check(types::Diagnostics& diagnostics) const {
         if (!uniform.empty() + !normal.empty() + choice.IsDefined() != 1)

@@ -3,7 +3,6 @@
 // footer, then the magic again. All integers are little endian.
 #include <cstdint>
 #include <cstring>
-#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -67,8 +66,7 @@ public:
         });
     }
     /** Appends what `fill` appends, preceded by its size in four bytes. */
-    template <class Fill>
-    void sized(Fill&& fill) {
+    void sized(auto&& fill) {
         number(uint32_t{0});
         const size_t from = bytes_.size();
         fill();

@@ -1,8 +1,6 @@
 #pragma once
 #include <map>
-#include <memory>
 #include <optional>
-#include <string_view>
 
 #include "components/log/Writer.hpp"
 #include "components/log/mcap/Bag.hpp"

@@ -13,8 +13,7 @@ constexpr uint32_t index_version = 3;
 constexpr uint64_t stream_entry_size = 8 * sizeof(uint64_t);
 constexpr uint64_t sample_entry_size = 2 * sizeof(uint64_t);
 
-template <class T>
-void putBigEndian(std::vector<char>& bytes, T value) {
+void putBigEndian(std::vector<char>& bytes, auto value) {
     for (size_t i = sizeof value; i-- > 0;) bytes.push_back(static_cast<char>(value >> (8 * i)));
 }
 

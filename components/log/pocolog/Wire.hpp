@@ -5,7 +5,6 @@
 // sample is dropped; padding after a vector's element is kept. Vectors and strings are a u64 count and their elements.
 #include <bit>
 #include <cstring>
-#include <stdexcept>
 
 #include "components/log/Stream.hpp"
 #include "components/log/pocolog/Typelib.hpp"
@@ -47,14 +46,8 @@ public:
         bytes_.insert(bytes_.end(), first, first + size);
     }
     void zeros(size_t size) { bytes_.resize(bytes_.size() + size); }
-    template <class Items>
-    void count(const Items& items) {
-        scalar(static_cast<uint64_t>(items.size()));
-    }
-    template <class T>
-    void scalar(const T& value) {
-        bytes(&value, sizeof value);
-    }
+    void count(const auto& items) { scalar(static_cast<uint64_t>(items.size())); }
+    void scalar(const auto& value) { bytes(&value, sizeof value); }
     template <class T>
     void block(const std::vector<T>& items) {
         bytes(items.data(), items.size() * sizeof(T));
@@ -88,10 +81,7 @@ public:
                               "announces " + std::to_string(wanted) + " elements, more than it holds");
         items.resize(wanted);
     }
-    template <class T>
-    void scalar(T& value) {
-        bytes(&value, sizeof value);
-    }
+    void scalar(auto& value) { bytes(&value, sizeof value); }
     void scalar(bool& value) {
         uint8_t byte = 0;
         scalar(byte);
@@ -146,8 +136,7 @@ private:
         Plain::describe(item, visit);
         padding_ += extent.stride() - extent.size;
     }
-    template <class T>
-    void text(T& item) {
+    void text(auto& item) {
         archive_.count(item);
         archive_.bytes(item.data(), item.size());
     }
@@ -162,8 +151,7 @@ private:
                 flushPadding();
             }
     }
-    template <class T>
-    void quaternion(T& q) {
+    void quaternion(auto& q) {
         archive_.scalar(q.x);
         archive_.scalar(q.y);
         archive_.scalar(q.z);
@@ -176,15 +164,13 @@ private:
 };
 
 /** Appends the sample to `bytes`. */
-template <class T>
-void marshal(const T& sample, std::vector<char>& bytes) {
+void marshal(const auto& sample, std::vector<char>& bytes) {
     Encoder encoder(bytes);
     Walk<Encoder>(encoder).value(sample);
 }
 
 /** Fills `sample`, reusing its memory. Throws FormatError unless `bytes` is exactly one sample. */
-template <class T>
-void unmarshal(std::span<const char> bytes, T& sample) {
+void unmarshal(std::span<const char> bytes, auto& sample) {
     Decoder decoder(bytes);
     Walk<Decoder>(decoder).value(sample);
     if (decoder.left() > 0)

@@ -33,8 +33,7 @@ std::vector<size_t> groupsOf(const Fan& cells) {
 }
 
 /** Removes weights below the floor from both ends. */
-template <class Run>
-void trim(Run& run, double floor) {
+void trim(auto& run, double floor) {
     const auto received = [&](float weight) { return std::abs(static_cast<double>(weight)) >= floor; };
     const auto last = std::find_if(run.weights.rbegin(), run.weights.rend(), received);
     run.weights.erase(last.base(), run.weights.end());

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <span>
 
 #include "components/sonar/echo/EchoRules.hpp"
 #include "components/sonar/echo/Interface.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "types/Describe.hpp"
 #include "types/Sonar.hpp"
@@ -14,23 +13,17 @@ struct DetectionConfig {
     std::optional<double> floor_db;
     double gate_db = 10;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
+    static void describe(auto& self, auto& visit) {
         describeThreshold(self, visit);
-        visit(Field{"gate_db", "dB", "bins around the strongest belong to a return down to this level below it", 0.1,
-                    300},
+        visit({"gate_db", "dB", "bins around the strongest belong to a return down to this level below it", 0.1, 300},
               self.gate_db);
     }
     /** Describes the properties that an altimeter has as well. */
-    template <class Self, class V>
-    static void describeThreshold(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"threshold_db", "dB", "min level of a return, relative to the ping's strongest bin", -300, 0},
+    static void describeThreshold(auto& self, auto& visit) {
+        visit({"threshold_db", "dB", "min level of a return, relative to the ping's strongest bin", -300, 0},
               self.threshold_db);
-        visit(
-            Field{"floor_db", "dB", "absolute min level of a return, as 10 log10 of a bin; absent: none", -3000, 3000},
-            self.floor_db);
+        visit({"floor_db", "dB", "absolute min level of a return, as 10 log10 of a bin; absent: none", -3000, 3000},
+              self.floor_db);
     }
 };
 

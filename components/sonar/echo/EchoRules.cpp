@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "components/sonar/echo/Interface.hpp"
 #include "components/sonar/effects/Effects.hpp"
 #include "types/Angle.hpp"
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include "components/sonar/field/ScattererLattice.hpp"

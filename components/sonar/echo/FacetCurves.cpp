@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <numbers>
 #include <numeric>
 
 #include "components/sonar/echo/FacetLobes.hpp"
@@ -52,8 +51,7 @@ private:
         return t;
     }
     /** Calls act(one, other) for each edge of two triangles. */
-    template <class Act>
-    void eachPair(const Act& act) {
+    void eachPair(const auto& act) {
         for (size_t k = 1; k < edges_.size(); ++k)
             if (edges_[k - 1].low == edges_[k].low && edges_[k - 1].high == edges_[k].high)
                 act(edges_[k - 1], edges_[k]);

@@ -156,8 +156,7 @@ private:
     }
 
     /** Calls act(one facet, the other, angle between their normals, edge) for edges that are not creases. */
-    template <class Act>
-    void eachBend(const Act& act) {
+    void eachBend(const auto& act) {
         for (size_t k = 1; k < edges_.size(); ++k) {
             const Edge &one = edges_[k - 1], &other = edges_[k];
             if (one.low != other.low || one.high != other.high) continue;
@@ -205,8 +204,7 @@ private:
     }
 
     /** Numbers all facets that are connected, where `joined` allows the step. */
-    template <class Begin, class Joined>
-    void flood(uint32_t Facet::*number, const Begin& begin, const Joined& joined) {
+    void flood(uint32_t Facet::*number, const auto& begin, const auto& joined) {
         std::vector<uint32_t> open;
         uint32_t count = 0;
         for (uint32_t seed = 0; seed < facets_.size(); ++seed) {

@@ -42,18 +42,11 @@ public:
                             "middle; it is taken in the middle",
                             decibels(inside->value)));
     }
-    std::string takeOut(SonarConfig& config) const override {
-        if (!config.absorption) return {};
-        config.absorption.reset();
-        return "absorption";
-    }
+    std::string takeOut(SonarConfig& config) const override { return takenOut(config.absorption, "absorption"); }
 };
 
 }  // namespace
 
-const Effect& absorption() {
-    static const Absorption effect;
-    return effect;
-}
+const Effect& absorption() { return only<Absorption>(); }
 
 }  // namespace insonify::sonar

@@ -71,9 +71,6 @@ public:
 
 }  // namespace
 
-const Effect& backscatter() {
-    static const Backscatter effect;
-    return effect;
-}
+const Effect& backscatter() { return only<Backscatter>(); }
 
 }  // namespace insonify::sonar

@@ -81,18 +81,11 @@ public:
             leaveOut(plan, {"elevation beam pattern", Reason::NotConfigured});
         return azimuth || elevation;
     }
-    std::string takeOut(SonarConfig& config) const override {
-        if (!config.beam_pattern) return {};
-        config.beam_pattern.reset();
-        return "beam pattern";
-    }
+    std::string takeOut(SonarConfig& config) const override { return takenOut(config.beam_pattern, "beam pattern"); }
 };
 
 }  // namespace
 
-const Effect& beamPatterns() {
-    static const BeamPatterns effect;
-    return effect;
-}
+const Effect& beamPatterns() { return only<BeamPatterns>(); }
 
 }  // namespace insonify::sonar

@@ -66,18 +66,11 @@ public:
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& geometry) const override {
         return std::make_unique<CrosstalkInPings>(plan, geometry);
     }
-    std::string takeOut(SonarConfig& config) const override {
-        if (!config.crosstalk) return {};
-        config.crosstalk.reset();
-        return crosstalk_name;
-    }
+    std::string takeOut(SonarConfig& config) const override { return takenOut(config.crosstalk, crosstalk_name); }
 };
 
 }  // namespace
 
-const Effect& crosstalk() {
-    static const Crosstalk effect;
-    return effect;
-}
+const Effect& crosstalk() { return only<Crosstalk>(); }
 
 }  // namespace insonify::sonar

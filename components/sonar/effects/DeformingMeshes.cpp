@@ -21,9 +21,6 @@ public:
 
 }  // namespace
 
-const Effect& deformingMeshes() {
-    static const DeformingMeshes effect;
-    return effect;
-}
+const Effect& deformingMeshes() { return only<DeformingMeshes>(); }
 
 }  // namespace insonify::sonar

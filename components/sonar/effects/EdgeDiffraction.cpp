@@ -83,9 +83,6 @@ public:
 
 }  // namespace
 
-const Effect& edgeDiffraction() {
-    static const EdgeDiffraction effect;
-    return effect;
-}
+const Effect& edgeDiffraction() { return only<EdgeDiffraction>(); }
 
 }  // namespace insonify::sonar

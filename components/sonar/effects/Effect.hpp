@@ -148,4 +148,19 @@ inline bool leaveOut(RenderPlan& plan, const Omitted& what) {
     return false;
 }
 
+/** Removes an optional block of a configuration, for Effect::takeOut(). Returns the effect's name; empty where the
+ * block is absent. */
+std::string takenOut(auto& block, const char* name) {
+    if (!block) return {};
+    block.reset();
+    return name;
+}
+
+/** Returns the only object of an effect's class. */
+template <class Kind>
+const Effect& only() {
+    static const Kind effect;
+    return effect;
+}
+
 }  // namespace insonify::sonar

@@ -23,9 +23,6 @@ public:
 
 }  // namespace
 
-const Effect& furtherFrusta() {
-    static const Frusta effect;
-    return effect;
-}
+const Effect& furtherFrusta() { return only<Frusta>(); }
 
 }  // namespace insonify::sonar

@@ -89,18 +89,11 @@ public:
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& /*geometry*/) const override {
         return std::make_unique<ImperfectBeams>(plan);
     }
-    std::string takeOut(SonarConfig& config) const override {
-        if (!config.imperfections) return {};
-        config.imperfections.reset();
-        return "imperfections";
-    }
+    std::string takeOut(SonarConfig& config) const override { return takenOut(config.imperfections, "imperfections"); }
 };
 
 }  // namespace
 
-const Effect& imperfections() {
-    static const Imperfections effect;
-    return effect;
-}
+const Effect& imperfections() { return only<Imperfections>(); }
 
 }  // namespace insonify::sonar

@@ -54,9 +54,6 @@ MotionBound motionBound(const SonarConfig& config, const BinGrid& grid) {
     return {grid.bin_width / (2 * seconds), types::radians(config.beamWidthDeg()) / (2 * flight)};
 }
 
-const Effect& motionInPing() {
-    static const MotionInPing effect;
-    return effect;
-}
+const Effect& motionInPing() { return only<MotionInPing>(); }
 
 }  // namespace insonify::sonar

@@ -43,9 +43,6 @@ public:
 
 }  // namespace
 
-const Effect& multipath() {
-    static const Multipath effect;
-    return effect;
-}
+const Effect& multipath() { return only<Multipath>(); }
 
 }  // namespace insonify::sonar

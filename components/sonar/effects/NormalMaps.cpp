@@ -18,9 +18,6 @@ public:
 
 }  // namespace
 
-const Effect& normalMaps() {
-    static const NormalMaps effect;
-    return effect;
-}
+const Effect& normalMaps() { return only<NormalMaps>(); }
 
 }  // namespace insonify::sonar

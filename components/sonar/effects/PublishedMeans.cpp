@@ -41,9 +41,6 @@ public:
 
 }  // namespace
 
-const Effect& publishedMeans() {
-    static const PublishedMeans effect;
-    return effect;
-}
+const Effect& publishedMeans() { return only<PublishedMeans>(); }
 
 }  // namespace insonify::sonar

@@ -30,18 +30,11 @@ public:
         plan.add(Pass::Pulse);
         return true;
     }
-    std::string takeOut(SonarConfig& config) const override {
-        if (!config.pulse) return {};
-        config.pulse.reset();
-        return "pulse";
-    }
+    std::string takeOut(SonarConfig& config) const override { return takenOut(config.pulse, "pulse"); }
 };
 
 }  // namespace
 
-const Effect& pulse() {
-    static const PulseInRange effect;
-    return effect;
-}
+const Effect& pulse() { return only<PulseInRange>(); }
 
 }  // namespace insonify::sonar

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "components/sonar/effects/Effect.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
@@ -73,9 +71,6 @@ std::string whyStraight(const SonarConfig& config) {
            "published: true and deposit: gpu, in a build with rays";
 }
 
-const Effect& refraction() {
-    static const Refraction effect;
-    return effect;
-}
+const Effect& refraction() { return only<Refraction>(); }
 
 }  // namespace insonify::sonar

@@ -43,9 +43,6 @@ public:
 
 }  // namespace
 
-const Effect& ringDown() {
-    static const RingDown effect;
-    return effect;
-}
+const Effect& ringDown() { return only<RingDown>(); }
 
 }  // namespace insonify::sonar

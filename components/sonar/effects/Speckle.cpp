@@ -21,9 +21,6 @@ public:
 
 }  // namespace
 
-const Effect& speckle() {
-    static const Speckle effect;
-    return effect;
-}
+const Effect& speckle() { return only<Speckle>(); }
 
 }  // namespace insonify::sonar

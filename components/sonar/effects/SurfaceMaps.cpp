@@ -32,9 +32,6 @@ public:
 
 }  // namespace
 
-const Effect& surfaceMaps() {
-    static const SurfaceMaps effect;
-    return effect;
-}
+const Effect& surfaceMaps() { return only<SurfaceMaps>(); }
 
 }  // namespace insonify::sonar

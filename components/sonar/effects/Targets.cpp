@@ -60,9 +60,6 @@ public:
 
 }  // namespace
 
-const Effect& pointTargets() {
-    static const Targets effect;
-    return effect;
-}
+const Effect& pointTargets() { return only<Targets>(); }
 
 }  // namespace insonify::sonar

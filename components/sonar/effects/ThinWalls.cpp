@@ -43,9 +43,6 @@ public:
 
 }  // namespace
 
-const Effect& thinWalls() {
-    static const ThinWalls effect;
-    return effect;
-}
+const Effect& thinWalls() { return only<ThinWalls>(); }
 
 }  // namespace insonify::sonar

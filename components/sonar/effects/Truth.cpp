@@ -32,9 +32,6 @@ public:
 
 }  // namespace
 
-const Effect& truth() {
-    static const Truth effect;
-    return effect;
-}
+const Effect& truth() { return only<Truth>(); }
 
 }  // namespace insonify::sonar

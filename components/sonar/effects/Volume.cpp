@@ -207,9 +207,6 @@ void VolumeLayer::check(types::Diagnostics& diagnostics) const {
             {"bottom_m", fmt::format("is {:g}, not below top_m, {:g}; depths grow downwards", *bottom_m, *top_m)});
 }
 
-const Effect& volume() {
-    static const Volume effect;
-    return effect;
-}
+const Effect& volume() { return only<Volume>(); }
 
 }  // namespace insonify::sonar

@@ -76,8 +76,7 @@ std::vector<FocusZone> focusZones(double length, double wavelength, double focus
 double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
 
 /** Returns the angle farthest from `inner` towards `outer` at which `power` is not below the floor, plus a step. */
-template <class Power>
-double farthest(double outer, double inner, double floor, const Power& power) {
+double farthest(double outer, double inner, double floor, const auto& power) {
     const double step = std::copysign(reach_step, inner - outer);
     double angle = outer;
     while (std::abs(inner - angle) > reach_step && power(angle) < floor) angle += step;

@@ -65,8 +65,7 @@ public:
      *  outermost beams, or halfway across the seam of a round fan. A single beam has its own limits [rad]. */
     std::vector<double> halfways() const;
     /** Calls use(k) for each beam that holds an azimuth: low <= azimuth < high, turned by whole turns [rad]. */
-    template <class Use>
-    void eachAt(double azimuth, const Use& use) const;
+    void eachAt(double azimuth, const auto& use) const;
 
     /** Returns the place of beam k in the table [1]. */
     size_t row(size_t k) const { return rows_[k]; }
@@ -88,8 +87,7 @@ private:
     bool joins_ = true;
 };
 
-template <class Use>
-void Fan::eachAt(double azimuth, const Use& use) const {
+void Fan::eachAt(double azimuth, const auto& use) const {
     constexpr double turn = 2 * std::numbers::pi;
     for (const double at : {azimuth, azimuth - turn, azimuth + turn}) {
         auto beam = std::ranges::upper_bound(beams_, at - widest_, {}, &Beam::low);

@@ -19,17 +19,15 @@ struct HeadConfig {
     /** Returns whether the head turns on and on, rather than back at its limits. */
     bool turnsOn() const { return continuous.value_or(sectorDeg() == 360); }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"left_deg", "deg", "where a scan starts", -360, 360}, self.left_deg);
-        visit(Field{"right_deg", "deg", "where a sector scan turns back", -360, 360}, self.right_deg);
-        visit(Field{"step_deg", "deg", "turn between two pings", 0.001, 360}, self.step_deg);
-        visit(Field{"continuous", "",
-                    "turns on and on from left_deg, ignoring right_deg; absent: if the two are 360 deg apart"},
+    static void describe(auto& self, auto& visit) {
+        visit({"left_deg", "deg", "where a scan starts", -360, 360}, self.left_deg);
+        visit({"right_deg", "deg", "where a sector scan turns back", -360, 360}, self.right_deg);
+        visit({"step_deg", "deg", "turn between two pings", 0.001, 360}, self.step_deg);
+        visit({"continuous", "",
+               "turns on and on from left_deg, ignoring right_deg; absent: if the two are 360 deg apart"},
               self.continuous);
-        visit(Field{"speed_deg_per_s", "deg/s", "of the head; absent: unlimited", 0.001, 1e6}, self.speed_deg_per_s);
-        visit(Field{"sweeps", "", "turns evenly during each ping, needs motion_in_ping; false: stops at each step"},
+        visit({"speed_deg_per_s", "deg/s", "of the head; absent: unlimited", 0.001, 1e6}, self.speed_deg_per_s);
+        visit({"sweeps", "", "turns evenly during each ping, needs motion_in_ping; false: stops at each step"},
               self.sweeps);
     }
     void check(types::Diagnostics& diagnostics) const;
@@ -48,10 +46,9 @@ struct ScanningSonarConfig {
     /** Returns the sonar with its one beam straight ahead of the head. */
     SonarConfig beam() const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
+    static void describe(auto& self, auto& visit) {
         SonarConfig::describeBeam(self.sonar, visit);
-        visit(types::Field{"head", "", "how the head turns; absent: all round, 1.8 deg a ping"}, self.head);
+        visit({"head", "", "how the head turns; absent: all round, 1.8 deg a ping"}, self.head);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

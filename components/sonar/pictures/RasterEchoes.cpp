@@ -14,7 +14,6 @@
 #include "components/sonar/pictures/PictureDeposit.hpp"
 #include "components/sonar/pictures/SurfacePass.hpp"
 #include "components/sonar/places/DeformedMeshes.hpp"
-#include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -109,8 +109,7 @@ void SurfacePass::release() {
     });
 }
 
-template <class Job>
-void SurfacePass::onEachPart(const Job& job) {
+void SurfacePass::onEachPart(const auto& job) {
     if (parts_.size() == 1) return job(0);
     threads_.run([&](int part, int) {
         if (static_cast<size_t>(part) < parts_.size()) job(static_cast<size_t>(part));

@@ -90,8 +90,7 @@ private:
     void release();
     void makePart(size_t part);
     void makePictures(size_t part);
-    template <class Job>
-    void onEachPart(const Job& job);
+    void onEachPart(const auto& job);
     void drawPart(size_t part);
 
     Setup setup_;

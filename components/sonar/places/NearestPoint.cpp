@@ -107,8 +107,7 @@ public:
 
 private:
     /** Calls nearer = use(cluster, lower bound of its distance), except for clusters in patches that are no nearer. */
-    template <class Use>
-    void forEachCluster(const Use& use) const {
+    void forEachCluster(const auto& use) const {
         float nearer = std::numeric_limits<float>::infinity();
         const auto useAll = [&](std::span<const types::Cluster> clusters) {
             for (const types::Cluster& cluster : clusters) nearer = use(cluster, atLeast(cluster.centre, cluster.half));

@@ -11,8 +11,7 @@ class SharedValues {
 public:
     /** Returns the value of a key; calls `make()` where no caller holds it. Thread-safe; all threads wait while a value
      *  is made. */
-    template <class Make>
-    std::shared_ptr<Value> of(const Key& key, const Make& make) {
+    std::shared_ptr<Value> of(const Key& key, const auto& make) {
         const std::lock_guard alone(mutex_);
         const auto known = values_.find(key);
         if (known != values_.end())
@@ -41,8 +40,7 @@ public:
         return value_;
     }
     /** Calls `change(value)` where it has been made. Nobody may ask for it meanwhile. */
-    template <class Change>
-    void renew(const Change& change) {
+    void renew(const auto& change) {
         if (made_) change(value_);
     }
 

@@ -96,8 +96,7 @@ void Sightlines::place(const types::Snapshot& snapshot) {
     }
 }
 
-template <class Use>
-bool Sightlines::anyMet(size_t object, const glm::dvec3& from, const glm::dvec3& end, const Use& use) const {
+bool Sightlines::anyMet(size_t object, const glm::dvec3& from, const glm::dvec3& end, const auto& use) const {
     const types::Mesh& mesh = meshOf(object);
     const Placed& placed = placed_[object];
     if (mesh.clusters.empty() || !types::meetsBox(from, end, placed.centre, placed.half)) return false;

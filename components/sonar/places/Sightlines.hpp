@@ -55,8 +55,7 @@ private:
     /** Calls `use(share, is_back, index)` for each triangle of an object that the line from `from` along the vector
      *  `end` hits; `share` is the hit's part of its length [1], `index` that of the triangle's first corner. Stops when
      *  `use` returns true. Returns whether it did. */
-    template <class Use>
-    bool anyMet(size_t object, const glm::dvec3& from, const glm::dvec3& end, const Use& use) const;
+    bool anyMet(size_t object, const glm::dvec3& from, const glm::dvec3& end, const auto& use) const;
 
     const types::Geometry& geometry_;
     std::vector<Placed> placed_;

@@ -11,17 +11,15 @@ struct CrosstalkConfig {
     std::optional<double> source_level_db;
     double rejection_db = 40;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"echoes", "", "surfaces scatter the pings of others to this sonar too; false: direct paths only"},
+    static void describe(auto& self, auto& visit) {
+        visit({"echoes", "", "surfaces scatter the pings of others to this sonar too; false: direct paths only"},
               self.echoes);
-        visit(Field{"source_level_db", "dB re 1 uPa m",
-                    "of this sonar, both as a source and as the reference for what it receives; absent: all sonars "
-                    "have equal levels",
-                    -300, 400},
+        visit({"source_level_db", "dB re 1 uPa m",
+               "of this sonar, both as a source and as the reference for what it receives; absent: all sonars "
+               "have equal levels",
+               -300, 400},
               self.source_level_db);
-        visit(Field{"rejection_db", "dB", "attenuation of the receiver outside its band", 0, 300}, self.rejection_db);
+        visit({"rejection_db", "dB", "attenuation of the receiver outside its band", 0, 300}, self.rejection_db);
     }
 };
 

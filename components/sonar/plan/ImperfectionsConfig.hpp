@@ -30,34 +30,27 @@ struct ImperfectionsConfig {
     /** Returns the factors of the intensities of `count` beams, 0 for a dead beam. */
     std::vector<float> beamFactors(size_t count) const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"seed", "1", "seed of the errors; each device has its own", 0, 4294967295.0}, self.seed);
-        visit(
-            Field{"elements", "1",
-                  "elements of the receiving array; absent: those of `elements`, or half a wavelength apart", 2, 4096},
-            self.elements);
-        visit(Field{"gain_error_db", "dB", "standard deviation of the elements' gains", 0, 20}, self.gain_error_db);
-        visit(Field{"phase_error_deg", "deg", "standard deviation of the elements' phases", 0, 180},
-              self.phase_error_deg);
-        visit(Field{"dead_element_share", "1", "probability that an element is dead", 0, 1}, self.dead_element_share);
-        visit(Field{"dead_elements", "1", "further dead elements, counted from starboard, the first is 0", 0, 4095},
+    static void describe(auto& self, auto& visit) {
+        visit({"seed", "1", "seed of the errors; each device has its own", 0, 4294967295.0}, self.seed);
+        visit({"elements", "1",
+               "elements of the receiving array; absent: those of `elements`, or half a wavelength apart", 2, 4096},
+              self.elements);
+        visit({"gain_error_db", "dB", "standard deviation of the elements' gains", 0, 20}, self.gain_error_db);
+        visit({"phase_error_deg", "deg", "standard deviation of the elements' phases", 0, 180}, self.phase_error_deg);
+        visit({"dead_element_share", "1", "probability that an element is dead", 0, 1}, self.dead_element_share);
+        visit({"dead_elements", "1", "further dead elements, counted from starboard, the first is 0", 0, 4095},
               self.dead_elements);
-        visit(Field{"focus_m", "m",
-                    "fixed focus of the receiving array; nearer and farther echoes bloom; needs frequency_khz; absent: "
-                    "focused at every range",
-                    0.01, 1e5},
+        visit({"focus_m", "m",
+               "fixed focus of the receiving array; nearer and farther echoes bloom; needs frequency_khz; absent: "
+               "focused at every range",
+               0.01, 1e5},
               self.focus_m);
-        visit(Field{"beam_gain_error_db", "dB", "standard deviation of the beams' gains", 0, 20},
-              self.beam_gain_error_db);
-        visit(Field{"dead_beam_share", "1", "probability that a beam is dead", 0, 1}, self.dead_beam_share);
-        visit(Field{"dead_beams", "1", "further dead beams, in the ping's order, the first is 0", 0, 4095},
-              self.dead_beams);
-        visit(Field{"crosstalk_db", "dB", "power of a beam that leaks into each of its neighbours; absent: none", -200,
-                    0},
+        visit({"beam_gain_error_db", "dB", "standard deviation of the beams' gains", 0, 20}, self.beam_gain_error_db);
+        visit({"dead_beam_share", "1", "probability that a beam is dead", 0, 1}, self.dead_beam_share);
+        visit({"dead_beams", "1", "further dead beams, in the ping's order, the first is 0", 0, 4095}, self.dead_beams);
+        visit({"crosstalk_db", "dB", "power of a beam that leaks into each of its neighbours; absent: none", -200, 0},
               self.crosstalk_db);
-        visit(Field{"clock_jitter_us", "us", "standard deviation of the times at which bins are sampled", 0, 1e5},
+        visit({"clock_jitter_us", "us", "standard deviation of the times at which bins are sampled", 0, 1e5},
               self.clock_jitter_us);
     }
 };

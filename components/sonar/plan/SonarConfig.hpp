@@ -27,12 +27,10 @@ struct AbsorptionConfig {
     acoustics::AbsorptionLaw law = acoustics::AbsorptionLaw::FrancoisGarrison;
     std::optional<double> frequency_khz;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"db_per_m", "dB/m", "one-way absorption, instead of a law", 0, 1000}, self.db_per_m);
-        visit(Field{"law", "", "computes it from frequency and water"}, self.law);
-        visit(Field{"frequency_khz", "kHz", "frequency for the law; absent: the sonar's", 0, 1e5}, self.frequency_khz);
+    static void describe(auto& self, auto& visit) {
+        visit({"db_per_m", "dB/m", "one-way absorption, instead of a law", 0, 1000}, self.db_per_m);
+        visit({"law", "", "computes it from frequency and water"}, self.law);
+        visit({"frequency_khz", "kHz", "frequency for the law; absent: the sonar's", 0, 1e5}, self.frequency_khz);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -41,11 +39,9 @@ struct AbsorptionConfig {
 struct ArrayConfig {
     std::optional<acoustics::BeamLaw> azimuth, elevation;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"azimuth", "", "transmit: about the sonar's axis; receive: about each beam's bearing"},
-              self.azimuth);
-        visit(types::Field{"elevation", "", "about the horizontal plane of the sonar"}, self.elevation);
+    static void describe(auto& self, auto& visit) {
+        visit({"azimuth", "", "transmit: about the sonar's axis; receive: about each beam's bearing"}, self.azimuth);
+        visit({"elevation", "", "about the horizontal plane of the sonar"}, self.elevation);
     }
 };
 
@@ -57,14 +53,11 @@ struct BeamPatternConfig {
     bool hasAzimuth() const { return transmit.azimuth || receive.azimuth; }
     bool hasElevation() const { return transmit.elevation || receive.elevation; }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"transmit", "", "directivity of the transmitter"}, self.transmit);
-        visit(Field{"receive", "", "directivity of the receiver"}, self.receive);
-        visit(Field{"floor_db", "dB",
-                    "two-way level down to which sidelobes receive echoes, also outside the fan and the aperture", -200,
-                    -3},
+    static void describe(auto& self, auto& visit) {
+        visit({"transmit", "", "directivity of the transmitter"}, self.transmit);
+        visit({"receive", "", "directivity of the receiver"}, self.receive);
+        visit({"floor_db", "dB",
+               "two-way level down to which sidelobes receive echoes, also outside the fan and the aperture", -200, -3},
               self.floor_db);
     }
     void check(types::Diagnostics& diagnostics) const;
@@ -74,14 +67,11 @@ struct BeamPatternConfig {
 struct VolumeLayer {
     std::optional<double> top_m, bottom_m, strength_db;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"top_m", "m", "depth below the water surface, or the world's z = 0; absent: no bound", -1e5, 1e5},
+    static void describe(auto& self, auto& visit) {
+        visit({"top_m", "m", "depth below the water surface, or the world's z = 0; absent: no bound", -1e5, 1e5},
               self.top_m);
-        visit(Field{"bottom_m", "m", "depth of the layer's lower bound; absent: no bound", -1e5, 1e5}, self.bottom_m);
-        visit(Field{"strength_db", "dB re 1/m", "volume backscattering strength; -200: none", -200, 0},
-              self.strength_db);
+        visit({"bottom_m", "m", "depth of the layer's lower bound; absent: no bound", -1e5, 1e5}, self.bottom_m);
+        visit({"strength_db", "dB re 1/m", "volume backscattering strength; -200: none", -200, 0}, self.strength_db);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -90,9 +80,8 @@ struct VolumeLayer {
 struct SurfaceMirrorConfig {
     double wind_m_s = 0;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"wind_m_s", "m/s", "wind speed, which makes the surface rough; 0: perfectly flat", 0, 50},
+    static void describe(auto& self, auto& visit) {
+        visit({"wind_m_s", "m/s", "wind speed, which makes the surface rough; 0: perfectly flat", 0, 50},
               self.wind_m_s);
     }
 };
@@ -104,15 +93,12 @@ struct MultipathConfig {
     std::optional<SurfaceMirrorConfig> surface;
     int bounces = 1;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"surface", "", "the scene's water_surface reflects; absent: it lets all sound through"},
-              self.surface);
-        visit(Field{"bounces", "1",
-                    "max reflections of one path: 1 in the water surface and materials with `mirror: true`, 2 in "
-                    "smooth materials as well; 0: none",
-                    0, max_bounces},
+    static void describe(auto& self, auto& visit) {
+        visit({"surface", "", "the scene's water_surface reflects; absent: it lets all sound through"}, self.surface);
+        visit({"bounces", "1",
+               "max reflections of one path: 1 in the water surface and materials with `mirror: true`, 2 in "
+               "smooth materials as well; 0: none",
+               0, max_bounces},
               self.bounces);
     }
 };
@@ -124,19 +110,17 @@ struct SpeckleConfig {
     int scatterers_per_cell = 10;
     std::optional<double> scatterers_per_m2;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"coherent", "", "true: fields are summed, needs frequency_khz; false: energies are summed"},
+    static void describe(auto& self, auto& visit) {
+        visit({"coherent", "", "true: fields are summed, needs frequency_khz; false: energies are summed"},
               self.coherent);
-        visit(Field{"scatterers_per_cell", "1",
-                    "min number of scatterers in a resolution cell (beam width by range resolution)", 1, 200},
+        visit({"scatterers_per_cell", "1",
+               "min number of scatterers in a resolution cell (beam width by range resolution)", 1, 200},
               self.scatterers_per_cell);
-        visit(Field{"scatterers_per_m2", "1/m2",
-                    "density of scatterers on surfaces, with exponentially distributed strengths: intensities are "
-                    "K-distributed, with the number of scatterers in a cell as shape (Abraham and Lyons 2002); absent: "
-                    "dense enough that none dominates",
-                    1e-6, 1e9},
+        visit({"scatterers_per_m2", "1/m2",
+               "density of scatterers on surfaces, with exponentially distributed strengths: intensities are "
+               "K-distributed, with the number of scatterers in a cell as shape (Abraham and Lyons 2002); absent: "
+               "dense enough that none dominates",
+               1e-6, 1e9},
               self.scatterers_per_m2);
     }
 };
@@ -156,13 +140,11 @@ struct ElementsConfig {
      *  given. */
     Array arrayOf(double aperture_m, double wavelength) const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"count", "1", "number of elements; absent: the number that fits the receiver's aperture", 2, 4096},
+    static void describe(auto& self, auto& visit) {
+        visit({"count", "1", "number of elements; absent: the number that fits the receiver's aperture", 2, 4096},
               self.count);
-        visit(Field{"spacing_m", "m", "spacing of their centres; absent: the aperture over count, or half a wavelength",
-                    1e-5, 10},
+        visit({"spacing_m", "m", "spacing of their centres; absent: the aperture over count, or half a wavelength",
+               1e-5, 10},
               self.spacing_m);
     }
 };
@@ -176,20 +158,18 @@ struct QualityConfig {
 
     bool isGiven() const { return rows || columns_per_beam; }
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"rows", "1", "rows of samples over beam_height_deg; default 256", 1, 16384}, self.rows);
-        visit(Field{"columns_per_beam", "1", "columns of samples per beam; default 2", 1, 4096}, self.columns_per_beam);
-        visit(Field{"target_error", "1",
-                    "instead of rows and columns: relative L2 error of energies times r^5; default 0.05", 1e-4, 1},
+    static void describe(auto& self, auto& visit) {
+        visit({"rows", "1", "rows of samples over beam_height_deg; default 256", 1, 16384}, self.rows);
+        visit({"columns_per_beam", "1", "columns of samples per beam; default 2", 1, 4096}, self.columns_per_beam);
+        visit({"target_error", "1",
+               "instead of rows and columns: relative L2 error of energies times r^5; default 0.05", 1e-4, 1},
               self.target_error);
-        visit(Field{"max_samples", "1", "max samples of a ping; absent: 400000, or unlimited if target_error is given",
-                    1, 1e9},
+        visit({"max_samples", "1", "max samples of a ping; absent: 400000, or unlimited if target_error is given", 1,
+               1e9},
               self.max_samples);
-        visit(Field{"budget_ms", "ms", "instead of rows and columns: render time of a ping, used fully and kept to",
-                    0.1, 1e5},
-              self.budget_ms);
+        visit(
+            {"budget_ms", "ms", "instead of rows and columns: render time of a ping, used fully and kept to", 0.1, 1e5},
+            self.budget_ms);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -277,27 +257,22 @@ struct SonarConfig {
     /** Returns the speed of sound: configured, or that of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"beam_count", "1", "beams per ping", 1, 4096}, self.beam_count);
-        visit(Field{"field_of_view_deg", "deg",
-                    "azimuth covered, edge to edge; absent: 120, or beam_count beams of beam_width_deg; with "
-                    "beam_width_deg beams may be wider than their spacing",
-                    0.01, 360},
+    static void describe(auto& self, auto& visit) {
+        visit({"beam_count", "1", "beams per ping", 1, 4096}, self.beam_count);
+        visit({"field_of_view_deg", "deg",
+               "azimuth covered, edge to edge; absent: 120, or beam_count beams of beam_width_deg; with "
+               "beam_width_deg beams may be wider than their spacing",
+               0.01, 360},
               self.field_of_view_deg);
-        visit(Field{"bearings_deg", "deg", "instead of a regular fan: centre of each beam", -180, 180},
-              self.bearings_deg);
-        visit(Field{"beam_width_convention", "", "beam_width_deg of a regular fan is one beam's, or the whole fan's"},
+        visit({"bearings_deg", "deg", "instead of a regular fan: centre of each beam", -180, 180}, self.bearings_deg);
+        visit({"beam_width_convention", "", "beam_width_deg of a regular fan is one beam's, or the whole fan's"},
               self.beam_width_convention);
         describeBeam(self, visit);
     }
     /** Describes the properties that a scanning sonar has as well. */
-    template <class Self, class V>
-    static void describeBeam(Self& self, V& visit);
+    static void describeBeam(auto& self, auto& visit);
     /** Describes the keys that have moved to the receiver. */
-    template <class Self, class V>
-    static void describeMoved(Self& self, V& visit);
+    static void describeMoved(auto& self, auto& visit);
     void check(types::Diagnostics& diagnostics) const;
     /** Appends the diagnostics of a fan that is given by `beam_width_deg`. */
     void checkFan(types::Diagnostics& diagnostics) const;
@@ -305,79 +280,73 @@ struct SonarConfig {
     void checkBeam(types::Diagnostics& diagnostics) const;
 };
 
-template <class Self, class V>
-void SonarConfig::describeBeam(Self& self, V& visit) {
-    using types::Field;
-    visit(Field{"model", "", "active sonar equation, or the published mean of S(n.d)"}, self.model);
-    visit(Field{"range", "m", "far edge of the last bin", 0.001, 1e5}, self.range);
-    visit(Field{"range_min", "m", "nearer echoes are blanked; objects there cast shadows", 0, 1e5}, self.range_min);
-    visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
-    visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 360}, self.beam_width_deg);
-    visit(Field{"beam_height_deg", "deg", "total elevation aperture; at most 150 if rasterised", 0.001, 180},
+void SonarConfig::describeBeam(auto& self, auto& visit) {
+    visit({"model", "", "active sonar equation, or the published mean of S(n.d)"}, self.model);
+    visit({"range", "m", "far edge of the last bin", 0.001, 1e5}, self.range);
+    visit({"range_min", "m", "nearer echoes are blanked; objects there cast shadows", 0, 1e5}, self.range_min);
+    visit({"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
+    visit({"beam_width_deg", "deg", "opening of one beam", 0.001, 360}, self.beam_width_deg);
+    visit({"beam_height_deg", "deg", "total elevation aperture; at most 150 if rasterised", 0.001, 180},
           self.beam_height_deg);
-    visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
-    visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
-    visit(Field{"water", "", "state of the water"}, self.water);
-    visit(Field{"frequency_khz", "kHz", "of the sonar; absorption uses it unless it has its own", 0.001, 1e5},
+    visit({"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
+    visit({"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
+    visit({"water", "", "state of the water"}, self.water);
+    visit({"frequency_khz", "kHz", "of the sonar; absorption uses it unless it has its own", 0.001, 1e5},
           self.frequency_khz);
-    visit(Field{"absorption", "", "absent: none"}, self.absorption);
-    visit(Field{"quality", "", "samples per beam, or the target that they are chosen for"}, self.quality);
-    visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as configured"},
+    visit({"absorption", "", "absent: none"}, self.absorption);
+    visit({"quality", "", "samples per beam, or the target that they are chosen for"}, self.quality);
+    visit({"range_rounding", "", "sample: bins of whole microseconds; exact: edges as configured"},
           self.range_rounding);
-    visit(Field{"published", "", "cerqueira2017 to the letter, for comparison"}, self.published);
-    visit(Field{"visibility", "",
-                "cpu: rays on the processor; gl: rasterised; auto: gl with a graphics card, or if device, deposit or "
-                "published requires it"},
+    visit({"published", "", "cerqueira2017 to the letter, for comparison"}, self.published);
+    visit({"visibility", "",
+           "cpu: rays on the processor; gl: rasterised; auto: gl with a graphics card, or if device, deposit or "
+           "published requires it"},
           self.visibility);
-    visit(Field{"device", "", "EGL device to render on; absent: INSONIFY_EGL_DEVICE, else the first"}, self.device);
-    visit(Field{"deposit", "", "where samples are summed into bins"}, self.deposit);
-    visit(Field{"draw_all", "",
-                "rasterises what is outside the fan and the range too, for comparison; no effect on rays"},
+    visit({"device", "", "EGL device to render on; absent: INSONIFY_EGL_DEVICE, else the first"}, self.device);
+    visit({"deposit", "", "where samples are summed into bins"}, self.deposit);
+    visit({"draw_all", "", "rasterises what is outside the fan and the range too, for comparison; no effect on rays"},
           self.draw_all);
-    visit(Field{"beam_pattern", "", "directivity of transmitter and receiver; absent: beams are boxes side by side"},
+    visit({"beam_pattern", "", "directivity of transmitter and receiver; absent: beams are boxes side by side"},
           self.beam_pattern);
-    visit(Field{"pulse", "", "spread of an echo in range; absent: each echo is in its own bin alone"}, self.pulse);
-    visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
-    visit(Field{"motion_in_ping", "",
-                "sonar and objects move, and the receiver turns, while sound travels; false: all are at rest"},
+    visit({"pulse", "", "spread of an echo in range; absent: each echo is in its own bin alone"}, self.pulse);
+    visit({"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
+    visit({"motion_in_ping", "",
+           "sonar and objects move, and the receiver turns, while sound travels; false: all are at rest"},
           self.motion_in_ping);
-    visit(Field{"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
+    visit({"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
           self.speckle);
-    visit(Field{"elements", "",
-                "straight array whose signals are on port `elements`; needs speckle: {coherent: true}, beam_geometry: "
-                "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: no signals"},
+    visit({"elements", "",
+           "straight array whose signals are on port `elements`; needs speckle: {coherent: true}, beam_geometry: "
+           "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: no signals"},
           self.elements);
-    visit(Field{"multipath", "", "echoes via mirrors; absent: none"}, self.multipath);
-    visit(Field{"max_walls", "1", "max walls (`shell` of a material) on a sound path", 0, 16}, self.max_walls);
-    visit(Field{"imperfections", "",
-                "errors of this device: elements, beams, focus, clock (components/sonar/README.md); absent: none"},
+    visit({"multipath", "", "echoes via mirrors; absent: none"}, self.multipath);
+    visit({"max_walls", "1", "max walls (`shell` of a material) on a sound path", 0, 16}, self.max_walls);
+    visit({"imperfections", "",
+           "errors of this device: elements, beams, focus, clock (components/sonar/README.md); absent: none"},
           self.imperfections);
-    visit(Field{"crosstalk", "",
-                "pings of the sonars connected to port `others` are received; absent: nothing may be connected"},
+    visit({"crosstalk", "",
+           "pings of the sonars connected to port `others` are received; absent: nothing may be connected"},
           self.crosstalk);
-    visit(Field{"effects", "",
-                "numbers of effects, by name: `edge_diffraction: {min_turn_deg: 60}` for echoes of straight edges, and "
-                "effects of other libraries (components/sonar/README.md)"},
+    visit({"effects", "",
+           "numbers of effects, by name: `edge_diffraction: {min_turn_deg: 60}` for echoes of straight edges, and "
+           "effects of other libraries (components/sonar/README.md)"},
           self.effects);
     describeMoved(self, visit);
 }
 
-template <class Self, class V>
-void SonarConfig::describeMoved(Self& self, V& visit) {
-    using types::Field;
-    visit(Field{"tvg", "",
-                "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
+void SonarConfig::describeMoved(auto& self, auto& visit) {
+    visit({"tvg", "", "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
           self.tvg);
-    visit(Field{"gain", "",
-                "has moved: a sonar gives intensities; gain_db belongs to a receiver::ReceiverTask after the "
-                "noise, and so does Rock's gain, as brightness: {gain}"},
+    visit({"gain", "",
+           "has moved: a sonar gives intensities; gain_db belongs to a receiver::ReceiverTask after the "
+           "noise, and so does Rock's gain, as brightness: {gain}"},
           self.gain);
-    visit(Field{"output", "",
-                "has moved: a sonar gives intensities; output belongs to a receiver::ReceiverTask after the noise"},
+    visit({"output", "",
+           "has moved: a sonar gives intensities; output belongs to a receiver::ReceiverTask after the noise"},
           self.output);
-    visit(Field{"source_level_db", "",
-                "has moved: a sonar gives intensities relative to its source; source_level_db belongs to a "
-                "receiver::ReceiverTask after the noise, for output: received_level_db"},
+    visit({"source_level_db", "",
+           "has moved: a sonar gives intensities relative to its source; source_level_db belongs to a "
+           "receiver::ReceiverTask after the noise, for output: received_level_db"},
           self.source_level_db);
 }
 

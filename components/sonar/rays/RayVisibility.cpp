@@ -82,8 +82,7 @@ void extend(const TileRays& rays, float nearest, RTCRayHit16& all) {
 }
 
 /** Sets rays with other origins, in the axes given by `turn` and `place` of the sonar. */
-template <class Rays>
-void direct(const Rows& turn, glm::vec3 place, const PathRays& rays, Rays& ray) {
+void direct(const Rows& turn, glm::vec3 place, const PathRays& rays, auto& ray) {
     const auto turned = [](glm::vec3 row, float x, float y, float z) { return row.x * x + row.y * y + row.z * z; };
     for (int i = 0; i < tile_samples; ++i) {
         ray.org_x[i] = place.x + turned(turn.x, rays.from_x[i], rays.from_y[i], rays.from_z[i]);
@@ -96,8 +95,7 @@ void direct(const Rows& turn, glm::vec3 place, const PathRays& rays, Rays& ray) 
 }
 
 /** Limits rays to their own bounds; inactive rays end before they begin. */
-template <class Rays>
-void bound(const PathRays& rays, Rays& ray) {
+void bound(const PathRays& rays, auto& ray) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     for (int i = 0; i < tile_samples; ++i) {
         const bool active = rays.towards.active >> i & 1;
@@ -119,8 +117,7 @@ struct Valid {
 };
 
 /** Records the new hits of rays; `meaning` of a geometry and an instance is a TreePart. */
-template <class Meaning>
-void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
+void take(const RTCRayHit16& all, TileHits& hits, const auto& meaning) {
     const unsigned* const geometry = all.hit.geomID;
     const unsigned* const instance = all.hit.instID[0];
     unsigned others = 0;

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "components/sonar/echo/Interface.hpp"
 #include "components/sonar/rays/AngularView.hpp"
 #include "components/sonar/rays/DeformingTrees.hpp"
 #include "types/Snapshot.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 #include <cmath>
 #include <span>
-#include <vector>
 
 #include "components/sonar/echo/CellDeposit.hpp"
 #include "components/sonar/rays/NormalMapping.hpp"

@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "components/sonar/places/MeshFacts.hpp"
 #include "components/sonar/places/Sightlines.hpp"
 #include "components/sonar/ways/PointTargets.hpp"
 

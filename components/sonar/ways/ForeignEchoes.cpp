@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "components/sonar/echo/BinLevels.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/ways/PathCells.hpp"
 #include "components/sonar/ways/SharedBins.hpp"

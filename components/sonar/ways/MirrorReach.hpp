@@ -29,8 +29,7 @@ public:
     void place(std::span<const PlacedMirror> mirrors, double longest, double doubt);
 
     /** Calls `use(second)` for the mirrors that may follow a first. */
-    template <class Use>
-    void forEachAfter(size_t first, const Use& use) const {
+    void forEachAfter(size_t first, const auto& use) const {
         const Found& found = found_[first];
         if (!found.is_complete) return forEachMet(first, use);
         for (const uint32_t second : std::span(seconds_).subspan(found.begin, found.count)) use(size_t{second});
@@ -57,8 +56,7 @@ private:
         bool is_complete = false;       ///< False: they did not fit.
     };
 
-    template <class Use>
-    void forEachMet(size_t first, const Use& use) const {
+    void forEachMet(size_t first, const auto& use) const {
         if (!mirrors_[first].is_there || std::abs(mirrors_[first].sonar_side) <= doubt_) return;
         const Beam beam(mirrors_[first], longest_, doubt_);
         if (first > 0 && mirrors_[0].is_there) use(size_t{0});

@@ -1,9 +1,7 @@
 #pragma once
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
-#include <vector>
 
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Snapshot.hpp"

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <limits>
 #include <numbers>
 
-#include "components/sonar/echo/BinLevels.hpp"
 #include "components/sonar/echo/TruthGrid.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/field/ScattererLattice.hpp"

@@ -10,7 +10,6 @@
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/ways/TargetWays.hpp"
 #include "types/Snapshot.hpp"
-#include "types/Sonar.hpp"
 
 namespace insonify::sonar {
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <optional>
 
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Transmission.hpp"

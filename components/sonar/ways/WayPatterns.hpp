@@ -27,10 +27,7 @@ public:
     /** Returns whether both are within one beam. */
     bool inOneBeam(const Way& a, const Way& b) const;
     /** Calls use(cell) for each azimuth cell that contains a path's direction. */
-    template <class Use>
-    void eachCell(const Way& way, const Use& use) const {
-        plan_.cells.eachAt(way.azimuth, use);
-    }
+    void eachCell(const Way& way, const auto& use) const { plan_.cells.eachAt(way.azimuth, use); }
 
 private:
     double elevation(const std::vector<double>& table, double sine) const;

@@ -27,8 +27,7 @@ struct RayTimes {
 };
 
 /** Returns the times of `pings` calls after a first call, in ascending order [ms]. */
-template <class Work>
-std::vector<double> sortedTimes(int pings, const Work& work) {
+std::vector<double> sortedTimes(int pings, const auto& work) {
     using Clock = std::chrono::steady_clock;
     work();
     std::vector<double> times;

@@ -113,8 +113,7 @@ public:
           end_column_(std::min(first_column_ + tile * fan.columns_per_beam, static_cast<int>(fan.columns.size()))) {}
 
     /** Calls `met` with column, row and triangle for each ray that hits something. */
-    template <class Met>
-    void trace(const Met& met) {
+    void trace(const auto& met) {
         const auto rows = static_cast<int>(fan_.rows.size());
         const int tiles = (rows + tile - 1) / tile;
         const int first = tile * (tiles * stripe_ / fan_.stripes), end = tile * (tiles * (stripe_ + 1) / fan_.stripes);
@@ -154,8 +153,7 @@ public:
 
 private:
     /** Traces tiles one above the other, up to a row. */
-    template <class Met>
-    void traceTiles(int column, int first_row, int end_row, const Met& met) {
+    void traceTiles(int column, int first_row, int end_row, const auto& met) {
         std::array<RayTree::Rays, RayTree::packets_at_once> rays;
         std::array<RayTree::Found, RayTree::packets_at_once> found;
         const int across = std::min(tile, end_column_ - column), up = std::min(tiles_up * tile, end_row - first_row);

@@ -24,8 +24,7 @@ double integral(double from, double to, const F& f) {
 }
 
 /** Integrates; halves the interval until that changes nothing, because apertures cut corners into the integrand. */
-template <class F>
-double adaptive(double from, double to, const F& f, double whole, int depth) {
+double adaptive(double from, double to, const auto& f, double whole, int depth) {
     constexpr double tolerance = 1e-8;
     constexpr int min_depth = 2, max_depth = 24;
     const double middle = 0.5 * (from + to), low = integral(from, middle, f), high = integral(middle, to, f);

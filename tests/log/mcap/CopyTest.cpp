@@ -27,8 +27,7 @@ std::vector<Place> recordsIn(const std::vector<char>& bytes) {
     return places;
 }
 
-class CopyTest : public testing::Test {
-protected:
+struct CopyTest : testing::Test {
     CopyTest() {
         SampleWriter log(folder / "whole.0.mcap", {});
         const size_t ping = log.addStream<types::Sonar>("sonar.ping", {{"insonify_seed", "7"}});

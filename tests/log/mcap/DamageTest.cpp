@@ -8,8 +8,7 @@
 namespace insonify::log::mcap {
 namespace {
 
-class DamageTest : public testing::Test {
-protected:
+struct DamageTest : testing::Test {
     /** Reads all readable samples of a file; returns their number. Only ConfigError may be thrown. */
     size_t readAll(const std::vector<char>& bytes) {
         writeBytes(path_, bytes);

@@ -10,8 +10,7 @@ namespace {
 
 constexpr const char* missing = "SKIPPED: Python packages mcap, mcap_ros2 and rosbags; scripts/setup installs them";
 
-class PythonTest : public testing::Test {
-protected:
+struct PythonTest : testing::Test {
     void SetUp() override {
         if (!pythonHas("mcap, mcap_ros2, rosbags")) GTEST_SKIP() << missing;
     }

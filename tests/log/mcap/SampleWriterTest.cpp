@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <sstream>
-
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/mcap/SampleWriter.hpp"
 #include "components/ros/Cdr.hpp"

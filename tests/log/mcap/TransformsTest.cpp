@@ -50,8 +50,7 @@ types::Pose poseOf(int64_t time, const std::string& body, const std::string& wor
     return pose;
 }
 
-class TransformsTest : public testing::Test {
-protected:
+struct TransformsTest : testing::Test {
     const Folder folder;
     const std::filesystem::path path = folder / "x.0.mcap";
 };

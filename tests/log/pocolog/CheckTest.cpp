@@ -17,8 +17,7 @@ std::vector<char> with(std::vector<char> bytes, uint64_t at, T value) {
     return bytes;
 }
 
-class CheckTest : public testing::Test {
-protected:
+struct CheckTest : testing::Test {
     /** Returns the first wrong byte of a log of these bytes, without an index. */
     Diagnostic wrongIn(const std::vector<char>& bytes) const {
         writeBytes(folder / "x.0.log", bytes);

@@ -14,8 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-class CopyTest : public testing::Test {
-protected:
+struct CopyTest : testing::Test {
     /** Copies x.0.log to y.0.log, which must be a valid log. */
     Copied copied(const Selection& selection = {}, AtDamage at_damage = AtDamage::Stop) const {
         const Copied result = copyLog({folder / "x.0.log"}, folder / "y.0.log", {at_damage, selection});

@@ -13,8 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-template <class T>
-void append(std::vector<char>& bytes, const T& value) {
+void append(std::vector<char>& bytes, const auto& value) {
     const char* data = reinterpret_cast<const char*>(&value);
     bytes.insert(bytes.end(), data, data + sizeof value);
 }

@@ -8,8 +8,6 @@
 namespace insonify::log::pocolog {
 namespace {
 
-using types::Field;
-
 std::string hex(const std::vector<char>& bytes) {
     std::string text;
     for (const char byte : bytes) {
@@ -19,8 +17,7 @@ std::string hex(const std::vector<char>& bytes) {
     return text;
 }
 
-template <class T>
-std::vector<char> marshalled(const T& value) {
+std::vector<char> marshalled(const auto& value) {
     std::vector<char> bytes;
     marshal(value, bytes);
     return bytes;
@@ -47,10 +44,9 @@ struct Padded {
     [[maybe_unused]] static constexpr const char* type_name = "/test/Padded";
     double value = 0;
     uint8_t flag = 0;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"value"}, self.value);
-        visit(Field{"flag"}, self.flag);
+    static void describe(auto& self, auto& visit) {
+        visit({"value"}, self.value);
+        visit({"flag"}, self.flag);
     }
 };
 
@@ -58,10 +54,9 @@ struct PaddedTwice {
     [[maybe_unused]] static constexpr const char* type_name = "/test/PaddedTwice";
     std::vector<Padded> many{2};
     Padded one;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"many"}, self.many);
-        visit(Field{"one"}, self.one);
+    static void describe(auto& self, auto& visit) {
+        visit({"many"}, self.many);
+        visit({"one"}, self.one);
     }
 };
 
@@ -69,10 +64,9 @@ struct Holder {
     [[maybe_unused]] static constexpr const char* type_name = "/test/Holder";
     std::vector<float> values;
     uint8_t flag = 0;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"values"}, self.values);
-        visit(Field{"flag"}, self.flag);
+    static void describe(auto& self, auto& visit) {
+        visit({"values"}, self.values);
+        visit({"flag"}, self.flag);
     }
 };
 
@@ -80,10 +74,9 @@ struct Inner {
     [[maybe_unused]] static constexpr const char* type_name = "/test/Inner";
     Padded first;
     double second = 2;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(Field{"first"}, self.first);
-        visit(Field{"second"}, self.second);
+    static void describe(auto& self, auto& visit) {
+        visit({"first"}, self.first);
+        visit({"second"}, self.second);
     }
 };
 
