@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <string_view>
 #include <system_error>
 
 #include "components/command/Sha256.hpp"
@@ -55,15 +57,23 @@ Store::Store(fs::path folder, std::string digest) : folder_(std::move(folder)), 
 }
 
 void Store::refuseOthers() const {
+    constexpr std::string_view of_whole_sets[] = {"manifest.json", "statistics.html", "data.yaml"};
+    std::string foreign;
+    bool has_own = false;
     for (const auto& entry : fs::directory_iterator(folder_)) {
         const std::string name = entry.path().filename();
+        if (std::ranges::count(of_whole_sets, name) > 0 || name.starts_with("instances_")) foreign = name;
         const std::optional<uint64_t> index = indexOf(name);
+        has_own |= index && name.starts_with(stemOf(*index));
         if (index && !name.starts_with(stemOf(*index)))
             throw types::ConfigError(folder_, "--out",
                                      fmt::format("holds {}, a sample of another sweep, deployment, scene, format or "
                                                  "version; give an empty folder",
                                                  name));
     }
+    if (!has_own && !foreign.empty())
+        throw types::ConfigError(
+            folder_, "--out", fmt::format("holds {}, which a data set would replace; give an empty folder", foreign));
 }
 
 std::string Store::stemOf(uint64_t index) const {

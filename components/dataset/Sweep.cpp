@@ -19,7 +19,8 @@ double inMillionths(double value) { return std::round(value * millionths) / mill
 void checkSpan(const char* name, const auto& span, bool needed, types::Diagnostics& diagnostics) {
     if (span.empty() && needed) diagnostics.push_back({name, "is missing; give [min, max]"});
     if (!span.empty() && (span.size() != 2 || span[1] < span[0]))
-        diagnostics.push_back({name, "must be two numbers, [min, max]"});
+        diagnostics.push_back({name, span.size() == 2 ? "must be [min, max], the min not above the max"
+                                                      : "must be two numbers, [min, max]"});
 }
 
 }  // namespace

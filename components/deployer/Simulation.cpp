@@ -104,6 +104,8 @@ Simulation::Simulation(const std::string& file, SimulationOptions options) : reg
     addObjects(spec, options.objects);
     spec = without(spec, outsideTasks(spec));
     spec = restrictedTo(spec, tasksThatLeadToPings(framework::Deployment(spec, registry_)));
+    if (options.period && !(*options.period > 0))
+        throw types::ConfigError("", "period", fmt::format("is {:g}; must be above 0 s", *options.period));
     if (options.period) period_ = *options.period;
     deployment_ = std::make_unique<framework::Deployment>(spec, registry_, ".", options.seed);
     for (const std::string& port : poses_)
@@ -212,10 +214,14 @@ std::vector<std::string> Simulation::pings() const {
 
 types::Time Simulation::timeOfStep(double seconds) const {
     if (!std::isfinite(seconds)) throw std::invalid_argument("the time of a step is not finite");
+    constexpr double latest = 9e12;  // microseconds of 64 bits
+    if (std::abs(seconds) > latest)
+        throw std::invalid_argument(
+            fmt::format("the time of a step is {:g} s; may be {:g} to {:g} s", seconds, -latest, latest));
     const types::Time now = types::Time::fromSeconds(seconds);
     if (last_ && !(*last_ < now))
-        throw std::runtime_error(
-            fmt::format("the step is at {:g} s, and the one before was at {:g} s", seconds, last_->seconds()));
+        throw std::runtime_error(fmt::format("the step is at {:g} s; it must be after the one before, at {:g} s",
+                                             seconds, last_->seconds()));
     const double ahead = seconds - (last_ ? last_->seconds() : start_time_);
     const bool others_go_on = std::ranges::any_of(
         deployment_->tasks(), [](const auto& task) { return task->activity().settings().periodic(); });
@@ -260,8 +266,12 @@ void Simulation::throwErrors() const {
             throw std::runtime_error(task->name() + ": " + task->lastError());
 }
 
-void Simulation::reset(std::optional<uint64_t> seed) {
+void Simulation::refuseSeed(std::optional<uint64_t> seed) {
     if (seed == 0) throw std::invalid_argument("a seed of 0 means the deployment's own; make a new simulation for it");
+}
+
+void Simulation::reset(std::optional<uint64_t> seed) {
+    refuseSeed(seed);
     const std::unique_lock use(in_use_, std::try_to_lock);
     if (!use) throw std::runtime_error(busy);
     throwAny(deployment_->stop());

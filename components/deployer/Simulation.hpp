@@ -61,6 +61,8 @@ public:
     /** Gives each scene its pose at a time later than that of the step before [s]. Returns one entry for each of
      *  pings(), with a null ping where the step made none. */
     std::vector<SteppedPing> step(std::map<std::string, types::Pose> at, std::optional<double> time);
+    /** Throws std::invalid_argument for 0, the deployment's own seeds, which only a new simulation has. */
+    static void refuseSeed(std::optional<uint64_t> seed);
     /** Returns to the state right after construction, with this seed, not 0; none: the same seed. The scene stays
      *  loaded. */
     void reset(std::optional<uint64_t> seed);

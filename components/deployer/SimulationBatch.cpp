@@ -61,6 +61,10 @@ std::vector<std::vector<SteppedPing>> SimulationBatch::step(std::vector<std::map
 void SimulationBatch::reset(std::span<const size_t> which, std::span<const std::optional<uint64_t>> seeds) {
     for (const size_t number : which)
         if (number >= size()) throw std::out_of_range(fmt::format("there is no simulation {} of {}", number, size()));
+    for (size_t i = 0; i < which.size(); ++i)
+        if (std::ranges::count(which, which[i]) > 1)
+            throw std::invalid_argument(fmt::format("simulation {} is given more than once", which[i]));
+    for (const std::optional<uint64_t>& seed : seeds) Simulation::refuseSeed(seed);
     forEach(which.size(), [&](size_t i) { simulations_[which[i]]->reset(seeds[i]); });
 }
 

@@ -124,7 +124,9 @@ std::string Summary::text() const {
     if (realtime) text += realtimeText();
     for (const auto& [task, plan] : plans) text += fmt::format("{}: {}\n", task, qualityText(plan));
     const std::string lost = countsText(losses), skipped = countsText(passed_over);
-    text += lost.empty() ? "lost samples: none\n" : "lost samples\n" + lost;
+    const bool has_failed = std::ranges::any_of(tasks, [](const Task& task) { return task.state == "Exception"; });
+    if (!lost.empty()) text += "lost samples\n" + lost;
+    if (lost.empty() && !has_failed) text += "lost samples: none\n";  // a failed task may have lost some inside of it
     if (!skipped.empty()) text += "skipped for newer samples\n" + skipped;
     return text + omittedText(omitted);
 }

@@ -1,6 +1,9 @@
 #include "components/python/Samples.hpp"
 
+#include <fmt/format.h>
+
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -29,6 +32,24 @@ Array gridOf(const char* name, const auto& numbers, const auto& sample) {
 }
 
 Array listOf(const char* name, const void* numbers, uint64_t size) { return {name, "f8", numbers, {size}, 1}; }
+
+/** Reports numbers outside the ranges of their properties. */
+struct RangeCheck {
+    types::Diagnostics& diagnostics;
+
+    template <class T>
+    void operator()(const types::Field& field, const T& value) {
+        if constexpr (std::is_arithmetic_v<T>) {
+            if (!(value >= field.min && value <= field.max))
+                diagnostics.push_back(
+                    {field.name, fmt::format("is {}; may be {:g} to {:g}", value, field.min, field.max)});
+        }
+    }
+    template <class T>
+    void operator()(const types::Field& field, const std::optional<T>& value) {
+        if (value) (*this)(field, *value);
+    }
+};
 
 class PingHandle final : public Handle {
 public:
@@ -217,6 +238,8 @@ std::unique_ptr<Handle> pingHandle(types::SonarPtr ping, types::SonarTruthPtr tr
 
 std::unique_ptr<Handle> fanHandle(const Handle& ping, const output::DisplayConfig& display) {
     types::Diagnostics diagnostics;
+    RangeCheck ranges{diagnostics};
+    output::DisplayConfig::describe(display, ranges);
     display.check(diagnostics);
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
     types::Image picture;

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSweep{"NoLaw", grid + "settings:\n  sonar.range: {unifrm: [20, 30]}\n",
                  "sweep.yml:3:17: settings.sonar.range.unifrm: is not a key here; did you mean uniform?"},
         BadSweep{"LawWithoutBounds", grid + "settings:\n  sonar.range: {uniform: [30, 20]}\n",
-                 "settings.sonar.range.uniform: must be two numbers, [min, max]"},
+                 "settings.sonar.range.uniform: must be [min, max], the min not above the max"},
         BadSweep{"EmptyChoice", grid + "settings:\n  sonar.range: {choice: []}\n",
                  "sweep.yml:3:25: settings.sonar.range.choice: is empty; give at least one value"},
         BadSweep{"ChoiceOutOfBounds", grid + "settings:\n  sonar.range: {choice: [30, -5]}\n",

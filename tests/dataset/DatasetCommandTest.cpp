@@ -221,6 +221,10 @@ TEST_F(DatasetCommandTest, AnotherSweepNeedsAnotherFolder) {
     ASSERT_EQ(make("out", {"--shard", "0/8"}).code, 0);
     writeFile(folder_ / "sweep.yml", sweep + "# changed\n");
     EXPECT_THAT(make("out"), isRefused(HasSubstr("a sample of another sweep, deployment, scene, format or version")));
+    fs::create_directory(folder_ / "own");
+    writeFile(folder_ / "own/manifest.json", "mine");
+    EXPECT_THAT(make("own"), isRefused(HasSubstr("--out: holds manifest.json, which a data set would replace")));
+    EXPECT_EQ(readFile(folder_ / "own/manifest.json"), "mine");
 }
 
 TEST_F(DatasetCommandTest, PycocotoolsReadsItAndEveryBoxHoldsItsObjectsEnergy) {

@@ -87,7 +87,7 @@ TEST(SweepTest, AStarMatchesAnyLetters) {
 TEST(SweepTest, RefusesContradictoryKeys) {
     EXPECT_THAT(test::refusalsOf(Axis{}), testing::SizeIs(1));
     Axis axis = drawnFrom({4, 2}, {});
-    EXPECT_THAT(test::refusalsOf(axis), ElementsAre("uniform: must be two numbers, [min, max]"));
+    EXPECT_THAT(test::refusalsOf(axis), ElementsAre("uniform: must be [min, max], the min not above the max"));
     axis = drawnFrom({}, {1, -1});
     EXPECT_THAT(test::refusalsOf(axis),
                 ElementsAre("normal: must be two numbers, [mean, deviation], the deviation not below 0"));

@@ -89,10 +89,9 @@ def test_arrays_keep_their_values_during_later_steps(deploy):
 
 def test_each_wrong_argument_has_one_clear_error(deploy):
     file = deploy / "minimal.yml"
-    with pytest.raises(ValueError, match="a batch has at least one simulation"):
-        insonify.SimulationBatch(file, 0)
-    with pytest.raises(ValueError, match="count: is -1; may be 0 to 65535"):
-        insonify.SimulationBatch(file, -1)
+    for wrong in (-1, 0, 2**16):
+        with pytest.raises(ValueError, match=f"count: is {wrong}; may be 1 to 65535"):
+            insonify.SimulationBatch(file, wrong)
     with pytest.raises(insonify.ConfigError, match="several vehicles or sonars"):
         insonify.SimulationBatch(deploy / "two_vehicles.yml", 2)
     batch = insonify.SimulationBatch(file, 2, overrides=QUICK)
@@ -101,6 +100,10 @@ def test_each_wrong_argument_has_one_clear_error(deploy):
         batch.step(np.zeros((3, 7)))
     with pytest.raises(IndexError, match="there is no simulation 2 of 2"):
         batch.reset([2])
+    with pytest.raises(ValueError, match="simulation 0 is given more than once"):
+        batch.reset([0, 0])
+    with pytest.raises(ValueError, match="deployment's own"):
+        batch.reset([1], [0])
     with pytest.raises(ValueError, match="seeds: are 1; there are 2 simulations to reset"):
         batch.reset([0, 1], [5])
     with pytest.raises(RuntimeError, match="simulation 1: .*quaternion"):

@@ -1,5 +1,7 @@
 """Stepping a deployment from Python, compared with the command at the same poses."""
 
+import copy
+import pickle
 import subprocess
 import threading
 import time
@@ -265,12 +267,26 @@ def test_two_vehicles_take_a_dictionary(deploy):
     assert len(pings) == len(simulation.pings) == 2
 
 
+def test_objects_of_the_library_are_not_copied_to_other_processes(minimal):
+    ping = minimal.step(HERE)
+    for wrong in (ping, minimal):
+        for refused in (pickle.dumps, copy.deepcopy):
+            with pytest.raises(TypeError, match="cannot be copied or sent to another process"):
+                refused(wrong)
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(ping.bins)), ping.bins)
+    np.testing.assert_array_equal(copy.copy(ping).bins, ping.bins)
+
+
 def test_impossible_times_are_errors(deploy, minimal):
     with pytest.raises(ValueError, match="finite"):
         minimal.step(HERE, time=float("nan"))
     with pytest.raises(ValueError, match="deployment's own"):
         minimal.reset(0)
+    with pytest.raises(ValueError, match="the time of a step is 1e\\+18 s; may be -9e"):
+        minimal.step(HERE, time=1e18)
     assert minimal.step(HERE, time=1.7e9).time == 1.7e9, "of a log"
+    with pytest.raises(RuntimeError, match="the step is at 5 s; it must be after the one before, at 1.7e"):
+        minimal.step(HERE, time=5)
 
 
 def test_numbers_of_numpy_and_paths_are_overrides(deploy):
@@ -286,7 +302,7 @@ def test_numbers_of_numpy_are_arguments(deploy):
     assert simulation.period == 0.5
     ping = simulation.step(HERE, time=np.float32(2))
     assert ping.time == 2
-    assert ping.fan(width=np.int64(100), dynamic_range_db=np.float32(30), reference_db=np.int32(3)).shape[1] == 100
+    assert ping.fan(width=np.int64(300), dynamic_range_db=np.float32(30), reference_db=np.int32(3)).shape[1] == 300
     simulation.reset(np.int64(3))
     np.testing.assert_array_equal(simulation.step(HERE).bins, ping.bins)
     for wrong in (-1, 2**64):
@@ -294,8 +310,17 @@ def test_numbers_of_numpy_are_arguments(deploy):
             simulation.reset(wrong)
     with pytest.raises(ValueError, match="reference_db: is nan"):
         ping.fan(reference_db=float("nan"))
+    for wrong in (0, 100_000):
+        with pytest.raises(insonify.ConfigError, match=f"width: is {wrong}; may be 256 to 8192"):
+            ping.fan(width=wrong)
     with pytest.raises(ValueError, match="period: is nan"):
         insonify.Simulation(deploy / "minimal.yml", period=float("nan"))
+    for wrong in (0, -1):
+        with pytest.raises(insonify.ConfigError, match=f"period: is {wrong}; must be above 0 s"):
+            insonify.Simulation(deploy / "minimal.yml", period=wrong)
+    for wrong in (["sonar.range=3"], "sonar.range=3"):
+        with pytest.raises(TypeError, match="overrides: is a .*; must be a mapping from task.property to values"):
+            insonify.Simulation(deploy / "minimal.yml", overrides=wrong)
 
 
 def test_threads_read_one_log(deploy, tmp_path):

@@ -65,8 +65,8 @@ int makeDataset(const DatasetOptions& options) {
     Store store(folder.path(), run.digest());
     const Made done = makeMissing(run, store, options);
     if (!options.quiet)
-        fmt::print("{} of {} samples in {}, {} of them new\n", done.made + done.found, run.samples().count(),
-                   folder.path().string(), done.made);
+        fmt::print("{} of {} samples in {}, {} of them new{}\n", done.made + done.found, run.samples().count(),
+                   folder.path().string(), done.made, done.stopped ? "; the same command makes the others" : "");
     if (done.stopped) return 1;
     const Title title{fs::path(run.deployment()).filename(), fs::path(options.sweep).filename(), INSONIFY_VERSION,
                       run.format(), run.sweep().trajectory.has_value() && !run.sweep().lines};

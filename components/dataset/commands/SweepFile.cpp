@@ -147,7 +147,11 @@ private:
             if (key->empty()) continue;
             *file = inFolder(*key);
             if (!std::filesystem::is_regular_file(*file))
-                reader_.report(node, path, "is " + *key + "; there is no such file, which is relative to the sweep");
+                reader_.report(node, path,
+                               "is " + *key +
+                                   (std::filesystem::is_directory(*file)
+                                        ? ", a folder; must be a file"
+                                        : "; there is no such file, which is relative to the sweep"));
         }
         if (keys.set.IsDefined() && reader_.isMap(keys.set, path + ".set"))
             for (const auto& entry : keys.set) scene.set.emplace_back(entry.first.Scalar(), written(entry.second));

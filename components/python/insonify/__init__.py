@@ -57,7 +57,10 @@ class Pose:
         translation."""
         matrix = np.asarray(world_from_body, float)
         if matrix.shape != (4, 4) or not np.allclose(matrix[3], [0, 0, 0, 1]):
-            raise ValueError("a pose is an insonify.Pose or a transform; a transform is 4 x 4, with a last row of 0 0 0 1")
+            raise ValueError(
+                "a pose is an insonify.Pose or a transform; a transform is 4 x 4, with a last row of 0 0 0 1; "
+                f"the shape of this is {matrix.shape}"
+            )
         rotation = matrix[:3, :3]
         if not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) or np.linalg.det(rotation) < 0:
             raise ValueError("the upper left 3 x 3 of the transform is no rotation")
@@ -416,6 +419,8 @@ def _warn(notices: list[str], warned: list[str]) -> list[str]:
 
 
 def _assignments(overrides: Mapping[str, object] | None) -> list[str]:
+    if overrides is not None and not isinstance(overrides, Mapping):
+        raise TypeError(f"overrides: is a {type(overrides).__name__}; must be a mapping from task.property to values")
     return [f"{name}={json.dumps(value, default=_plain)}" for name, value in (overrides or {}).items()]
 
 

@@ -80,6 +80,9 @@ class Handle:
         self.pointer = pointer
         weakref.finalize(self, _library.insonify_free, pointer)
 
+    def __reduce_ex__(self, _protocol):
+        raise TypeError("a simulation or ping cannot be copied or sent to another process; send its arrays")
+
     def facts(self):
         facts = _library.insonify_facts(self.pointer)
         if facts is None:
@@ -108,11 +111,11 @@ class Handle:
         return view
 
 
-def _whole(name: str, number: int, end: int) -> int:
-    """A number from 0 to below `end`; numbers of numpy too."""
+def _whole(name: str, number: int, end: int, first: int = 0) -> int:
+    """A number from `first` to below `end`; numbers of numpy too."""
     whole = operator.index(number)
-    if not 0 <= whole < end:
-        raise ValueError(f"{name}: is {whole}; may be 0 to {end - 1}")
+    if not first <= whole < end:
+        raise ValueError(f"{name}: is {whole}; may be {first} to {end - 1}")
     return whole
 
 
@@ -150,7 +153,7 @@ def reset(simulation: Handle, seed: int | None) -> None:
 def batch(
     deployment: str, count: int, seed: int, overrides: Sequence[str], truth: bool, period: float | None
 ) -> Handle:
-    count, seed, period = _whole("count", count, 2**16), _whole("seed", seed, 2**64), _optional("period", period)
+    count, seed, period = _whole("count", count, 2**16, 1), _whole("seed", seed, 2**64), _optional("period", period)
     texts = (_text * len(overrides))(*(each.encode() for each in overrides))
     return Handle(_library.insonify_batch(os.fsencode(deployment), seed, texts, len(texts), truth, period, count))
 
