@@ -12,6 +12,7 @@
 
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
+#include "types/Reason.hpp"
 
 namespace insonify::types {
 namespace {
@@ -142,10 +143,9 @@ std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, cons
                           "does not exist; " + didYouMean(file.filename().string(), csvFilesNextTo(file)) +
                               "must be a CSV file with header " + headerOf(columns));
     if (!stream || std::filesystem::is_directory(file))
-        throw ConfigError(file.string(), "",
-                          std::string("cannot be read") +
-                              (errno == EACCES ? ": " + std::generic_category().message(errno) : "") +
-                              "; it must be a CSV file with header " + headerOf(columns));
+        throw ConfigError(
+            file.string(), "",
+            "cannot be read" + permissionReason(errno) + "; it must be a CSV file with header " + headerOf(columns));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     return Reader(file.string(), columns, validate).read(text, minimum);
 }

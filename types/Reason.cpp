@@ -1,8 +1,10 @@
 #include "types/Reason.hpp"
 
+#include <cerrno>
 #include <new>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
 namespace insonify::types {
 namespace {
@@ -27,6 +29,10 @@ std::string reasonOf(const std::exception& failure) {
     if (!isOfStandardLibrary(failure.what())) return failure.what();
     if (dynamic_cast<const std::length_error*>(&failure)) return "out of memory";
     return "a number, a count or an index in it is out of bounds";
+}
+
+std::string permissionReason(int error_number) {
+    return error_number == EACCES ? ": " + std::generic_category().message(error_number) : "";
 }
 
 }  // namespace insonify::types

@@ -112,20 +112,20 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
         }
 }
 
-/** Work between two instants: properties follow the log, and `--step` waits. */
-void followLog(Asked& options, std::vector<RecordedProperty> changed) {
+/** Work between two instants: properties follow the log, and `--step` prints the time in the log and waits. */
+void followLog(Asked& options, std::vector<RecordedProperty> changed, types::Time start) {
     const auto live = std::make_shared<LiveSettings>(std::move(changed));
-    std::function<void(framework::Deployment&, const framework::Progress&)> step;
+    std::function<void(framework::Deployment&)> step;
     if (options.step)
-        step = [&stop = stopOnSignals()](framework::Deployment& deployment, const framework::Progress& progress) {
-            const std::string now = log::readable(deployment.environment().now());
-            const bool is_date = !now.ends_with(" s");
-            fmt::print(stderr, "{:.6f} s{}\n", progress.elapsed_s, is_date ? ", " + now : "");
+        step = [start, &stop = stopOnSignals()](framework::Deployment& deployment) {
+            const double place = deployment.status().tasks.front().playback.value().at_s;
+            const std::string date = log::readable(start + types::Time::fromSeconds(place));
+            fmt::print(stderr, "{:.6f} s{}\n", place, date.ends_with(" s") ? "" : ", " + date);
             waitForStep(deployment, stop);
         };
     if (!options.step && live->empty()) return;
-    options.progress = [live, step](framework::Deployment& deployment, const framework::Progress& progress) {
-        if (step) step(deployment, progress);
+    options.progress = [live, step](framework::Deployment& deployment, const framework::Progress&) {
+        if (step) step(deployment);
         live->follow(deployment);
     };
 }
@@ -140,7 +140,7 @@ int replayWith(std::vector<RecordedProperty> changed, log::Reader& log, Asked& o
         throw types::ConfigError(log.path(), "", "holds no pings of a task of " + spec.file + "; nothing to score");
     spec = replaying(std::move(spec), log, options.replay);
     if (options.score) addLogger(spec, streams, rerendered_file);
-    followLog(options, std::move(changed));
+    followLog(options, std::move(changed), log.samples().empty() ? types::Time{} : log.samples().front().time);
     std::filesystem::path folder;
     const int code = runDeployment(std::move(spec), options, &folder);
     return code == 0 && options.score ? printScore(log, streams, options.worst, folder) : code;

@@ -8,9 +8,9 @@
 #include <cerrno>
 #include <fstream>
 #include <sstream>
-#include <system_error>
 
 #include "types/ConfigError.hpp"
+#include "types/Reason.hpp"
 
 namespace insonify::framework {
 
@@ -20,10 +20,8 @@ std::string readFile(const std::filesystem::path& file, const std::string& what)
         throw types::ConfigError(file.string(), "", "is a directory; must be " + what);
     std::ifstream stream(file, std::ios::binary);
     if (!stream)
-        throw types::ConfigError(
-            file.string(), "",
-            fmt::format("cannot be opened{}; must be {}",
-                        errno == EACCES ? ": " + std::generic_category().message(errno) : "", what));
+        throw types::ConfigError(file.string(), "",
+                                 fmt::format("cannot be opened{}; must be {}", types::permissionReason(errno), what));
     std::stringstream text;
     text << stream.rdbuf();
     return text.str();

@@ -96,16 +96,12 @@ private:
     Copied copied_;
 };
 
-void refuse(const Readers& logs, const Selection& selection, const std::filesystem::path& to) {
+void refuse(const Readers& logs, const Selection& selection) {
     for (const std::string& name : selection.streams)
         if (std::ranges::none_of(logs, [&](const auto& log) { return log->find(name); }))
             logs.front()->indexOf(name);  // throws, with the existing names
-    for (const auto& log : logs) {
+    for (const auto& log : logs)
         if (log->streams().empty()) throw types::ConfigError(log->path(), "", "holds no stream");
-        std::error_code not_there;
-        if (std::filesystem::equivalent(log->path(), to, not_there))
-            throw types::ConfigError(to, "", "is the log itself: the copy must be another file");
-    }
 }
 
 /** Returns the streams' own names, for names or topics. */
@@ -142,7 +138,7 @@ Copied copyLog(const std::vector<std::filesystem::path>& logs, const std::filesy
                const CopyOptions& options) {
     Readers readers;
     for (const auto& log : logs) readers.push_back(openLog(log, options.at_damage));
-    refuse(readers, options.selection, to);
+    refuse(readers, options.selection);
     CopyOptions named = options;
     named.selection.streams = namesOf(readers, options.selection.streams);
     refuseOtherTypes(readers, named.selection);

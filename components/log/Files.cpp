@@ -93,7 +93,9 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     const bool taken = is_file && isTaken(file_);  // a device such as /dev/null may be shared
     const bool is_read = is_file && inputs().has(status);
     if (taken || is_read || (is_file && ftruncate(file_, 0) != 0)) {
-        const std::string why = taken ? "another logger writes it" : is_read ? "it is being read" : reason(errno);
+        const std::string why = taken     ? "another logger writes it"
+                                : is_read ? "it is the log that is read; give another file"
+                                          : reason(errno);
         ::close(std::exchange(file_, -1));
         throw types::ConfigError(path_, "", "the log cannot be written: " + why);
     }

@@ -70,7 +70,7 @@ TEST_F(McapCommandTest, MistakesAreNamed) {
                 "there is no such stream");
     ASSERT_EQ(call({"log", "export", "out/wall.0.log", "--to", "wall.mcap"}).code, 0);
     expectError({"log", "export", "out/wall.0.log", "--to", "other.mcap"}, "describes another bag");
-    expectError({"log", "export", "wall.mcap", "--to", "wall.mcap"}, "is the log itself");
+    expectError({"log", "export", "wall.mcap", "--to", "wall.mcap"}, "it is the log that is read");
     fs::resize_file(folder / "wall.mcap", fs::file_size(folder / "wall.mcap") - 5);
     expectError({"log", "check", "wall.mcap"},
                 "byte " + std::to_string(fs::file_size(folder / "wall.mcap")) + ": the file ends within");

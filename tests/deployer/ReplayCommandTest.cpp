@@ -97,7 +97,7 @@ connections: [{from: replay.noise.noisy, to: log.noisy}]
 )");
     const Outcome inside = callInsonify(folder, {"run", "inside.yml", "--out", "out"});
     EXPECT_NE(inside.code, 0);
-    EXPECT_THAT(inside.err, HasSubstr("the log cannot be written: it is being read"));
+    EXPECT_THAT(inside.err, HasSubstr("the log cannot be written: it is the log that is read"));
     EXPECT_EQ(readFile(folder / "out/wall.0.log"), before);
     EXPECT_THAT(folder.run({"--summary", "wall.yml"}).err, HasSubstr("--summary: is the deployment itself"));
 }

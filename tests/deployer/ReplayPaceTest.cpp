@@ -125,6 +125,8 @@ TEST_F(ReplayPaceTest, StepSeeksToATimeInTheLog) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(stamps(), testing::ElementsAre(1000, 1100, 1200, 1300, 1400));
     EXPECT_THAT(outcome.err, HasSubstr("insonify: seek[0]"));
+    EXPECT_THAT(outcome.err, testing::ContainsRegex("0.100000 s\ninsonify: seek[^\n]*\n0.000000 s\n"))
+        << "the time in the log";
 }
 
 TEST_F(ReplayPaceTest, ARealtimeDeploymentIsReplayedOnTheLogsTime) {

@@ -202,8 +202,11 @@ TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {
     click("snapshot");
     const std::filesystem::path file =
         saved / value("`source.ping_${insonify.fan.ping.time_us}.png`").get<std::string>();
-    ASSERT_TRUE(becomesTrue([&] { return std::filesystem::exists(file); })) << file;
-    const cv::Mat picture = cv::imread(file.string());  // of blue, green, red
+    cv::Mat picture;  // of blue, green, red; the file may exist before all of it is written
+    ASSERT_TRUE(becomesTrue([&] {
+        picture = std::filesystem::exists(file) ? cv::imread(file.string()) : cv::Mat();
+        return !picture.empty();
+    })) << file;
     EXPECT_EQ(picture.rows, value("insonify.fan.canvas.height + 22"));
     EXPECT_EQ(picture.cols, value("insonify.fan.canvas.width"));
     const json at = value(
