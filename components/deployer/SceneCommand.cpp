@@ -60,6 +60,18 @@ const char* sourceOf(const types::Material& material) {
     return material.has_acoustics ? "file" : "default";
 }
 
+/** Returns a thin wall: {thickness_m, density [kg/m^3], sound_speed [m/s], behind: "water", "air" or {density,
+ *  sound_speed}}, or null. */
+Json jsonOf(const std::optional<types::Shell>& shell) {
+    if (!shell) return {};
+    Json behind = shell->has_air ? "air" : "water";
+    if (shell->fill_density > 0) behind = {{"density", shell->fill_density}, {"sound_speed", shell->fill_speed}};
+    return {{"thickness_m", shell->thickness},
+            {"density", shell->density},
+            {"sound_speed", shell->sound_speed},
+            {"behind", behind}};
+}
+
 Json jsonOf(const types::Material& material, size_t triangles, double area) {
     return {{"name", material.name},
             {"source", sourceOf(material)},
@@ -72,6 +84,8 @@ Json jsonOf(const types::Material& material, size_t triangles, double area) {
             {"reflectivity", material.reflectivity},
             {"normal_map", material.normal_map >= 0},
             {"surface_map", material.max_map_strength > 0},
+            {"shell", jsonOf(material.shell)},
+            {"mirror", material.mirror},
             {"triangles", triangles},
             {"area_m2", area}};
 }
@@ -128,10 +142,10 @@ Json animationsOf(const scene::Scene& scene) {
 
 /** Returns a scene file in the world's axes, as a sonar uses it: {file, axes, bounds: {min, max, size, centre} [m] or
  *  null, triangles, materials: [{name, source: file, name or default, matter or null, lambert_db [dB], reflection,
- *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, triangles,
- *  area_m2}], objects: [{name, materials: [names], triangles, bounds}], nodes: [names that a connection may move],
- *  animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets, not_understood: [],
- *  warnings: []}. Throws types::ConfigError for a file that cannot be read. */
+ *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, shell as above,
+ *  mirror, triangles, area_m2}], objects: [{name, materials: [names], triangles, bounds}], nodes: [names that a
+ * connection may move], animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets,
+ * not_understood: [], warnings: []}. Throws types::ConfigError for a file that cannot be read. */
 Json sceneReport(const std::string& file) {
     const scene::Scene scene = scene::readScene(file);
     const types::GeometryPtr named = scene::takeNames(scene.geometry);
@@ -180,23 +194,36 @@ std::string lawText(const Json& material) {
     return text + (material["source"] == "name" ? ", by its name" : "");
 }
 
+/** Returns ", wall of 3 mm, 2230 kg/m3 and 5640 m/s, before air", or nothing without a wall. */
+std::string shellText(const Json& shell) {
+    if (shell.is_null()) return "";
+    const Json& behind = shell["behind"];
+    return fmt::format(", wall of {:.4g} mm, {:.4g} kg/m3 and {:.4g} m/s, before {}",
+                       1e3 * shell["thickness_m"].get<double>(), shell["density"].get<double>(),
+                       shell["sound_speed"].get<double>(),
+                       behind.is_string() ? behind.get<std::string>()
+                                          : fmt::format("{:.4g} kg/m3 and {:.4g} m/s", behind["density"].get<double>(),
+                                                        behind["sound_speed"].get<double>()));
+}
+
 void printMaterial(const Json& material) {
     fmt::print(
-        "  {:20} {:7.1f} dB lambert_db, reflection {:.2g}, roughness_slope {}, reflectivity {:.2g}, {} "
-        "triangles, {:.4g} m2{}{}{}\n",
+        "  {:22} {:5.1f} dB lambert_db, reflection {:.2g}, roughness_slope {}, reflectivity {:.2g}, {} "
+        "triangles, {:.4g} m2{}{}{}{}{}\n",
         material["name"].get<std::string>(), material["lambert_db"].get<double>(), material["reflection"].get<double>(),
         material["roughness_slope"].is_null() ? "none"
                                               : fmt::format("{:.2g}", material["roughness_slope"].get<double>()),
         material["reflectivity"].get<double>(), material["triangles"].get<size_t>(), material["area_m2"].get<double>(),
         material["normal_map"].get<bool>() ? ", normal map" : "",
-        material["surface_map"].get<bool>() ? ", surface map" : "", lawText(material));
+        material["surface_map"].get<bool>() ? ", surface map" : "", material["mirror"].get<bool>() ? ", mirror" : "",
+        shellText(material["shell"]), lawText(material));
 }
 
 void printObjects(const Json& objects) {
     constexpr size_t shown = 40;
     fmt::print("objects, {}\n", objects.size());
     for (size_t i = 0; i < objects.size() && i < shown; ++i)
-        fmt::print("  {:20} {}, {} triangles, size {} m at [{}]\n", objects[i]["name"].get<std::string>(),
+        fmt::print("  {:22} {}, {} triangles, size {} m at [{}]\n", objects[i]["name"].get<std::string>(),
                    fmt::join(objects[i]["materials"].get<std::vector<std::string>>(), " and "),
                    objects[i]["triangles"].get<size_t>(), text(objects[i]["bounds"]["size"]),
                    text(objects[i]["bounds"]["centre"]));

@@ -27,6 +27,18 @@ TEST_P(BadSweepTest, IsRefusedAtItsPlace) {
 
 const std::string grid = "poses: {grid: {x: [0, 1]}}\n";
 
+TEST(BadSweepsTest, ValuesThatDoNotFitEachOtherAreNamedTogether) {
+    const TestFolder folder;
+    writeFile(folder / "d.yml", deployment);
+    writeFile(folder / "sweep.yml",
+              grid + "settings:\n  receiver.code.gamma: {uniform: [2, 2]}\n  receiver.code.law: [linear, log]\n");
+    EXPECT_THAT(
+        callInsonify(folder, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "out", "--set",
+                              "receiver.code.law=linear", "--set", "receiver.output=code"}),
+        isRefused(HasSubstr("sweep.yml:3:24: settings.receiver.code.gamma: is given with law log; it bends law linear "
+                            "and sqrt; receiver.code.law is log; receiver.code.gamma is 2")));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     All, BadSweepTest,
     testing::Values(
@@ -126,7 +138,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "sweep.yml:3:24: annotations.shadows: is true; a range image shows the strongest return of each beam"},
         BadSweep{"Picture", grid + "picture: {shape: disc}\n",
                  "sweep.yml:2:18: picture.shape: is disc; may be fan, polar"},
-        BadSweep{"Trajectory", "poses: {trajectory: {file: no.csv, count: 2}}\n", "no.csv"},
+        BadSweep{"Trajectory", "poses: {trajectory: {file: no.csv, count: 2}}\n",
+                 "sweep.yml:1:21: poses.trajectory.file: no.csv: does not exist; must be a CSV file"},
         BadSweep{"NoYaml", "poses: {", "sweep.yml:"}),
     [](const auto& tested) { return tested.param.name; });
 

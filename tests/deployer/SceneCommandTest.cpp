@@ -49,6 +49,21 @@ TEST(SceneCommandTest, PrintsBoxTrianglesMaterialsAndObjects) {
     EXPECT_THAT(words.out, HasSubstr(", roughness_slope none, "));
 }
 
+TEST(SceneCommandTest, PrintsWallsAndWhatIsBehindThem) {
+    const TestFolder folder;
+    const fs::path vessels = fs::path(insonify::test::source_dir) / "deploy/scenes/vessels.glb";
+    std::map<std::string, json> walls;
+    const json scene = sceneOf(folder, vessels);
+    for (const json& material : scene["materials"]) walls[material["name"]] = material["shell"];
+    EXPECT_TRUE(walls.at("sand").is_null());
+    EXPECT_EQ(walls.at("glass bottle")["behind"], "water");
+    EXPECT_EQ(walls.at("can with air")["behind"], "air");
+    EXPECT_NEAR(walls.at("can with air")["thickness_m"], 0.3e-3, 1e-9);
+    const std::string words = callInsonify(folder, {"scene", vessels}).out;
+    EXPECT_THAT(words, HasSubstr("wall of 0.3 mm, 2700 kg/m3 and 6320 m/s, before air"));
+    EXPECT_THAT(words, testing::ContainsRegex("  sand  [^\n]*m2; "));
+}
+
 TEST(SceneCommandTest, WarnsOfASceneOnItsSideForAFileWithZUpOnly) {
     const TestFolder folder;
     writeFile(folder / "z_up.gltf", floorGltf(true));

@@ -1,5 +1,6 @@
 """Many simulations on one scene, compared with single simulations."""
 
+import re
 import subprocess
 import sys
 
@@ -97,7 +98,10 @@ def test_each_wrong_argument_has_one_clear_error(deploy):
     batch = insonify.SimulationBatch(file, 2, overrides=QUICK)
     here = np.tile([0, 0, 0, 1.0, 0, 0, 0], (2, 1))
     with pytest.raises(ValueError, match="poses: are 3; the batch has 2 simulations"):
-        batch.step(np.zeros((3, 7)))
+        batch.step([pose(here[0])] * 3)
+    for shape in ((3, 7), (2, 6), (7,), (2, 4, 3), (2, 1, 7)):
+        with pytest.raises(ValueError, match=re.escape(f"poses: are an array {list(shape)}; must be [2, 7] or [2, 4, 4]")):
+            batch.step(np.zeros(shape))
     with pytest.raises(IndexError, match="there is no simulation 2 of 2"):
         batch.reset([2])
     with pytest.raises(ValueError, match="simulation 0 is given more than once"):

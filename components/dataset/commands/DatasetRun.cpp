@@ -38,6 +38,17 @@ constexpr const char* no_budget =
 /** Returns a text as a value in YAML. */
 std::string quoted(const std::string& text) { return command::Json(text).dump(); }
 
+/** Returns the trajectory of a sweep. A file that does not exist is an error at its place in the sweep. */
+pose::Trajectory trajectoryOf(const Sweep& sweep) {
+    const TrajectoryPoses& asked = *sweep.trajectory;
+    try {
+        return pose::Trajectory::fromCsv(asked.file);
+    } catch (const types::ConfigError& error) {
+        if (std::error_code none; fs::exists(asked.file, none)) throw;
+        throw types::ConfigError({{"poses.trajectory.file", error.what(), sweep.file, asked.line, asked.column}});
+    }
+}
+
 Sweep seeded(Sweep sweep, std::optional<uint64_t> seed) {
     if (seed.value_or(0) != 0) sweep.seed = *seed;
     return sweep;
@@ -48,7 +59,7 @@ std::vector<std::vector<TimedPose>> runsOf(const Sweep& sweep) {
     std::vector<std::vector<TimedPose>> runs;
     if (!sweep.trajectory) return runs;
     const TrajectoryPoses& asked = *sweep.trajectory;
-    const pose::Trajectory trajectory = pose::Trajectory::fromCsv(asked.file);
+    const pose::Trajectory trajectory = trajectoryOf(sweep);
     const double first = trajectory.stamps().front().time, last = trajectory.stamps().back().time;
     const double from = asked.from.value_or(std::max(first, 0.0)), to = asked.to.value_or(last);
     const double length = to - from - (sweep.lines ? sweep.lines->duration() : 0);  // where samples begin
@@ -300,6 +311,23 @@ std::string DatasetRun::scaleOf(const std::string& task, const Sample& sample) c
     return scales.dump();
 }
 
+/** Returns the errors of a sample whose values do not fit together, with their places in the sweep. */
+types::ConfigError DatasetRun::placed(types::Diagnostics diagnostics, const Sample& sample) const {
+    std::string values;
+    for (const auto& [property, value] : sample.settings) values += fmt::format("; {} is {}", property, value);
+    const auto place = [&](types::Diagnostic& each, const std::string& property, int line, int column) {
+        const auto [task, name] = splitPort(property);
+        if (each.file == framework::set_origin && each.path == fmt::format("tasks.{}.properties.{}", task, name))
+            each = {"settings." + property, each.message + values, sweep_.file, line, column};
+    };
+    for (types::Diagnostic& each : diagnostics) {
+        for (const Setting& setting : sweep_.settings)
+            place(each, setting.property, setting.values.front().line, setting.values.front().column);
+        for (const DrawnSetting& drawn : sweep_.drawn) place(each, drawn.property, drawn.line, drawn.column);
+    }
+    return types::ConfigError(std::move(diagnostics));
+}
+
 /** Makes the simulation of a sample. Keeps the previous one so that they share the scene, trees, and derived data of
  *  meshes. */
 void DatasetRun::simulate(const Sample& sample) {
@@ -308,7 +336,11 @@ void DatasetRun::simulate(const Sample& sample) {
     options.truth = true;
     options.objects = samples_->objectsOf(sample.scene);
     if (simulation_ && options.overrides == overrides_ && sample.scene == scene_) return;
-    before_ = std::exchange(simulation_, std::make_unique<deployer::Simulation>(deployment_, options));
+    try {
+        before_ = std::exchange(simulation_, std::make_unique<deployer::Simulation>(deployment_, options));
+    } catch (const types::ConfigError& error) {
+        throw placed(error.diagnostics(), sample);
+    }
     overrides_ = options.overrides, scene_ = sample.scene;
 }
 

@@ -55,6 +55,7 @@ private:
     std::vector<std::string> overridesOf(const Sample& sample) const;
     std::string scaleOf(const std::string& task, const Sample& sample) const;
     std::vector<std::string> tasksOfType(const std::string& type) const;
+    types::ConfigError placed(types::Diagnostics diagnostics, const Sample& sample) const;
     void simulate(const Sample& sample);
 
     const std::string deployment_;
