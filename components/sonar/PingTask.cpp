@@ -248,6 +248,7 @@ void PingTask::render() {
             if (what.reason == Reason::Lacking) plan_->notices.push_back("Warning: " + plan_->omitted.back().reason);
         }
     }
+    const auto signals = elements.connected() ? takeElements(*sample) : nullptr;  // before anything renders again
     followQuality(*sample, took.count());
     if (const std::string diagnostic = diagnosticOf(received, *sample); !diagnostic.empty()) warn(diagnostic);
     stampBearings(*sample);
@@ -258,7 +259,7 @@ void PingTask::render() {
     writeMore(*sample, takenScene().sonar);
     ping.write(sample);
     if (reported) writeTruth(*sample, reported);
-    if (elements.connected()) writeElements(*sample);
+    if (signals) elements.write(signals);
 }
 
 std::shared_ptr<types::SonarTruth> PingTask::takeTruth() { return wantsTruth() ? truths_.take() : nullptr; }
@@ -281,11 +282,11 @@ void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<type
     returns.write(found);
 }
 
-void PingTask::writeElements(const types::Sonar& sample) {
+std::shared_ptr<types::SonarElements> PingTask::takeElements(const types::Sonar& sample) {
     const auto signals = signals_.take();
     renderer_->takeElements(sample, *signals);
     signals_.stock(*signals);
-    elements.write(signals);
+    return signals;
 }
 
 types::Time PingTask::lastEcho() const {

@@ -187,6 +187,24 @@ TEST_F(ElementPortTest, ThePortWritesTheElementsOfEachPing) {
     EXPECT_EQ(signals->time, ping->time);
 }
 
+TEST_F(ElementPortTest, SignalsBelongToTheirPingWhileTheQualityIsChosenAndWatched) {
+    task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
+    SonarConfig config = arrayOf(Weighting::Hann);
+    config.quality = {};
+    config.quality.max_samples = 100'000;
+    startWith(config);
+    for (int i = 0; i < 12; ++i) {
+        types::Snapshot snapshot = twoTargets();
+        snapshot.time.microseconds += i * 100'000;
+        snapshot.sonar.position.x = 0.05 * i;
+        const types::SonarPtr ping = answerTo(std::make_shared<const types::Snapshot>(snapshot));
+        types::SonarElementsPtr signals;
+        ASSERT_TRUE(ping && signals_.port.readNew(signals));
+        const Received both{*ping, *signals};
+        EXPECT_NEAR(off(both.ping, beamformed(both, acoustics::Taper(Weighting::Hann))).energy_db, 0, 0.2) << i;
+    }
+}
+
 TEST_F(ElementPortTest, RejectsAConnectedPortOfASonarWithoutElements) {
     task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
     SonarConfig config = arrayOf(Weighting::Uniform);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
@@ -117,6 +118,30 @@ TEST(StiffCasesTest, AReusedSampleKeepsNothingOfItsOldPing) {
     renderer.render(test::snapshotOf(scene), ping);
     renderer.render(test::snapshotOf(scene, {0, 0, 1000}), ping);
     EXPECT_THAT(ping.bins, Each(0)) << "far above all";
+}
+
+/** Within a cell such a plane extends from the sonar to infinity; its plate does not. */
+TEST(StiffCasesTest, APlateBeyondTheRangeHasNoEchoWhereItsPlanePassesTheSonar) {
+    std::mt19937 random(3);
+    const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    int received = 0;
+    for (int i = 0; i < 60; ++i) {
+        SonarConfig config = stiffFan(130, 64);
+        config.frequency_khz = 700;
+        config.beam_pattern.emplace().receive.azimuth.emplace().weighting = acoustics::Weighting::Taylor;
+        config.beam_pattern->receive.azimuth->width_deg = 3;
+        const double bearing = uniform(-1, 1), distance = uniform(3, 6), length = 3 * distance, height = uniform(1, 2);
+        const glm::dvec3 along(std::cos(bearing), std::sin(bearing), 0), aside(-along.y, along.x, 0);
+        const glm::dvec3 corner = distance * along + uniform(0.05, 0.3) * aside - glm::dvec3(0, 0, height / 2);
+        const auto scene = test::sceneOf({test::quad(corner, length * along, {0, 0, height})});
+        for (const double range : {0.5, 0.7, 0.9}) {
+            config.range = range * distance;
+            EXPECT_THAT(stiffBins(config, scene), Each(0)) << i << ", range " << config.range;
+        }
+        config.range = 4 * distance;
+        received += std::ranges::max(stiffBins(config, scene)) > 0;
+    }
+    EXPECT_GT(received, 50) << "of 60: a plate may be between the samples";
 }
 
 TEST(StiffCasesTest, RejectsATooLargePictureWithAMessage) {

@@ -123,7 +123,10 @@ void ObjectPlaces::joinExtents() {
             if (!far_[i] && in_view_[i]) near = std::max(near, records_[i].extent.x);
         }
         for (const size_t i : members)
-            if (!far_[i] && in_view_[i]) records_[i].extent.x = near, records_[i].extent.y = far;
+            if (!far_[i] && in_view_[i])
+                records_[i].extent.x = near, records_[i].extent.y = far;
+            else if (!far_[i])
+                records_[i].extent.x = std::max(records_[i].extent.x, near);
     }
 }
 
@@ -148,7 +151,7 @@ bool ObjectPlaces::reaches(const glm::dvec3& centre, double radius) const {
     return outward <= radius;
 }
 
-vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, bool in_view) {
+vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, double nearest_of_sphere) {
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 p(corner & 1 ? box(index).high.x : box(index).low.x,
@@ -159,7 +162,9 @@ vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, bool in_view) {
     const size_t mesh = meshOf(index);
     const double rounding = 1e-6 * farthest;  // upper bound for the floats of the search
     const double nearest =
-        in_view ? nearestDistance(geometry_.meshes[mesh], meshes_[mesh]->longestEdge(), m, scratch_) - rounding : 0;
+        (in_view_[index] ? nearestDistance(geometry_.meshes[mesh], meshes_[mesh]->longestEdge(), m, scratch_)
+                         : nearest_of_sphere) -
+        rounding;
     const double slack = 1e-5;  // rounding of the float that stores it
     return vec4(nearest > 1e-6 ? (1 + slack) / nearest : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
 }
@@ -183,7 +188,7 @@ void ObjectPlaces::placeObject(size_t index, const glm::dmat4& sonar_from_object
               row(normals, 0),
               row(normals, 1),
               row(normals, 2),
-              extent(index, sonar_from_object, in_view_[index]),
+              extent(index, sonar_from_object, glm::length(centre) - radius),
               vec4(eye),
               vec4(eye - glm::dvec4(vec4(eye)))};
 }

@@ -35,7 +35,8 @@ public:
 private:
     size_t meshOf(size_t object) const { return static_cast<size_t>(geometry_.objects[object].mesh); }
     void placeObject(size_t index, const glm::dmat4& sonar_from_object);
-    vec4 extent(size_t index, const glm::dmat4& sonar_from_object, bool in_view);
+    /** Returns the inverse of its nearest range, and of its farthest [1/m]. */
+    vec4 extent(size_t index, const glm::dmat4& sonar_from_object, double nearest_of_sphere);
     /** Finds the objects that continue each other's surface. */
     void findSurfaces();
     /** Sets the inverse ranges of all objects of one surface to those of the whole surface. */
