@@ -199,7 +199,8 @@ YAML::Node PropertySources::set(const YAML::Node& base, const YAML::Node& over, 
     YAML::Node merged = merges ? base : YAML::Node(YAML::NodeType::Map);
     for (const auto& entry : over) {
         const std::string& key = entry.first.Scalar();
-        const YAML::Node value = set(child(merged, key), entry.second, framework::below(path, key), origin);
+        const YAML::Node value = set(child(merged, key), entry.second, framework::below(path, key),
+                                     {origin.file, framework::below(origin.path, key), origin.mark});
         merged.reset(with(merged, key, value));
     }
     return merged;

@@ -266,8 +266,8 @@ bool readBlock(ConfigReader& reader, const YAML::Node& node, const std::string& 
     if (node.IsDefined() && !reader.isMap(node, path)) return false;
     std::vector<std::string> known;
     type.visit(value, [&](const types::Field& field, const ValueType& member_type, void* member) {
-        known.push_back(field.name);
         const YAML::Node entry = child(node, field.name);
+        if (!member_type.isMoved() || entry.IsDefined()) known.push_back(field.name);
         if (entry.IsDefined() && entry.IsNull() && reader.nullTakesOut())
             giveDefault(type, field, member_type, member);
         else if (entry.IsDefined())

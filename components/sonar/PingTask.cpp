@@ -8,6 +8,8 @@
 #include <iterator>
 #include <utility>
 
+#include "components/acoustics/BeamPattern.hpp"
+#include "components/acoustics/SoundProfile.hpp"
 #include "components/framework/Activity.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/fan/SentPower.hpp"
@@ -56,6 +58,26 @@ SonarConfig PingTask::locatedConfig() const {
         for (std::optional<acoustics::BeamLaw>* law : {&array->azimuth, &array->elevation})
             if (*law && !(*law)->file.empty()) (*law)->file = inputPath((*law)->file);
     return config;
+}
+
+void PingTask::check(types::Diagnostics& diagnostics) const {
+    const auto read = [&](const std::string& property, const auto& table) {
+        try {
+            table();
+        } catch (const types::ConfigError& error) {
+            for (const types::Diagnostic& each : error.diagnostics()) diagnostics.push_back({property, each.text()});
+        }
+    };
+    const SonarConfig located = locatedConfig();
+    if (located.water && located.water->profile)
+        read("water.profile", [&] { acoustics::SoundProfile::read(*located.water->profile); });
+    if (!located.beam_pattern) return;
+    const BeamPatternConfig& pattern = *located.beam_pattern;
+    for (const auto& [side, array] : {std::pair("transmit", &pattern.transmit), std::pair("receive", &pattern.receive)})
+        for (const auto& [angle, law] :
+             {std::pair("azimuth", &array->azimuth), std::pair("elevation", &array->elevation)})
+            if (*law && !(*law)->file.empty())
+                read(fmt::format("beam_pattern.{}.{}.file", side, angle), [&] { acoustics::BeamPattern{**law}; });
 }
 
 bool PingTask::configureHook() {

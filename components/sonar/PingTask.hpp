@@ -67,6 +67,8 @@ public:
 
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     std::vector<std::string> notices() const override;
+    /** Reports files of sound speeds and of beams that cannot be used. */
+    void check(types::Diagnostics& diagnostics) const override;
     std::string indivisible() const override;
 
     /** Sets the number of threads of the next renderer; 0: the number of cores. */

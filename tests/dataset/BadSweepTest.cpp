@@ -27,6 +27,15 @@ TEST_P(BadSweepTest, IsRefusedAtItsPlace) {
 
 const std::string grid = "poses: {grid: {x: [0, 1]}}\n";
 
+TEST(BadSweepsTest, ASceneAsASettingIsOneError) {
+    const TestFolder folder;
+    writeFile(folder / "d.yml", deployment);
+    writeFile(folder / "sweep.yml", grid + "settings: {scene.file: [none.glb]}\n");
+    const Outcome outcome = callInsonify(folder, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "out"});
+    EXPECT_THAT(outcome, isRefused(HasSubstr("names the file of scene")));
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+}
+
 TEST(BadSweepsTest, ValuesThatDoNotFitEachOtherAreNamedTogether) {
     const TestFolder folder;
     writeFile(folder / "d.yml", deployment);
@@ -50,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSweep{"LinesOfAFan", grid + "lines: {speed: 1}\n",
                  "sweep.yml:2:8: lines: `lines` and `picture: {shape: waterfall}` go together: give both or neither"},
         BadSweep{"WaterfallOfOnePing", grid + "picture: {shape: waterfall}\n",
-                 "picture.shape: `lines` and `picture: {shape: waterfall}` go together"},
+                 "sweep.yml:2:18: picture.shape: `lines` and `picture: {shape: waterfall}` go together"},
         BadSweep{"LinesWithoutSpeed", grid + "lines: {count: 3}\npicture: {shape: waterfall}\n",
                  "sweep.yml:2:8: lines.speed: is missing; give the speed of the vehicle straight ahead [m/s]"},
         BadSweep{

@@ -47,6 +47,40 @@ TEST(CheckCommandTest, SetChangesTheDeploymentAsInARun) {
                 isRefused(HasSubstr("--set: tasks.sonar.properties.range: is -15")));
 }
 
+TEST(CheckCommandTest, AnErrorInABlockOfSetHasThePathOfItsKey) {
+    const WallFolder folder;
+    const std::map<std::string, std::string> errors = {
+        {"volume={strengh_db: -70}", "volume.strengh_db: is not a key here; did you mean strength_db?"},
+        {"multipath={bounces: 3}", "multipath.bounces: is 3; may be 0 to 2"},
+        {"pulse={bandwidth_khz: 50, ring_down: {level_db: -20}}", "pulse.ring_down.decay_db_per_m: is missing"},
+        {"beam_pattern={transmit: {azimuth: {width_deg: -1}}}", "beam_pattern.transmit.azimuth.width_deg: is -1 deg"},
+        {"water={depth: [1, 2]}", "water.depth: is a list"},
+    };
+    for (const auto& [set, error] : errors)
+        EXPECT_THAT(callInsonify(folder, {"check", "wall.yml", "--set", "sonar." + set}),
+                    isRefused(testing::StartsWith("--set: tasks.sonar.properties." + error)));
+}
+
+TEST(CheckCommandTest, ReadsTheTablesOfASonar) {
+    const WallFolder folder(replaced(wall_deployment, "range: 20",
+                                     "range: 20\n      water: {profile: speeds.csv}\n"
+                                     "      beam_pattern: {receive: {azimuth: {file: beam.csv}}}"));
+    const auto errors = [&] { return callInsonify(folder, {"check", "wall.yml"}); };
+    EXPECT_THAT(errors(),
+                isRefused(testing::AllOf(
+                    HasSubstr("wall.yml:17:24: tasks.sonar.properties.water.profile: ./speeds.csv: does not exist"),
+                    HasSubstr("wall.yml:18:48: tasks.sonar.properties.beam_pattern.receive.azimuth.file: ./beam.csv: "
+                              "does not exist"))));
+    writeFile(folder / "speeds.csv", "depth_m,sound_speed_m_s\n0,1500\n5,abc\n");
+    writeFile(folder / "beam.csv", "angle_deg,level_db\n10,0\n20,-3\n");
+    EXPECT_THAT(errors(),
+                isRefused(testing::AllOf(HasSubstr("water.profile: ./speeds.csv:3:3: sound_speed_m_s: is 'abc'"),
+                                         HasSubstr("azimuth.file: ./beam.csv: angle_deg: does not include 0"))));
+    writeFile(folder / "speeds.csv", "depth_m,sound_speed_m_s\n0,1500\n5,1490\n");
+    writeFile(folder / "beam.csv", "angle_deg,level_db\n-20,-3\n0,0\n20,-3\n");
+    EXPECT_EQ(errors().code, 0);
+}
+
 TEST(CheckCommandTest, ADeploymentWithoutTasksIsOneError) {
     const WallFolder folder(replaced(wall_deployment, "tasks:\n", "task:\n"));
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});

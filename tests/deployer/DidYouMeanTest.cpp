@@ -46,6 +46,11 @@ TEST(DidYouMeanTest, NamesOfTasksPortsPropertiesEnumsAndMaterials) {
     });
 }
 
+TEST(DidYouMeanTest, KnownKeysMayBeGiven) {
+    EXPECT_THAT(diagnosticsWith("range: 20", "rang: 20"), Not(HasSubstr("tvg"))) << "of the receiver since it moved";
+    EXPECT_THAT(diagnosticsWith("range: 20", "tvg: 20"), Not(HasSubstr("is not a key here")));
+}
+
 TEST(DidYouMeanTest, ShowsTheRightFormOfANumberWithItsUnit) {
     expectWords({
         {"range: 20", "range: 20 m", "is 20 m; write 20 or 20.m; must be a finite number"},

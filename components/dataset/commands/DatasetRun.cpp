@@ -233,6 +233,7 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
             refuse("names the file of " + each.name + ", which sets the objects of the scene; name it under scenes");
         if (budgetOf(each).IsDefined()) refuse(no_budget);
     }
+    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
     const auto [task, name] = splitPort(property);
     const std::string full = fmt::format("tasks.{}.properties.{}", task, name), block = full.substr(0, full.rfind('.'));
     if (spec.task(task)) spec = deployer::restrictedTo(std::move(spec), {task});

@@ -181,7 +181,8 @@ private:
     void readLines(const YAML::Node& node) {
         const bool is_waterfall = sweep_.picture.shape == output::PlainShape::Waterfall;
         if (node.IsDefined() != is_waterfall)
-            return reader_.report(node.IsDefined() ? node : document_, node.IsDefined() ? "lines" : "picture.shape",
+            return reader_.report(node.IsDefined() ? node : child(child(document_, "picture"), "shape"),
+                                  node.IsDefined() ? "lines" : "picture.shape",
                                   "`lines` and `picture: {shape: waterfall}` go together: give both or neither");
         if (!is_waterfall) return;
         LinesConfig& lines = sweep_.lines.emplace();

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "components/sonar/echo/Cells.hpp"
 #include "components/sonar/echo/EchoTrain.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 
