@@ -231,7 +231,7 @@ TEST(InitCommandTest, AnUnknownSonarIsReportedWithTheNearestName) {
 }
 
 TEST(InitCommandTest, TheNextCommandsCanBePasted) {
-    const Folder folder;
+    const TestFolder folder;
     const Outcome outcome = callInsonify(folder, {"init", "mein tauchgang"});
     EXPECT_THAT(outcome.out, HasSubstr("next: insonify run 'mein tauchgang'\n"));
     EXPECT_THAT(outcome.out, HasSubstr("insonify dataset 'mein tauchgang' --sweep 'mein tauchgang/sweep.yml' "));

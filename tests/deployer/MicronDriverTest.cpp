@@ -113,7 +113,7 @@ TEST_F(MicronDriverTest, SurvivesAThousandReconnectsAndAClientThatDoesNotRead) {
     driver.configure({.resolution = 0.05, .max_distance = 10});
     driver.request();
     EXPECT_EQ(driver.beam().bins.size(), 200u);
-    EXPECT_THAT(run_.stop(), succeeds());
+    EXPECT_THAT(run_.stop(), deployer::succeeds());
 }
 
 /** As on a machine with too few processors, or whose clock is set forward: the line is late, but is sent. */

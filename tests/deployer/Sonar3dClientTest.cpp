@@ -95,7 +95,7 @@ TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndReceivesTheWallAndTheBall) {
     EXPECT_NEAR(reported["high"][1], 40.0 * 256 / 255 * 127 / 128, 1e-4);
     EXPECT_NEAR(reported["high_wall"], 5, 0.002);
     EXPECT_EQ(reported["synchronised"], true);
-    EXPECT_THAT(run.stop(), succeeds());
+    EXPECT_THAT(run.stop(), deployer::succeeds());
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, Sonar3dClientTest, ::testing::Bool(),
@@ -126,7 +126,7 @@ TEST(Sonar3dReconnectTest, SurvivesAThousandReconnectsAndAClientThatDoesNotRead)
         received.insert(received.end(), more.begin(), more.end());
     }
     EXPECT_THAT(text(), HasSubstr("HTTP/1.1 200 OK"));
-    EXPECT_THAT(run.stop(), succeeds());
+    EXPECT_THAT(run.stop(), deployer::succeeds());
 }
 
 }  // namespace

@@ -123,13 +123,13 @@ TEST_F(FortressTest, TheDefaultPartitionMatchesTheLibrary) {
 }
 
 TEST_F(FortressTest, NamesMatchTheLibrary) {
-    for (const std::string partition : {"auv", "/auv", "auv/", "", "host:user"})
+    for (const std::string given : {"auv", "/auv", "auv/", "", "host:user"})
         for (const std::string topic :
              {"/world/sea/pose/info", "pose", "pose/", "/a b", "/a//b", "", "/", "~a", "a@"}) {
             std::string name;
-            const bool is_taken = ignition::transport::TopicUtils::FullyQualifiedName(partition, "", topic, name);
-            const auto ours = qualifiedName(partition, topic);
-            EXPECT_EQ(ours.has_value(), is_taken) << partition << " " << topic;
+            const bool is_taken = ignition::transport::TopicUtils::FullyQualifiedName(given, "", topic, name);
+            const auto ours = qualifiedName(given, topic);
+            EXPECT_EQ(ours.has_value(), is_taken) << given << " " << topic;
             EXPECT_EQ(ours.value_or(""), is_taken ? name : "");
         }
 }

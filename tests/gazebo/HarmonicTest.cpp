@@ -153,17 +153,17 @@ TEST_F(HarmonicTest, ReportsModelsThatAppearOrDisappear) {
 
 TEST_F(HarmonicTest, AWorldIsTheSceneOfATask) {
     HarmonicWorld gazebo({.scene = recording("scene")});
-    scene::SceneTask task("scene");
+    scene::SceneTask scene_task("scene");
     scene::SceneConfig config;
     config.gazebo = world("sea");
     config.materials_by_name = false;
-    task.config.set(config);
-    framework::OutputPort<types::Pose> source(&task, "source", "");
-    EXPECT_NE(task.makeInput("rov.pose", source), nullptr);
-    EXPECT_EQ(task.makeInput("auv.pose", source), nullptr) << "the world has no such model";
-    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
-    EXPECT_THAT(task.notices(), Contains(HasSubstr("hull.obj is not found")));
-    EXPECT_THAT(task.indivisible(), HasSubstr("gazebo: is the world as it is when it is asked for"));
+    scene_task.config.set(config);
+    framework::OutputPort<types::Pose> source(&scene_task, "source", "");
+    EXPECT_NE(scene_task.makeInput("rov.pose", source), nullptr);
+    EXPECT_EQ(scene_task.makeInput("auv.pose", source), nullptr) << "the world has no such model";
+    ASSERT_TRUE(scene_task.configure() && scene_task.start()) << scene_task.lastError();
+    EXPECT_THAT(scene_task.notices(), Contains(HasSubstr("hull.obj is not found")));
+    EXPECT_THAT(scene_task.indivisible(), HasSubstr("gazebo: is the world as it is when it is asked for"));
 }
 
 TEST_F(HarmonicTest, TasksShareAWorld) {
@@ -203,20 +203,20 @@ TEST_F(HarmonicTest, FailingSilentAndWrongServicesHaveTheirOwnErrors) {
 }
 
 TEST_F(HarmonicTest, AFailureIsCachedUntilTheTaskIsConfigured) {
-    scene::SceneTask task("scene");
+    scene::SceneTask scene_task("scene");
     scene::SceneConfig config;
     config.gazebo = world("sea", 0.5);
-    task.config.set(config);
+    scene_task.config.set(config);
     const auto begin = std::chrono::steady_clock::now();
-    framework::OutputPort<types::Pose> source(&task, "source", "");
-    for (int i = 0; i < 50; ++i) EXPECT_NE(task.makeInput("rov.pose", source), nullptr) << "it may be right";
+    framework::OutputPort<types::Pose> source(&scene_task, "source", "");
+    for (int i = 0; i < 50; ++i) EXPECT_NE(scene_task.makeInput("rov.pose", source), nullptr) << "it may be right";
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
-    EXPECT_THAT(task.configure().reason, HasSubstr("scene.gazebo.world: is sea"));
-    ASSERT_TRUE(task.recover());
+    EXPECT_THAT(scene_task.configure().reason, HasSubstr("scene.gazebo.world: is sea"));
+    ASSERT_TRUE(scene_task.recover());
     HarmonicWorld gazebo({.scene = recording("scene")});
     config.gazebo->timeout = 30;
-    task.config.set(config);
-    EXPECT_TRUE(task.configure()) << task.lastError();
+    scene_task.config.set(config);
+    EXPECT_TRUE(scene_task.configure()) << scene_task.lastError();
 }
 
 TEST_F(HarmonicTest, AWorldWithoutANameOrTogetherWithAFileIsAnError) {

@@ -1,5 +1,6 @@
 // Animations, skins and morph targets of files: what they move, and what is refused.
 #include "components/scene/Animator.hpp"
+#include "components/scene/Placement.hpp"
 #include "tests/scene/AnimatedFiles.hpp"
 #include "types/PosedMesh.hpp"
 

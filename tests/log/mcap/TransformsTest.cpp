@@ -1,6 +1,7 @@
 // /tf, /tf_static and /clock of MCAP files.
 #include <gmock/gmock.h>
 
+#include "components/log/mcap/Contents.hpp"
 #include "components/ros/Cdr.hpp"
 #include "tests/log/mcap/SmallFile.hpp"
 
