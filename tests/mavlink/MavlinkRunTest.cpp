@@ -103,7 +103,7 @@ TEST_F(MavlinkRunTest, TheDeploymentIsValidAndErrorsAreReportedWithTheirPlace) {
     EXPECT_THAT(diagnosed("vehicles.bodies=[{port: red, system_id: 0}, {port: blue}]"),
                 HasSubstr("bodies[0].system_id: is 0; may be 1 to 255"));
     EXPECT_THAT(diagnosed("vehicles.bodies=[]"), HasSubstr("bodies: is empty; must hold a body"));
-    EXPECT_THAT(diagnosed("vehicles.request={rate: 0}"), HasSubstr("request: is 0 Hz; may be 2 to 1000 Hz"));
+    EXPECT_THAT(diagnosed("vehicles.request={rate: 0}"), HasSubstr("request.rate: is 0 Hz; may be 2 to 1000 Hz"));
 }
 
 TEST_F(MavlinkRunTest, LockstepDoesNotReadPoses) {
