@@ -1,6 +1,7 @@
 // A plate between two fluids (ACOUSTICS.md 3.10).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <iostream>
