@@ -144,8 +144,8 @@ Json animationsOf(const scene::Scene& scene) {
  *  null, triangles, materials: [{name, source: file, name or default, matter or null, lambert_db [dB], reflection,
  *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, shell as above,
  *  mirror, triangles, area_m2}], objects: [{name, materials: [names], triangles, bounds}], nodes: [names that a
- * connection may move], animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets,
- * not_understood: [], warnings: []}. Throws types::ConfigError for a file that cannot be read. */
+ *  connection may move], animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets,
+ *  not_understood: [], warnings: []}. Throws types::ConfigError for a file that cannot be read. */
 Json sceneReport(const std::string& file) {
     const scene::Scene scene = scene::readScene(file);
     const types::GeometryPtr named = scene::takeNames(scene.geometry);

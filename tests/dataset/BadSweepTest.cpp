@@ -46,6 +46,12 @@ TEST(BadSweepsTest, ValuesThatDoNotFitEachOtherAreNamedTogether) {
                               "receiver.code.law=linear", "--set", "receiver.output=code"}),
         isRefused(HasSubstr("sweep.yml:3:24: settings.receiver.code.gamma: is given with law log; it bends law linear "
                             "and sqrt; receiver.code.law is log; receiver.code.gamma is 2")));
+    writeFile(folder / "sweep.yml",
+              grid + "settings:\n  receiver.code.law: [linear, log]\n  receiver.code.gamma: [1, 2]\n");
+    EXPECT_THAT(callInsonify(folder, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "again", "--set",
+                                      "receiver.code.law=linear", "--set", "receiver.output=code"}),
+                isRefused(HasSubstr("sweep.yml:4:28: settings.receiver.code.gamma: is given with law log")))
+        << "at the value of the sample";
 }
 
 INSTANTIATE_TEST_SUITE_P(

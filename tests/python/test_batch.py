@@ -71,7 +71,7 @@ def test_poses_may_be_numbers_matrices_or_poses(deploy):
     numbers = random_poses(np.random.default_rng(6), 2) * [0.1, 0.1, 0.1, 1, 1, 1, 1]
     poses = [pose(each) for each in numbers]
     by_numbers = batch.step(numbers).bins
-    for given in (poses, np.stack([each.matrix() for each in poses])):
+    for given in (poses, np.array(poses), np.stack([each.matrix() for each in poses])):
         batch.reset()
         np.testing.assert_allclose(batch.step(given).bins, by_numbers, rtol=1e-4, atol=1e-12)
 

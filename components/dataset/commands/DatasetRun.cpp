@@ -323,7 +323,9 @@ types::ConfigError DatasetRun::placed(types::Diagnostics diagnostics, const Samp
     };
     for (types::Diagnostic& each : diagnostics) {
         for (const Setting& setting : sweep_.settings)
-            place(each, setting.property, setting.values.front().line, setting.values.front().column);
+            for (const Written& value : setting.values)
+                if (std::ranges::count(sample.settings, std::pair(setting.property, value.yaml)) > 0)
+                    place(each, setting.property, value.line, value.column);
         for (const DrawnSetting& drawn : sweep_.drawn) place(each, drawn.property, drawn.line, drawn.column);
     }
     return types::ConfigError(std::move(diagnostics));

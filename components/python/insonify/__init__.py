@@ -404,7 +404,7 @@ class SimulationBatch:
     def _numbers(self, poses) -> NDArray[np.float64]:
         if isinstance(poses, np.ndarray) and poses.shape == (len(self), 7):
             return np.ascontiguousarray(poses, float)
-        if isinstance(poses, np.ndarray) and poses.shape[1:] != (4, 4):
+        if isinstance(poses, np.ndarray) and poses.dtype != object and poses.shape[1:] != (4, 4):
             raise ValueError(f"poses: are an array {list(poses.shape)}; must be [{len(self)}, 7] or [{len(self)}, 4, 4]")
         if len(poses) != len(self):
             raise ValueError(f"poses: are {len(poses)}; the batch has {len(self)} simulations")
