@@ -51,11 +51,13 @@ endmacro()
 # Headers of Boost: the viewer and stand-ins for instruments use Asio and Beast.
 if(NOT CMAKE_DISABLE_FIND_PACKAGE_Boost)
   find_path(INSONIFY_BOOST boost/beast.hpp NO_CACHE)
+  string(REGEX REPLACE "/$" "" INSONIFY_BOOST "${INSONIFY_BOOST}")
 endif()
 
 # OpenCV's headers, and its modules in the same prefix; Debian's packages of single modules have no CMake file.
 find_path(INSONIFY_OPENCV opencv2/imgproc.hpp PATH_SUFFIXES opencv4 REQUIRED NO_CACHE)
-string(REGEX REPLACE "/include(/opencv4)?/?$" "" opencv_prefix "${INSONIFY_OPENCV}")
+string(REGEX REPLACE "/$" "" INSONIFY_OPENCV "${INSONIFY_OPENCV}")
+string(REGEX REPLACE "/include(/opencv4)?$" "" opencv_prefix "${INSONIFY_OPENCV}")
 foreach(module core imgproc imgcodecs videoio)
   string(TOUPPER INSONIFY_OPENCV_${module} library)
   if(NOT CMAKE_DISABLE_FIND_PACKAGE_OpenCV_${module} AND EXISTS ${INSONIFY_OPENCV}/opencv2/${module}.hpp)

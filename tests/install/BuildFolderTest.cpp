@@ -25,8 +25,7 @@ void copyClone(const fs::path& to) {
 /** Runs scripts/build in a clone. */
 Outcome build(const TestFolder& folder, const std::string& clone, const std::string& target = "insonify_version",
               const std::vector<std::string>& before = {}) {
-    std::vector<std::string> words{"env"};
-    words.insert(words.end(), before.begin(), before.end());
+    std::vector<std::string> words = before;
     for (const std::string& word : {clone + "/scripts/build", std::string("build"), std::string("--"), target}) words.push_back(word);
     return call(folder, words);
 }
@@ -61,15 +60,15 @@ TEST(BuildFolderTest, ACopiedCloneCompilesItsOwnSources) {
     ASSERT_THAT(build(folder, "a"), succeeds());
     const std::string of_a = built(folder, "a");
     ASSERT_FALSE(of_a.empty());
-    ASSERT_EQ(call(folder, {"cp", "-a", "a", "b"}).code, 0);
-    edit(folder, "b");
-    const Outcome outcome = build(folder, "b");
+    ASSERT_EQ(call(folder, {"cp", "-a", "a", "b:1"}).code, 0);
+    edit(folder, "b:1");
+    const Outcome outcome = build(folder, "b:1");
     ASSERT_THAT(outcome, succeeds());
     EXPECT_THAT(outcome.err, HasSubstr("was configured for the clone " + (folder / "a").string()));
-    EXPECT_NE(built(folder, "b"), of_a) << "the edit was ignored";
+    EXPECT_NE(built(folder, "b:1"), of_a) << "the edit was ignored";
     EXPECT_EQ(built(folder, "a"), of_a);
-    EXPECT_THAT(readFile(folder / "b/build/build.ninja"), Not(HasSubstr((folder / "a/").string())));
-    EXPECT_EQ(build(folder, "b").err, "") << "configured from new once";
+    EXPECT_THAT(readFile(folder / "b:1/build/build.ninja"), Not(HasSubstr((folder / "a/").string())));
+    EXPECT_EQ(build(folder, "b:1").err, "") << "configured from new once";
 }
 
 TEST(BuildFolderTest, ARenamedCloneBuildsAndKeepsItsOptions) {
@@ -79,7 +78,7 @@ TEST(BuildFolderTest, ARenamedCloneBuildsAndKeepsItsOptions) {
                               "-DCMAKE_BUILD_TYPE=Debug"}),
                 succeeds());
     ASSERT_THAT(build(folder, "a"), succeeds());
-    const std::string name = "b, c's (d) & e:f=1";
+    const std::string name = "b, c's (d) & e=1";
     fs::rename(folder / "a", folder / name);
     edit(folder, name);
     ASSERT_THAT(build(folder, name), succeeds());
@@ -130,11 +129,11 @@ TEST(BuildFolderTest, AnOldCompilerIsRefusedAndAnotherOneIsTaken) {
     copyClone(folder / "a");
     writeOldCompiler(folder / "g++-11");
     const std::string old = "CXX=" + (folder / "g++-11").string();
-    const Outcome refused = build(folder, "a", "insonify_version", {old});
+    const Outcome refused = build(folder, "a", "insonify_version", {"env", old});
     EXPECT_EQ(refused.code, 1);
     EXPECT_THAT(refused.err, AllOf(HasSubstr("needs g++ 12 or newer"), HasSubstr("CXX=g++-12")));
-    EXPECT_THAT(build(folder, "a", "insonify_version", {"CXX=c++"}), succeeds()) << "as the message says";
-    EXPECT_EQ(build(folder, "a", "insonify_version", {old}).code, 1) << "and back";
+    EXPECT_THAT(build(folder, "a", "insonify_version", {"env", "CXX=c++"}), succeeds()) << "as the message says";
+    EXPECT_EQ(build(folder, "a", "insonify_version", {"env", old}).code, 1) << "and back";
     EXPECT_THAT(build(folder, "a"), succeeds());
 }
 
