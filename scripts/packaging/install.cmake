@@ -3,8 +3,9 @@ include(CMakePackageConfigHelpers)
 set(documents ${CMAKE_INSTALL_DATAROOTDIR}/doc/insonify)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Insonify)
 install(EXPORT InsonifyTargets NAMESPACE Insonify:: DESTINATION ${package_folder} COMPONENT development)
+get_property(installed GLOBAL PROPERTY insonify_installed)
 configure_package_config_file(scripts/packaging/InsonifyConfig.cmake.in ${PROJECT_BINARY_DIR}/InsonifyConfig.cmake
-  INSTALL_DESTINATION ${package_folder})
+  INSTALL_DESTINATION ${package_folder} PATH_VARS CMAKE_INSTALL_LIBDIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/InsonifyConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/InsonifyConfig.cmake ${PROJECT_BINARY_DIR}/InsonifyConfigVersion.cmake
   DESTINATION ${package_folder} COMPONENT development)
@@ -17,7 +18,18 @@ add_custom_command(
   DEPENDS insonify ${components}
   VERBATIM)
 add_custom_target(insonify_man ALL DEPENDS ${PROJECT_BINARY_DIR}/insonify.1)
-install(FILES ${PROJECT_BINARY_DIR}/insonify.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+install(FILES ${PROJECT_BINARY_DIR}/insonify.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime OPTIONAL)
+
+# What built.cmake looks for.
+get_property(packages GLOBAL PROPERTY insonify_packages)
+set(files "runtime $<TARGET_FILE:insonify>\nruntime $<TARGET_FILE:insonify_core>\nruntime ${PROJECT_BINARY_DIR}/insonify.1\n")
+foreach(target IN LISTS installed)
+  string(APPEND files "development $<TARGET_FILE:${target}>\n")
+endforeach()
+foreach(package target IN ZIP_LISTS packages components)
+  string(APPEND files "${package} $<TARGET_FILE:${target}>\n")
+endforeach()
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/installed-$<CONFIG> CONTENT "${files}")
 
 # The shaders are in the command; only the shader that a header includes is installed.
 install(FILES shaders/interface.glsl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/insonify/shaders COMPONENT development)
@@ -67,6 +79,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
   "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libprotobuf-dev, libsdformat-dev, libsnappy-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzmq3-dev, libzstd-dev, zlib1g-dev")
 # Contents of the packages.
-get_property(installed GLOBAL PROPERTY insonify_installed)
 add_custom_target(insonify_packages DEPENDS insonify insonify_man ${installed} ${components})
 include(CPack)
