@@ -38,11 +38,10 @@ const char* Sonar::notIntensities() const {
 void Sonar::copyHeader(const Sonar& other) {
     time = other.time;
     timestamps = other.timestamps;
-    bin_duration = other.bin_duration;
+    static_cast<RangeBins&>(*this) = other;
     beam_width = other.beam_width;
     beam_height = other.beam_height;
     bearings = other.bearings;
-    speed_of_sound = other.speed_of_sound;
     bin_count = other.bin_count;
     beam_count = other.beam_count;
     bins.resize(other.bins.size());

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "types/Angle.hpp"
+#include "types/RangeBins.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::types {
@@ -11,21 +12,19 @@ namespace insonify::types {
 /** One ping, field for field Rock's base::samples::Sonar.
  *
  *  Beam-first: the echo of beam b in bin k is bins[b * bin_count + k]. Bin k covers slant ranges [k, k + 1) *
- *  bin_duration * speed_of_sound: bin_duration is one-way time.
+ *  binWidth(), see RangeBins: bin_duration is one-way time, in whole microseconds.
  *
  *  The functions are those of Rock's type, with the corrections that are noted at each function. */
-struct Sonar {
+struct Sonar : RangeBins {
     static constexpr const char* type_name = "/base/samples/Sonar";
     static constexpr bool shared = true;   ///< Travels by reference, see Carried.
     static constexpr bool counted = true;  ///< Runs are limited by the number of pings, and their speed is in pings.
 
     Time time;
     std::vector<Time> timestamps;
-    Time bin_duration;
     Angle beam_width;
     Angle beam_height;
     std::vector<Angle> bearings;
-    float speed_of_sound = 1497.0f;
     uint32_t bin_count = 0;
     uint32_t beam_count = 0;
     std::vector<float> bins;
@@ -56,8 +55,6 @@ struct Sonar {
     /** Returns the begin of a beam's acquisition: its own stamp, or `time`. Throws std::out_of_range where Rock reads
      *  out of bounds. */
     Time beamStart(size_t beam) const;
-    /** Returns the slant range at which bin k starts [m]; k = bin_count gives the far edge. */
-    double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
 
     /** Calls `visit` for the stamps other than `time`. */
     void forEachStamp(auto&& visit) {
@@ -70,7 +67,7 @@ struct Sonar {
         visit({"beam_width", "rad", "opening of one beam across the fan"}, self.beam_width);
         visit({"beam_height", "rad", "opening of one beam along the device's z axis"}, self.beam_height);
         visit({"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
-        visit({"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        describeSpeed(self, visit);
         visit({"bin_count", "1", "bins per beam"}, self.bin_count);
         visit({"beam_count", "1", "beams"}, self.beam_count);
         visit({"bins", "1", "linear echo strength, beam-first; NaN when unknown"}, self.bins);

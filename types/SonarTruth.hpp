@@ -17,7 +17,7 @@ namespace insonify::types {
  *
  *  Beam-first as the ping's bins: the values of bin k of beam b are at [b * bin_count + k]. A bin without an echo has
  *  object -1, share 0, no hits, and NaN for its angles. */
-struct SonarTruth {
+struct SonarTruth : RangeBins {
     static constexpr const char* type_name = "/insonify/SonarTruth";
     static constexpr bool shared = true;  ///< Travels by reference, see Carried.
 
@@ -25,8 +25,6 @@ struct SonarTruth {
     static constexpr uint8_t through_wall = 4, rung = 5, water = 6;
 
     Time time;
-    Time bin_duration;
-    float speed_of_sound = 1497.0f;
     uint32_t bin_count = 0;
     uint32_t beam_count = 0;
     std::vector<Angle> bearings;
@@ -39,8 +37,6 @@ struct SonarTruth {
     std::vector<uint8_t> path;
     std::vector<uint8_t> shadow;
 
-    /** Returns the slant range at which bin k starts [m]; k = bin_count gives the far edge. */
-    double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
     std::vector<size_t> shape() const { return {beam_count, bin_count}; }
     /** Returns whether most of a bin's energy arrived by the water surface or another mirror. */
     bool isByMirror(size_t bin) const { return path[bin] != 0 && path[bin] < through_wall; }
@@ -63,7 +59,7 @@ struct SonarTruth {
     static void describe(auto& self, auto& visit) {
         visit({"time", "us", "when the ping was true in the world"}, self.time);
         visit({"bin_duration", "us", "one-way travel time through one bin"}, self.bin_duration);
-        visit({"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        describeSpeed(self, visit);
         visit({"bin_count", "1", "bins per beam"}, self.bin_count);
         visit({"beam_count", "1", "beams"}, self.beam_count);
         visit({"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
@@ -84,8 +80,7 @@ using SonarTruthPtr = std::shared_ptr<const SonarTruth>;
 
 inline void SonarTruth::takeGrid(const Sonar& ping) {
     time = ping.time;
-    bin_duration = ping.bin_duration;
-    speed_of_sound = ping.speed_of_sound;
+    static_cast<RangeBins&>(*this) = ping;
     bin_count = ping.bin_count;
     beam_count = ping.beam_count;
     bearings = ping.bearings;

@@ -16,7 +16,7 @@ class Annotator {
 public:
     Annotator(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
               const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-              output::BinScale scale, double bin_width, std::span<const float> ranges)
+              output::BinScale scale, std::span<const float> ranges)
         : ping_(ping),
           truth_(truth),
           picture_(picture),
@@ -25,7 +25,7 @@ public:
           first_shadow_(static_cast<int32_t>(truth.objects.size())),
           config_(config),
           decibel_(scale == output::BinScale::Decibel),
-          bin_width_(bin_width),
+          bin_width_(ping.binWidth()),
           ranges_(ranges) {
         if (truth.beam_count != ping.beam_count || truth.bin_count != ping.bin_count)
             throw std::runtime_error("a ping has other beams or bins than its truth");
@@ -266,8 +266,8 @@ private:
 
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
                    const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-                   output::BinScale scale, double bin_width, std::span<const float> ranges) {
-    return Annotator(ping, truth, picture, classes, instances, config, scale, bin_width, ranges).annotated();
+                   output::BinScale scale, std::span<const float> ranges) {
+    return Annotator(ping, truth, picture, classes, instances, config, scale, ranges).annotated();
 }
 
 }  // namespace insonify::dataset

@@ -47,12 +47,11 @@ struct Annotated {
  *  A bin with most of its energy from mirrors belongs to no object: adjacent cells of such bins are a ghost.
  *  Annotations with fewer than `min_pixels` pixels are omitted.
  *  @param picture the picture that shows the ping
- *  @param bin_width exact [m]
  *  @param ranges range of each beam of a range image, which has one bin per beam [m]
  *
  *  Throws std::runtime_error for a truth of another grid. */
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
                    const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-                   output::BinScale scale, double bin_width, std::span<const float> ranges = {});
+                   output::BinScale scale, std::span<const float> ranges = {});
 
 }  // namespace insonify::dataset

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "components/log/NpzFile.hpp"
+#include "components/log/SampleMetadata.hpp"
 #include "components/log/Writer.hpp"
 #include "components/output/PictureFiles.hpp"
 
@@ -36,12 +37,12 @@ Json toJson(const Annotation& annotation, const Classes& classes, const output::
             {"segmentation", {{"size", {picture.height(), picture.width()}}, {"counts", annotation.runs}}}};
 }
 
-Json toJson(const Run& run, double bin_width, const types::BeamArc& arc) {
+Json toJson(const Run& run, const types::BeamArc& arc) {
     const types::Sonar& ping = run.ping();
     return {{"lines", run.size()},
             {"beams", ping.beam_count / run.size()},
             {"bins", ping.bin_count},
-            {"range_m", ping.bin_count * bin_width},
+            {"range_m", ping.bin_count * ping.binWidth()},
             {"bearing_rad", {arc.bearings.front(), arc.bearings.back()}},
             {"speed_of_sound_m_s", ping.speed_of_sound}};
 }
@@ -113,7 +114,7 @@ void writeNpz(const fs::path& file, const Recorded& recorded, const std::string&
     if (lines > 1) shape.insert(shape.begin(), lines);
     std::vector<double> bearings, ranges;
     for (uint32_t beam = 0; beam < beams; ++beam) bearings.push_back(ping.bearings[beam].rad);
-    for (uint32_t k = 0; k < ping.bin_count; ++k) ranges.push_back((k + 0.5) * recorded.bin_width);
+    for (uint32_t k = 0; k < ping.bin_count; ++k) ranges.push_back((k + 0.5) * ping.binWidth());
     log::NpzFile npz(file);
     npz.array("bins", shape, ping.bins);
     npz.array("bearings", {bearings.size()}, bearings);
@@ -133,8 +134,11 @@ void writeMcap(const fs::path& file, const Recorded& recorded) {
     const fs::path bag = file.string() + ".bag", inside = bag / "sample.mcap";  // a description is written next to it
     fs::create_directory(bag);
     const auto log = log::createLog(inside);
-    const size_t ping = log->addStream<types::Sonar>("sonar.ping");
-    const size_t truth = log->addStream<types::SonarTruth>("sonar.truth");
+    log::Metadata metadata;
+    log::addSampleMetadata(recorded.run.pings()[0].get(), metadata);
+    const size_t ping = log->addStream<types::Sonar>("sonar.ping", metadata);
+    log::addSampleMetadata(recorded.run.truths()[0].get(), metadata);
+    const size_t truth = log->addStream<types::SonarTruth>("sonar.truth", metadata);
     const size_t pose = log->addStream<types::Pose>("vehicle.pose");
     if (recorded.range_image) {
         const types::Time time = recorded.run.pings()[0]->time;
@@ -169,18 +173,18 @@ Annotated SampleFiles::annotatedOf(const Recorded& recorded) {
     const types::Sonar& ping = recorded.run.ping();
     if (sweep_.picture.shape == output::PlainShape::Range) {
         const types::DepthMap& image = *recorded.range_image;
-        picture_.take(image, ping.bin_count * recorded.bin_width);
+        picture_.take(image, ping.bin_count * ping.binWidth());
         types::Sonar cells;
         cells.bin_count = 1;
         cells.beam_count = recorded.range_truth->beam_count;
         cells.bearings = recorded.range_truth->bearings;
         cells.bins = image.remissions;
         return annotate(cells, *recorded.range_truth, picture_, classes_, recorded.instances, sweep_.annotations,
-                        output::BinScale::Linear, recorded.bin_width, image.distances);
+                        output::BinScale::Linear, image.distances);
     }
     picture_.take(ping);
     return annotate(ping, recorded.run.truth(), picture_, classes_, recorded.instances, sweep_.annotations,
-                    sweep_.picture.scale, recorded.bin_width);
+                    sweep_.picture.scale);
 }
 
 Json SampleFiles::recordOf(const Recorded& recorded, const Annotated& annotated) const {
@@ -194,7 +198,7 @@ Json SampleFiles::recordOf(const Recorded& recorded, const Annotated& annotated)
                 {"settings", Json::object()},
                 {"pose", toJson(sample.run.front().at)},
                 {"objects", Json::array()},
-                {"ping", toJson(recorded.run, recorded.bin_width, picture_.arc())},
+                {"ping", toJson(recorded.run, picture_.arc())},
                 {"picture",
                  {{"width", picture_.width()},
                   {"height", picture_.height()},

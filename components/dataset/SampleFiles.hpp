@@ -16,7 +16,6 @@ struct Recorded {
     const Sample& sample;
     const Run& run;
     const Instances& instances;
-    double bin_width;                                      ///< Exact [m].
     std::string scene;                                     ///< File name of the scene.
     std::vector<std::pair<std::string, Json>> settings{};  ///< "task.property", value.
     types::DepthMapPtr range_image{};                      ///< The range image of a 3-D sonar, else null.

@@ -9,6 +9,7 @@
 
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/Tasks.hpp"
+#include "components/log/SampleMetadata.hpp"
 #include "components/log/Writer.hpp"
 #include "components/logger/PropertyLog.hpp"
 #include "types/ConfigError.hpp"
@@ -44,7 +45,11 @@ public:
     template <class T>
     void write(const std::string& stream, const T& sample, const log::Metadata& more = {}) {
         const auto [found, is_new] = streams_.try_emplace(stream);
-        if (is_new) found->second = log_->addStream<T>(stream, metadataOf(stream, more));
+        if (is_new) {
+            log::Metadata metadata = metadataOf(stream, more);
+            log::addSampleMetadata(&sample, metadata);
+            found->second = log_->addStream<T>(stream, metadata);
+        }
         log_->write(found->second, sample.time, sample);
     }
     void close();

@@ -11,6 +11,7 @@
 #include <ranges>
 
 #include "components/deployer/Export.hpp"
+#include "components/log/SampleMetadata.hpp"
 #include "components/output/Canvas.hpp"
 #include "components/output/DiscImage.hpp"
 #include "components/output/FanImage.hpp"
@@ -22,12 +23,21 @@ namespace {
 
 constexpr double same_bearing = 1e-6;  ///< [rad]
 
-bool sameShape(const types::Sonar& a, const types::Sonar& b) {
+/** Whether two logs have bins of one width, as far as they state it. In logs of older versions, bins that are not whole
+ *  microseconds have the width of their rounded duration.
+ *  @param is_stated whether both logs are of one kind */
+bool sameBins(const types::Sonar& a, const types::Sonar& b, bool is_stated) {
+    constexpr double same_width = 1e-6;  // ranges of messages are floats
+    if (!is_stated && a.bin_duration == b.bin_duration) return true;
+    return a.sameBins(b) || std::abs(a.binWidth() / b.binWidth() - 1) < same_width;
+}
+
+bool sameShape(const types::Sonar& a, const types::Sonar& b, bool is_stated) {
     const auto near = [](types::Angle x, types::Angle y) {
         return std::abs(types::Angle::fromRad(x.rad - y.rad).rad) < same_bearing;
     };
-    return a.beam_count == b.beam_count && a.bin_count == b.bin_count && a.bin_duration == b.bin_duration &&
-           a.speed_of_sound == b.speed_of_sound && a.bins.size() == b.bins.size() &&
+    return a.beam_count == b.beam_count && a.bin_count == b.bin_count && a.bins.size() == b.bins.size() &&
+           sameBins(a, b, is_stated) &&
            std::ranges::equal(a.bearings, b.bearings, near);
 }
 
@@ -39,6 +49,11 @@ std::vector<float> energies(const types::Sonar& ping, output::BinScale scale) {
         if (std::isnan(bin)) bin = 0;
     }
     return result;
+}
+
+/** Whether a log states the exact width of a stream's bins. */
+bool statesBins(const log::Reader& log, const std::string& stream) {
+    return !log.streams()[log.indexOf(stream)].metadatum(log::bin_width_key).empty();
 }
 
 /** Returns the samples of a stream by time; of equal times the first. */
@@ -67,6 +82,7 @@ PingScore scoreOf(const types::Sonar& recorded, const types::Sonar& rendered, co
 StreamScore score(log::Reader& recorded, log::Reader& rendered, const std::string& stream) {
     StreamScore result;
     result.stream = stream;
+    const bool is_stated = statesBins(recorded, stream) == statesBins(rendered, stream);
     auto others = byTime(rendered, stream);
     types::Sonar before, after;
     for (const auto& [time, at] : byTime(recorded, stream)) {
@@ -77,7 +93,7 @@ StreamScore score(log::Reader& recorded, log::Reader& rendered, const std::strin
         }
         recorded.read(at, before);
         rendered.read(other->second, after);
-        if (!sameShape(before, after) || before.bins.empty()) {
+        if (!sameShape(before, after, is_stated) || before.bins.empty()) {
             ++result.other_shape;
         } else {
             if (result.pings.empty()) {

@@ -72,10 +72,6 @@ std::set<std::string> tasksThatLeadToPings(const framework::Deployment& deployme
     return upstreamOf(std::move(names), deployment);
 }
 
-double binWidthOf(const PingReader& reader, const types::Sonar& ping) {
-    return reader.sonar ? sonar::makeBinGrid(reader.sonar->sonarConfig()).bin_width : ping.binStart(1);
-}
-
 void throwAny(const std::vector<std::string>& failures) {
     if (!failures.empty()) throw std::runtime_error(failures.front());
 }
@@ -192,7 +188,6 @@ void Simulation::connectReaders(bool truth) {
             throw types::ConfigError(deployment_->spec().file, port->path(),
                                      "is not from a sonar that writes its truth");
         reported->connectTo(reader.truth, framework::ConnPolicy::buffer(4));
-        reader.sonar = dynamic_cast<const sonar::TriggeredTask*>(&reported->owner());
         if (framework::OutputPortBase* const image = reported->owner().output("range_image")) {
             image->connectTo(reader.range_image, framework::ConnPolicy::buffer(4));
             reported->owner().output("range_truth")->connectTo(reader.range_truth, framework::ConnPolicy::buffer(4));
@@ -255,7 +250,6 @@ std::vector<SteppedPing> Simulation::step(std::map<std::string, types::Pose> at,
         readers_[i]->truth.readNewest(made[i].truth, false);
         readers_[i]->range_image.readNewest(made[i].range_image, false);
         readers_[i]->range_truth.readNewest(made[i].range_truth, false);
-        if (made[i].ping && made[i].truth) made[i].bin_width = binWidthOf(*readers_[i], *made[i].ping);
     }
     return made;
 }

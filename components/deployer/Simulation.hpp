@@ -32,7 +32,6 @@ struct SteppedPing {
     types::SonarTruthPtr truth;        ///< Null if truth is off.
     types::DepthMapPtr range_image;    ///< With truth, from a 3-D sonar; null from other sonars.
     types::SonarTruthPtr range_truth;  ///< The truth of each cell of the range image, one bin per cell.
-    double bin_width = 0;              ///< Exact, where `bin_duration` of the ping is rounded; 0 without truth [m].
 };
 
 /** A deployment that advances one step per pose that the caller gives.

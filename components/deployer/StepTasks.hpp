@@ -66,7 +66,6 @@ struct PingReader : framework::TaskContext {
                                                          framework::Need::Optional};
     framework::InputPort<types::SonarTruthPtr> range_truth{this, "range_truth", "what that shows",
                                                            framework::Need::Optional};
-    const sonar::TriggeredTask* sonar = nullptr;  ///< The source of the truth; null for tasks of other libraries.
 };
 
 }  // namespace insonify::deployer

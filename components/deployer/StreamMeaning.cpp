@@ -81,7 +81,9 @@ Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
             {"range_m", "slant range of the middle of each bin, [pings, bins]"},
             {"bin_duration",
              "one-way travel time through one bin [s], as Rock defines it: bin k covers slant ranges "
-             "[k, k + 1) * bin_duration * speed_of_sound"},
+             "[k, k + 1) * bin_duration * speed_of_sound. In logs it is in whole microseconds; where bins are not, the "
+             "samples' speed_of_sound makes up for it, and insonify_speed_of_sound in the stream's metadata is the "
+             "water's"},
             {"frame", "sonar: x ahead, y to port, z up; bearings from ahead, positive to port [rad]"},
             {"mount", property(scene, {"mount"})},
             {"quaternion_order", quaternion_order}};

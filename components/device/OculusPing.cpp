@@ -72,9 +72,7 @@ types::Sonar sonarOf(const OculusPing& ping, types::Time time) {
     types::Sonar sonar;
     sonar.time = time;
     constexpr double usual_speed = 1500;  // [m/s]
-    sonar.speed_of_sound = static_cast<float>(ping.speed_of_sound > 0 ? ping.speed_of_sound : usual_speed);
-    const double us = 1e6 * ping.range_resolution / static_cast<double>(sonar.speed_of_sound);
-    sonar.bin_duration = {std::max<int64_t>(1, std::llround(us))};
+    sonar.setBins(ping.range_resolution, ping.speed_of_sound > 0 ? ping.speed_of_sound : usual_speed);
     sonar.bin_count = ping.bin_count;
     sonar.beam_count = ping.beamCount();
     sonar.bins.reserve(ping.codes.size());

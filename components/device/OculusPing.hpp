@@ -30,8 +30,8 @@ struct OculusPing {
 OculusPing pingOf(const OculusResult& result);
 
 /** Returns the ping as a receiver's output: codes as bins, divided by the root of their row's gain; beams from
- *  starboard to port, as in simulated fans. bin_duration is the nearest whole microsecond, at least 1. If the ping has
- *  no speed of sound, it is 1500 m/s, so that ranges are right. */
+ *  starboard to port, as in simulated fans. Bins have the ping's range resolution, see types::RangeBins. If
+ *  the ping has no speed of sound, it is 1500 m/s. */
 types::Sonar sonarOf(const OculusPing& ping, types::Time time);
 
 /** Returns every ping in these bytes, in order. The bytes are network messages with anything between them, as in

@@ -82,7 +82,7 @@ void writeRun(Reader& log, const Run& run, NpzFile& npz, Sonar ping) {
         npz.append(ping.bins.data(), ping.bins.size() * sizeof(float));
         for (const types::Angle& bearing : ping.bearings) bearings.push_back(bearing.rad);
         time.push_back(ping.time.seconds());
-        bin_duration.push_back(ping.bin_duration.seconds());
+        bin_duration.push_back(ping.binSeconds());
         speed_of_sound.push_back(static_cast<double>(ping.speed_of_sound));
         for (uint32_t k = 0; k < ping.bin_count; ++k) range.push_back(static_cast<float>(ping.binStart(k + 0.5)));
     }

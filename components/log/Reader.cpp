@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "components/log/SampleMetadata.hpp"
 #include "components/log/TypeNames.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
@@ -38,6 +39,7 @@ std::string Reader::metadatum(const std::string& key) const {
 
 void Reader::readInto(const SampleRef& at, types::SampleRoom room) try {
     decode(at, room);
+    restoreBins(streams_[at.stream].metadata, room);
 } catch (const types::ConfigError&) {
     throw;
 } catch (const std::runtime_error& error) {

@@ -9,33 +9,12 @@
 
 #include "components/framework/MayLose.hpp"
 #include "components/framework/Upstream.hpp"
+#include "components/log/SampleMetadata.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::logger {
 
 namespace {
-
-/** Returns a text in quotes, as in JSON. */
-std::string quoted(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text)
-        if (c == '"' || c == '\\')
-            result += {'\\', c};
-        else
-            result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    return result + '"';
-}
-
-/** Adds what the first sample of a stream states for all of its samples. */
-template <class T>
-log::Metadata withNames(log::Metadata metadata, const T& sample) {
-    if constexpr (types::NamesObjects<T>) {
-        std::string names;
-        for (const std::string& name : sample.objects) names += (names.empty() ? "" : ", ") + quoted(name);
-        metadata["insonify_objects"] = "[" + names + "]";
-    }
-    return metadata;
-}
 
 template <class Input>
 constexpr size_t sampleOf(const Input&) {
@@ -76,24 +55,6 @@ std::vector<PropertyAlias> aliasesOf(const LoggerTask& logger, const std::vector
     }
     return aliases;
 }
-
-/** Returns a warning if the sonar of a port has bins of another length than its pings' whole microseconds of
- *  bin_duration, with the resulting error of a log's readers. Empty: no error, or unknown. */
-std::string roundingText(const framework::InputPortBase& port, const types::Sonar& ping) {
-    const auto rounding = framework::upstreamValue(port, {"range_rounding"});
-    const auto range = framework::upstreamNumber(port, {"range"});
-    const double us = static_cast<double>(ping.bin_duration.microseconds), bins = ping.bin_count;
-    if (rounding != types::PropertyValue(std::string("exact")) || !range || us <= 0) return "";
-    const double off = std::abs(*range / (us * 1e-6 * ping.speed_of_sound) - bins);
-    const bool is_stale = off * us > 0.5 * bins * 1.001 && us > 1;  // a driver has set another range
-    if (off < 1e-6 || is_stale) return "";
-    return fmt::format(
-        "{} has bins of {:g} us, one way, in whole microseconds; a reader of bin_duration is off by {:.3g} "
-        "bins at the far edge. With range_rounding: sample the sonar's bins are whole microseconds",
-        framework::streamNameOf(port.channels().front()->source()).path(), us, off);
-}
-
-std::string roundingText(const framework::InputPortBase& /*port*/, const auto& /*sample*/) { return ""; }
 
 }  // namespace
 
@@ -286,11 +247,10 @@ void LoggerTask::updateHook() {
         if (!config->record || environment().rehearsing) return input.port.clear();
         for (typename Input::Carried sample{}; input.port.readNew(sample);) {
             if (!input.kept.number) {
-                log::Metadata metadata = withNames(metadataOf(input), *types::carriedSample(sample));
+                log::Metadata metadata = metadataOf(input);
+                log::addSampleMetadata(types::carriedSample(sample), metadata);
                 thread_->declare(declaration(sampleOf(input), input.kept.name, std::move(metadata)));
                 input.kept.number = declared_++;
-                if (const std::string text = roundingText(input.port, *types::carriedSample(sample)); !text.empty())
-                    warn(text);
             }
             thread_->push(*input.kept.number, received, std::move(sample));
         }

@@ -32,17 +32,14 @@ void DiscImage::paint(const types::Sonar& ping, types::Image& picture) {
 }
 
 void DiscImage::skip(const types::Sonar& ping) {
-    const bool same_bins = disc_.bin_count == ping.bin_count && disc_.bin_duration == ping.bin_duration &&
-                           disc_.speed_of_sound == ping.speed_of_sound && !disc_.bearings.empty();
-    if (!same_bins) clear(ping);
+    if (disc_.bin_count != ping.bin_count || !disc_.sameBins(ping) || disc_.bearings.empty()) clear(ping);
     disc_.time = ping.time;
     arc_.take(ping);
     for (size_t place = 0; place < arc_.beams.size(); ++place) overwrite(ping, place);
 }
 
 void DiscImage::clear(const types::Sonar& ping) {
-    disc_.bin_duration = ping.bin_duration;
-    disc_.speed_of_sound = ping.speed_of_sound;
+    static_cast<types::RangeBins&>(disc_) = ping;
     disc_.bin_count = ping.bin_count;
     disc_.beam_count = sectors;
     disc_.beam_width.rad = sector_width;

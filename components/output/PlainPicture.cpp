@@ -37,7 +37,8 @@ bool isToPort(const types::Angle& bearing) { return bearing.rad >= 0; }
 /** Returns the first of the lines that a ping contains one after the other. */
 types::Sonar firstLine(const types::Sonar& ping) {
     types::Sonar line;
-    line.bin_count = ping.bin_count, line.bin_duration = ping.bin_duration, line.speed_of_sound = ping.speed_of_sound;
+    static_cast<types::RangeBins&>(line) = ping;
+    line.bin_count = ping.bin_count;
     line.beam_width = ping.beam_width;
     line.beam_count = ping.beam_count > 1 && isToPort(ping.bearings[0]) != isToPort(ping.bearings[1]) ? 2 : 1;
     line.bearings.assign(ping.bearings.begin(), ping.bearings.begin() + line.beam_count);

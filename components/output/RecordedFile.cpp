@@ -32,17 +32,12 @@ std::vector<char> RecordedFile::take(uint64_t at, size_t size) {
 }
 
 void RecordedFile::setResolution(double resolution, double speed_of_sound, types::Sonar& ping) {
-    constexpr double same = 1e-6;  // for ranges that are floats
-    const double duration_us = resolution / speed_of_sound * 1e6;
-    ping.bin_duration = {std::max<int64_t>(1, std::llround(duration_us))};
-    const double whole_us = static_cast<double>(ping.bin_duration.microseconds);
-    const bool is_whole = std::abs(whole_us / duration_us - 1) < same;
-    ping.speed_of_sound = static_cast<float>(is_whole ? speed_of_sound : resolution / whole_us * 1e6);
-    if (!is_whole && rounding_.empty())
+    ping.setBins(resolution, speed_of_sound);
+    if (ping.bin_width > 0 && rounding_.empty())
         rounding_ = fmt::format(
-            "bins are {:.2f} us long, one way, but logs have whole microseconds: with {} us and a speed of sound of "
-            "{:.2f} m/s instead of {:g} m/s their ranges are right",
-            duration_us, ping.bin_duration.microseconds, ping.speed_of_sound, speed_of_sound);
+            "bins are {:.2f} us long, one way, but samples in logs have whole microseconds: with {} us and a speed of "
+            "sound of {:.2f} m/s instead of {:g} m/s their ranges are right",
+            1e6 * ping.binSeconds(), ping.bin_duration.microseconds, ping.writtenSpeed(), speed_of_sound);
 }
 
 types::Pose RecordedFile::placed(types::Time time, const std::optional<Stated>& stated) {

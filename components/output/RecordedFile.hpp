@@ -26,8 +26,7 @@ T field(std::span<const char> bytes, size_t at) {
 
 /** Reads the file of another program or device packet by packet: bytes, places of damage, poses and ranges.
  *
- *  Bins keep their slant ranges. If a sample's duration is not a whole number of microseconds, the ping's speed of
- *  sound differs from the file's. Poses are the sonar's, in metres from LocalOrigin. */
+ *  Bins keep their slant ranges, see types::RangeBins. Poses are the sonar's, in metres from LocalOrigin. */
 class RecordedFile {
 public:
     virtual ~RecordedFile() = default;
@@ -70,7 +69,7 @@ protected:
         next_ = at_ + bytes;
         return take(at_, static_cast<size_t>(bytes));
     }
-    /** Sets the bins' duration and the speed of sound, so that a bin has this length [m]. */
+    /** Sets bins of this length [m]; notes if logs contain another speed of sound for it [m/s]. */
     void setResolution(double resolution, double speed_of_sound, types::Sonar& ping);
     /** Returns the pose in the world; unknown if it is not stated or not on the earth. */
     types::Pose placed(types::Time time, const std::optional<Stated>& stated);

@@ -56,7 +56,7 @@ void read(const Message& message, Sample& sample) {
 void convert(const types::SonarTruth& truth, const std::string& frame_id, SonarTruth& message) {
     fill(truth, frame_id, message);
     message.bin_duration_us = truth.bin_duration.microseconds;
-    message.sound_speed = truth.speed_of_sound;
+    message.sound_speed = truth.writtenSpeed();
 }
 
 void convert(const types::SonarReturns& returns, const std::string& frame_id, SonarReturns& message) {

@@ -79,7 +79,8 @@ void convert(const types::Sonar& ping, const SonarOptions& options, ProjectedSon
 void convert(const types::Sonar& ping, const SonarOptions& options, RawSonarImage& message) {
     fillHeader(ping, options, message.header);
     fillInfo(ping, options, message.ping_info);
-    message.sample_rate = static_cast<float>(1 / (2 * ping.bin_duration.seconds()));
+    if (!(ping.binSeconds() > 0)) throw std::invalid_argument("bins without a duration have no sample rate");
+    message.sample_rate = static_cast<float>(1 / (2 * ping.binSeconds()));
     message.samples_per_beam = ping.bin_count;
     message.sample0 = 0;
     fillDelays(ping, message.tx_delays);
@@ -191,13 +192,15 @@ double binWidth(const std::vector<float>& ranges) {
     return width;
 }
 
-types::Time binDuration(const ProjectedSonarImage& message) {
+void readRanges(const ProjectedSonarImage& message, types::Sonar& ping) {
     const double speed = static_cast<double>(message.ping_info.sound_speed);
-    if (message.ranges.empty()) return {};
+    static_cast<types::RangeBins&>(ping) = {};
+    ping.speed_of_sound = message.ping_info.sound_speed;
+    if (message.ranges.empty()) return;
     if (!(speed > 0) || !std::isfinite(speed)) refuse("a speed of sound of " + std::to_string(speed) + " m/s");
-    const double seconds = binWidth(message.ranges) / speed;
-    if (!(seconds >= 0.5e-6 && seconds < 1e6)) refuse("bins of " + std::to_string(seconds) + " s");
-    return types::Time::fromSeconds(seconds);
+    const double width = binWidth(message.ranges), seconds = width / speed;
+    if (!(seconds >= 1e-9 && seconds < 1e6)) refuse("bins of " + std::to_string(seconds) + " s");
+    ping.setBins(width, speed);
 }
 
 double bearingOf(const Vector3& direction, SensorFrame frame) {
@@ -244,8 +247,7 @@ void convert(const ProjectedSonarImage& message, const ImageLayout& layout, type
     checkShape(message);
     ping.time = fromRos(message.header.stamp);
     ping.timestamps.clear();
-    ping.bin_duration = binDuration(message);
-    ping.speed_of_sound = message.ping_info.sound_speed;
+    readRanges(message, ping);
     ping.beam_height = widthOf(message.ping_info.tx_beamwidths);
     ping.beam_width = widthOf(message.ping_info.rx_beamwidths);
     ping.beam_count = message.image.beam_count;

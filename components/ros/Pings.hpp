@@ -39,9 +39,8 @@ struct ImageLayout {
     SensorFrame frame = SensorFrame::ZForward;
 };
 
-/** Reads the ping of an image. Float bins are taken unchanged; integers are divided by their max value. bin_duration,
- *  one way, is rounded from the ranges and the speed of sound to whole microseconds. Times are truncated to
- *  microseconds. Throws std::invalid_argument with a diagnostic for: lists of unequal lengths, types other than uint8,
+/** Reads the ping of an image. Float bins are taken unchanged; integers are divided by their max value. Bins have
+ *  the width of the ranges, see types::RangeBins. Times are truncated to microseconds. Throws std::invalid_argument with a diagnostic for: lists of unequal lengths, types other than uint8,
  *  uint16, uint32, float32 and float64, big-endian numbers, no speed of sound, and ranges that are not the centres of
  *  equal bins from 0 on. */
 void convert(const ProjectedSonarImage& message, const ImageLayout& layout, types::Sonar& ping);

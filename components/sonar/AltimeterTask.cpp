@@ -12,9 +12,9 @@ void AltimeterTask::writeMore(const types::Sonar& sample, const types::Pose& /*s
     if (!range.connected()) return;
     types::Range reported;
     reported.time = sample.time;
-    if (const auto found = Detector(config->detection, sample, binWidth()).first(0)) reported.range = found->range;
+    if (const auto found = Detector(config->detection, sample).first(0)) reported.range = found->range;
     reported.range_min = config->sonar.range_min;
-    reported.range_max = binWidth() * sample.bin_count;
+    reported.range_max = sample.binWidth() * sample.bin_count;
     reported.field_of_view = sample.beam_width;
     range.write(reported);
 }

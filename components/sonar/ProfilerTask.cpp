@@ -10,7 +10,7 @@ void ProfilerTask::writeMore(const types::Sonar& sample, const types::Pose& sona
     cloud->clear();
     cloud->reserve(sample.beam_count);
     cloud->time = sample.time;
-    const Detector detector(config->detection, sample, binWidth());
+    const Detector detector(config->detection, sample);
     for (uint32_t beam = 0; beam < sample.beam_count; ++beam)
         if (const auto found = detector.strongest(beam)) {
             const double bearing = sample.bearings[beam].rad;

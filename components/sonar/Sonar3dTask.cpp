@@ -116,8 +116,7 @@ void Sonar3dTask::shape(types::Sonar& sample) {
     const auto columns = static_cast<size_t>(across.beam_count), rows = static_cast<size_t>(up.beam_count);
     sample.time = fan_.time;
     sample.timestamps.clear();
-    sample.bin_duration = fan_.bin_duration;
-    sample.speed_of_sound = fan_.speed_of_sound;
+    static_cast<types::RangeBins&>(sample) = fan_;
     sample.bin_count = fan_.bin_count;
     sample.beam_count = static_cast<uint32_t>(columns);
     sample.beam_width = types::Angle::fromDeg(config->beamWidthDeg());
@@ -145,7 +144,7 @@ void Sonar3dTask::addTo(types::Sonar& sample, int column) const {
 }
 
 void Sonar3dTask::detect(int column, bool with_truth) {
-    const Detector detector(config->detection, fan_, binWidth());
+    const Detector detector(config->detection, fan_);
     const size_t from_left = map_.horizontal_size - 1 - static_cast<size_t>(column);
     for (uint32_t beam = 0; beam < fan_.beam_count; ++beam)
         if (const auto found = detector.strongest(beam)) {

@@ -132,6 +132,7 @@ void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::So
     ping.time = snapshot.time;
     ping.timestamps.clear();
     ping.bin_duration.microseconds = plan.grid.bin_duration_us;
+    ping.bin_width = plan.config.range_rounding == RangeRounding::Exact ? plan.grid.bin_width : 0;
     ping.beam_width = types::Angle::fromDeg(plan.config.beamWidthDeg());
     ping.beam_height = types::Angle::fromDeg(plan.config.beam_height_deg);
     ping.bearings.resize(plan.beams.size());

@@ -52,7 +52,6 @@ protected:
     /** Returns whether the sonar moved faster than a tenth of the speed of sound since the snapshot before. */
     bool jumped() const { return jumped_; }
     const BinGrid& grid() const { return grid_; }
-    double binWidth() const { return grid_.bin_width; }  ///< Exact; `bin_duration` of a ping is rounded [m].
     double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
     /** Returns the shortest time between two snapshots so far [s]; infinite before the second. */
     double shortestPeriod() const { return shortest_; }

@@ -21,6 +21,7 @@ constexpr double bin_width = 0.0213;  // [m]; differs from the ping's rounded du
 struct AnnotateTest : ::testing::Test {
     AnnotateTest() {
         ping_ = test::emptyPing(120, beams, bins);
+        ping_.bin_width = bin_width;
         std::ranges::fill(ping_.bins, 0.01f);
         truth_.beam_count = beams, truth_.bin_count = bins;
         truth_.objects = {"floor", "rock", "pile"};
@@ -50,7 +51,7 @@ struct AnnotateTest : ::testing::Test {
         std::vector<Lineage> lineages = lineages_;
         for (size_t i = lineages.size(); i < truth_.objects.size(); ++i) lineages.push_back({truth_.objects[i]});
         const Instances instances(classes, lineages);
-        return annotate(ping_, truth_, *shown_, classes, instances, config_, picture_.scale, bin_width);
+        return annotate(ping_, truth_, *shown_, classes, instances, config_, picture_.scale);
     }
     /** Whether a box contains the pixel of a bin. */
     bool holds(const Box& box, uint32_t beam, uint32_t bin) const {
@@ -270,7 +271,7 @@ TEST_F(AnnotateTest, ObjectsBeyondTheFilesAreOfNoClass) {
     const Instances instances(classes, lineages_);
     shown_.emplace(picture_);
     shown_->take(ping_);
-    const Annotated all = annotate(ping_, truth_, *shown_, classes, instances, config_, picture_.scale, bin_width);
+    const Annotated all = annotate(ping_, truth_, *shown_, classes, instances, config_, picture_.scale);
     ASSERT_THAT(all.annotations, SizeIs(1));
     EXPECT_EQ(all.annotations[0].name, "rock");
 }

@@ -80,19 +80,22 @@ TEST_F(LogMeaningTest, TextOfManyBinsIsAnnouncedWithItsSize) {
     EXPECT_THAT(large.err, HasSubstr("notice: x.csv gets a line for each bin, some 3 million, 0.1 GB"));
 }
 
-TEST(LogRoundingTest, WarnsWhenLoggedBinsAreNotWholeMicroseconds) {
-    const std::vector<std::string> exact = {"--pings",         "2", "--set", "sonar.range_rounding=exact", "--set",
-                                            "sonar.range=19.9"};
+TEST(LogRoundingTest, LoggedBinsThatAreNotWholeMicrosecondsHaveExactRanges) {
     const WallFolder logged;
-    EXPECT_THAT(logged.run(exact).err, HasSubstr("a reader of bin_duration is off by 0.0629 bins"));
-    std::string text =
-        replaced(wall_deployment, "  log:\n    type: logger::LoggerTask\n    properties: {file: wall.0.log}\n", "");
-    for (const char* name : {"clean", "noisy", "pose"}) {
-        const size_t end = text.find(std::string("log.") + name), begin = text.rfind('\n', end);
-        text.erase(begin, text.find('\n', end) - begin);
-    }
-    const WallFolder unlogged(text);
-    const Outcome outcome = unlogged.run(exact);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome = logged.run({"--pings", "2", "--set", "sonar.range_rounding=exact", "--set",
+                                        "sonar.range=20", "--set", "sonar.bin_count=4000"});
+    EXPECT_THAT(outcome, succeeds());
     EXPECT_THAT(outcome.err, Not(HasSubstr("bin_duration")));
+    const auto info = json::parse(callInsonify(logged, {"log", "info", "out/wall.0.log", "--metadata", "--json"}).out);
+    EXPECT_EQ(info["metadata"]["sonar.ping"]["metadata"]["insonify_bin_width"], "0.005");
+    ASSERT_THAT(
+        callInsonify(logged, {"log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "x.npz"}),
+        succeeds());
+    const Outcome ranges = python(logged, R"(import numpy
+d = numpy.load('x.npz')
+first = [numpy.flatnonzero(beam)[0] for beam in d['bins'][0]]
+print(all(abs(d['range_m'][0][first] * numpy.cos(d['bearings'][0]) - 10) < 0.35))
+print(abs(d['range_m'][0][first].min() - 10) <= 0.0025 + 0.04, abs(d['range_m'][0][-1] - 19.9975) < 1e-5)
+print(abs(d['bin_duration'][0] * d['speed_of_sound'][0] - 0.005) < 1e-12))");
+    EXPECT_EQ(ranges.out, "True\nTrue True\nTrue\n") << ranges.err;
 }

@@ -192,6 +192,35 @@ TEST_F(ReplayScoreTest, TakesSettingsOfTheRunFromTheLogsProperties) {
     EXPECT_THAT(other.err, HasSubstr("as in the log: sonar.speed_of_sound=1480\n"));
 }
 
+TEST_F(ReplayScoreTest, ExactBinsAreComparedInLogsOfThisAndOlderVersions) {
+    for (const char* format : {"wall.0.log", "wall.mcap"}) {
+        record({"--pings", "3", "--set", "sonar.range_rounding=exact", "--set", "sonar.bin_count=3000", "--set",
+                std::string("log.file=") + format});
+        ASSERT_THAT(score(std::string("out/") + format), succeeds());
+        for (const auto& [name, stream] : streams()) expectSame(stream);
+    }
+    log::pocolog::Reader from(folder_ / "out/wall.0.log");
+    {
+        log::pocolog::Writer to(folder_ / "older.0.log");  // with the water's speed of sound, and no width
+        for (log::Stream stream : from.streams()) {
+            stream.metadata.erase("insonify_bin_width");
+            to.add(*stream.sample, stream.name, stream.metadata);
+        }
+        for (const log::SampleRef& at : from.samples()) {
+            if (from.streams()[at.stream].holds<types::Sonar>()) {
+                types::Sonar ping;
+                from.read(at, ping);
+                EXPECT_DOUBLE_EQ(ping.binWidth(), 20.0 / 3000);
+                ping.bin_width = 0;
+                to.write(at.stream, at.received, ping);
+            } else
+                to.put(at.stream, at.received, at.time, from.sampleAt(at));
+        }
+    }
+    ASSERT_THAT(score("older.0.log"), succeeds());
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+}
+
 TEST_F(ReplayScoreTest, AnErrorOfAValueFromTheLogNamesTheLog) {
     writeFile(folder_ / "other.gltf", readFile(folder_ / "wall.gltf"));
     record({"--pings", "3", "--set", "scene.file=other.gltf"});

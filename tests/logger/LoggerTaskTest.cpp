@@ -51,51 +51,26 @@ types::SonarPtr ping(int64_t time) {
     return sample;
 }
 
-/** The parts of a sonar that a logger reads. */
-struct Described {
-    double range = 50;
-    std::string range_rounding = "exact";
-    static void describe(auto& self, auto& visit) {
-        visit({"range", "m"}, self.range);
-        visit({"range_rounding"}, self.range_rounding);
-    }
-};
-struct DescribedSonar : framework::TaskContext {
-    explicit DescribedSonar(const Described& described) : TaskContext("sonar") {
-        config.set(described);
-        refreshRecord();
-    }
-    framework::Properties<Described> config{this};
-    framework::OutputPort<types::SonarPtr> ping{this, "ping", ""};
-};
-
-/** Returns a logger's warnings for pings of 1000 bins of 33 us. */
-std::vector<std::string> warningsOf(const Described& described) {
-    Bench bench;
-    DescribedSonar sonar(described);
-    std::vector<std::string> notices;
-    bench.task.environment().warn = [&](const std::string& text) { notices.push_back(text); };
-    sonar.ping.connectTo(*bench.task.makeInput("ping", sonar.ping), ConnPolicy::buffer(8));
-    EXPECT_TRUE(bench.task.configure() && bench.task.start());
-    auto sample = std::make_shared<types::Sonar>();
-    sample->bin_duration = {33};
-    sample->speed_of_sound = 1500;
-    sample->resize(1000, 1);
-    for (int i = 0; i < 2; ++i) {
-        sonar.ping.write(sample);
+TEST(LoggerTaskTest, StreamsStateTheWidthOfBinsThatAreNotWholeMicroseconds) {
+    for (const double width : {0.005, 0.0495}) {
+        Bench bench;
+        Source<types::SonarPtr> sonar(bench.task, "sonar");
+        EXPECT_TRUE(bench.task.configure() && bench.task.start());
+        auto sample = std::make_shared<types::Sonar>();
+        sample->setBins(width, 1500);
+        sample->resize(1000, 1);
+        sonar.write(sample);
         bench.task.update();
+        bench.finish();
+        log::pocolog::Reader log(bench.path());
+        const bool is_whole = width == 0.0495;  // 33 us
+        EXPECT_EQ(log.streams()[0].metadatum("insonify_bin_width"), is_whole ? "" : "0.005");
+        EXPECT_EQ(log.streams()[0].metadatum("insonify_speed_of_sound"), is_whole ? "" : "1500");
+        log.forEach<types::Sonar>("sonar.port", [&](const types::Sonar& ping, const log::SampleRef&) {
+            EXPECT_DOUBLE_EQ(ping.binWidth(), width);
+            EXPECT_EQ(ping.speed_of_sound, 1500);
+        });
     }
-    bench.finish();
-    return notices;
-}
-
-TEST(LoggerTaskTest, WarnsOnceOfErrorsFromWholeMicroseconds) {
-    EXPECT_THAT(warningsOf({}),
-                testing::ElementsAre(testing::HasSubstr("sonar.ping has bins of 33 us, one way, in whole microseconds; "
-                                                        "a reader of bin_duration is off by 10.1 bins")));
-    EXPECT_THAT(warningsOf({50, "sample"}), testing::IsEmpty());
-    EXPECT_THAT(warningsOf({49.5, "exact"}), testing::IsEmpty()) << "bins are whole microseconds";
-    EXPECT_THAT(warningsOf({80, "exact"}), testing::IsEmpty()) << "a driver has set another range than the property";
 }
 
 TEST(LoggerTaskTest, EverySampleIsLoggedUnderItsSourcesNameWithBothTimes) {

@@ -384,7 +384,7 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
     std::vector<std::pair<std::string, Json>> settings;
     for (const auto& [property, yaml] : sample.settings)
         settings.emplace_back(property, deployer::toJson(framework::parseValue(yaml)));
-    files.write({sample, run, instances_[sample.scene], made.bin_width, scenes_[sample.scene].name, std::move(settings),
+    files.write({sample, run, instances_[sample.scene], scenes_[sample.scene].name, std::move(settings),
                  made.range_image, made.range_truth});
 }
 

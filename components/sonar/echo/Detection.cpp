@@ -22,9 +22,9 @@ double strongestOf(const std::vector<float>& bins) {
 
 }  // namespace
 
-Detector::Detector(const DetectionConfig& config, const types::Sonar& ping, double bin_width)
+Detector::Detector(const DetectionConfig& config, const types::Sonar& ping)
     : ping_(ping),
-      bin_width_(bin_width),
+      bin_width_(ping.binWidth()),
       minimum_(std::max(strongestOf(ping.bins) * shareOf(config.threshold_db),
                         config.floor_db ? shareOf(*config.floor_db) : 0)),
       gate_share_(shareOf(-config.gate_db)) {}

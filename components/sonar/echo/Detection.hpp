@@ -37,8 +37,8 @@ struct Detection {
 /** Finds the returns in the beams of one ping (ACOUSTICS.md 5.16). */
 class Detector {
 public:
-    /** Keeps a reference to the ping. `bin_width` is the exact width of its bins [m]: `bin_duration` is rounded. */
-    Detector(const DetectionConfig& config, const types::Sonar& ping, double bin_width);
+    /** Keeps a reference to the ping. */
+    Detector(const DetectionConfig& config, const types::Sonar& ping);
     /** Returns the beam's strongest bin and the bins around it down to the gate, at their centre of mass. Each bin is
      *  weighted by its value times the square of its range. None where the strongest bin is below the threshold. */
     std::optional<Detection> strongest(uint32_t beam) const;

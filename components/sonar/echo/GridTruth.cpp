@@ -37,8 +37,7 @@ void GridTruth::shape(const types::Sonar& ping, size_t rows, types::SonarTruth& 
     azimuths.takeGrid(ping);
     types::Sonar grid;
     grid.time = ping.time;
-    grid.bin_duration = ping.bin_duration;
-    grid.speed_of_sound = ping.speed_of_sound;
+    static_cast<types::RangeBins&>(grid) = ping;
     grid.bin_count = 1;
     grid.beam_count = static_cast<uint32_t>(rows * ping.beam_count);
     for (size_t row = 0; row < rows; ++row)
