@@ -13,6 +13,7 @@
 #include "components/dds/ParameterMessages.hpp"
 #include "components/ros/Cdr.hpp"
 #include "types/Reason.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::dds {
 namespace {
@@ -167,7 +168,7 @@ ParameterServer::ParameterServer(Node& node, const std::string& node_name, std::
                                  types::DeploymentControl& deployment)
     : prefix_(node_name.starts_with('/') ? node_name : "/" + node_name), own_(std::move(own)), deployment_(deployment) {
     offer(node);
-    thread_ = std::thread([this] { work(); });
+    thread_ = types::startThread("the ROS 2 parameters", [this] { work(); });
 }
 
 ParameterServer::~ParameterServer() {

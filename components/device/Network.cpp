@@ -20,6 +20,8 @@
 #include <thread>
 #include <utility>
 
+#include "types/Thread.hpp"
+
 namespace insonify::device {
 namespace asio = boost::asio;
 using boost::system::error_code;
@@ -66,7 +68,7 @@ void keepAlive(int socket) {
 /** Its events and counters may be used on any thread, the rest on the network's. */
 class Network::Core {
 public:
-    explicit Core(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
+    explicit Core(std::function<void()> wake) : wake_(std::move(wake)), thread_(types::startThread("the network of a device", [this] { run(); })) {}
     ~Core() {
         asio::post(io, [this] { shut(); });
         thread_.join();

@@ -33,15 +33,16 @@ void Activity::configure(ActivitySettings settings) {
 }
 
 void Activity::submit(Job& job) {
-    std::unique_lock lock(mutex_);
+    std::unique_lock<std::mutex> lock(mutex_);
     if (thread_.get_id() == std::this_thread::get_id()) {
         lock.unlock();
         return job.function(job.callable);
     }
+    // First, so that a job is not in the list if this throws.
+    if (!thread_.joinable()) thread_ = types::startThread("task " + owner_.name(), [this] { loop(); });
     Job** last = &first_job_;
     while (*last) last = &(*last)->next;
     *last = &job;
-    if (!thread_.joinable()) thread_ = std::thread(&Activity::loop, this);
     wake_.notify_one();
     served_.wait(lock, [&] { return job.done; });
     if (job.error) std::rethrow_exception(job.error);
@@ -79,7 +80,7 @@ void Activity::trigger() {
 }
 
 void Activity::loop() {
-    std::unique_lock lock(mutex_);
+    std::unique_lock<std::mutex> lock(mutex_);
     while (!ending_) {
         if (first_job_)
             serve(lock);
@@ -146,7 +147,7 @@ bool Activity::sleepUntil(types::Time time) {
     const auto left = [&] { return std::chrono::microseconds((time - environment.now()).microseconds); };
     owner_.timing().pause();
     {
-        std::unique_lock lock(mutex_);
+        std::unique_lock<std::mutex> lock(mutex_);
         if (environment.wall_clock) {  // may be set while this waits
             const auto end = Clock::now() + left();
             while (free_ && wake_.wait_until(lock, end) == std::cv_status::no_timeout) {

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "types/Thread.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::framework {
@@ -44,7 +45,7 @@ public:
     void configure(ActivitySettings settings);
 
     /** Runs `work` on the task's thread and waits until it ends; runs it directly when called on that thread. Rethrows
-     *  what `work` throws. Allocates nothing. */
+     *  what `work` throws. Allocates nothing. Throws std::runtime_error if the thread cannot be started. */
     template <class Work>
     void call(Work&& work) {
         using Callable = std::remove_reference_t<Work>;
@@ -82,7 +83,7 @@ private:
 
     TaskContext& owner_;
     ActivitySettings settings_;
-    std::mutex mutex_;
+    types::PriorityMutex mutex_;
     std::condition_variable wake_, served_;
     Job* first_job_ = nullptr;
     std::atomic<bool> free_{false};  ///< Changes under the mutex.

@@ -154,9 +154,9 @@ RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop
     {
         struct Run {
             Executor& executor;
-            explicit Run(Executor& begun) : executor(begun) { executor.begin(); }
-            ~Run() { executor.end(); }
-        } const run(*executor_);
+            ~Run() { executor.end(); }  // also where begin() has thrown
+        } const run{*executor_};
+        executor_->begin();
         if (startAll(result.failures)) executor_->run(limits, stop, report);
         noteFailed(result.failures);
         stopAll(result.failures);

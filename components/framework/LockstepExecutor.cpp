@@ -102,7 +102,11 @@ void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& sto
         keepPace(limits.pace, instant, stop);
         letCallersIn(stop);
         {
-            const auto held = betweenInstants();
+            struct Turn {
+                LockstepExecutor& executor;
+                std::unique_lock<std::mutex> held = executor.takeTurn();
+                ~Turn() { executor.giveTurn(std::move(held)); }
+            } const turn{*this};
             if (!takeStep()) continue;           // paused meanwhile
             const types::Time now_due = next();  // may differ, if a source has advanced meanwhile
             if (now_due >= end || !takePart(limits)) return;
@@ -140,14 +144,27 @@ void LockstepExecutor::keepPace(double pace, types::Time instant, const std::ato
 }
 
 void LockstepExecutor::letCallersIn(const std::atomic<bool>& stop) const {
-    while (callers_ > 0 && !stop) std::this_thread::sleep_for(std::chrono::microseconds(100));
+    const uint64_t goal = called_;
+    while (let_in_ < goal && !stop) std::this_thread::sleep_for(std::chrono::microseconds(100));
 }
 
 std::unique_lock<std::mutex> LockstepExecutor::betweenInstants() {
-    ++callers_;
+    ++called_;
     std::unique_lock lock(instant_mutex_);
-    --callers_;
+    turn_.wait(lock, [this] { return !instant_due_; });
+    ++let_in_;
     return lock;
+}
+
+std::unique_lock<std::mutex> LockstepExecutor::takeTurn() {
+    instant_due_ = true;
+    return std::unique_lock(instant_mutex_);
+}
+
+void LockstepExecutor::giveTurn(std::unique_lock<std::mutex> held) {
+    instant_due_ = false;
+    held.unlock();
+    turn_.notify_all();
 }
 
 // -- pausing ----------------------------------------------------------------------------------------------------------

@@ -1,4 +1,5 @@
 #pragma once
+#include <condition_variable>
 #include <limits>
 
 #include "components/framework/Executor.hpp"
@@ -53,7 +54,11 @@ private:
     void standStill(const std::atomic<bool>& stop);
     /** Returns whether an instant may begin; while paused, uses up one of the requested steps. Between instants. */
     bool takeStep();
+    /** Waits until the callers that wait now have been served. */
     void letCallersIn(const std::atomic<bool>& stop) const;
+    /** Returns the lock for an instant, for which later callers wait. */
+    std::unique_lock<std::mutex> takeTurn();
+    void giveTurn(std::unique_lock<std::mutex> held);
 
     std::vector<Timed> timed_;
     std::vector<TaskContext*> triggered_;
@@ -65,7 +70,9 @@ private:
     std::atomic<bool> paused_{false};
     std::atomic<uint64_t> steps_{0};  ///< Requested while paused.
     std::mutex instant_mutex_;
-    std::atomic<unsigned> callers_{0};  ///< Waiting for the end of an instant.
+    std::condition_variable turn_;                   ///< An instant has ended.
+    std::atomic<bool> instant_due_{false};           ///< The run waits for its turn, or has it.
+    std::atomic<uint64_t> called_{0}, let_in_{0};  ///< Callers so far; those of them that have had the lock.
 };
 
 }  // namespace insonify::framework

@@ -35,16 +35,23 @@ void InputPortBase::disconnectAll() {
     for (const auto& channel : channels()) channel->source().disconnect(*this);
 }
 
-FlowStatus InputPortBase::readFrom(std::shared_ptr<ChannelBase>* taken_from, void* sample, bool copy_old) {
-    std::lock_guard lock(mutex_);
+std::shared_ptr<ChannelBase> InputPortBase::takeLast() {
     for (const auto& channel : channels_)
         if (channel->pop(last())) {
             has_last_ = true;
             owner().noteTaken();
-            copyLast(sample);
-            if (taken_from) *taken_from = channel;
-            return FlowStatus::NewData;
+            return channel;
         }
+    return nullptr;
+}
+
+FlowStatus InputPortBase::readFrom(std::shared_ptr<ChannelBase>* taken_from, void* sample, bool copy_old) {
+    std::lock_guard lock(mutex_);
+    if (auto channel = takeLast()) {
+        copyLast(sample);
+        if (taken_from) *taken_from = std::move(channel);
+        return FlowStatus::NewData;
+    }
     if (!has_last_) return FlowStatus::NoData;
     if (copy_old) copyLast(sample);
     return FlowStatus::OldData;
@@ -53,11 +60,21 @@ FlowStatus InputPortBase::readFrom(std::shared_ptr<ChannelBase>* taken_from, voi
 FlowStatus InputPortBase::readInto(void* sample, bool copy_old) { return readFrom(nullptr, sample, copy_old); }
 
 FlowStatus InputPortBase::readNewestInto(void* sample, bool copy_old) {
-    std::shared_ptr<ChannelBase> taken_from, next_from;
-    const FlowStatus first = readFrom(&taken_from, sample, copy_old);
-    for (; first == FlowStatus::NewData && readFrom(&next_from, sample, false) == FlowStatus::NewData;
-         taken_from = std::move(next_from))
-        taken_from->notePassedOver();
+    std::shared_ptr<ChannelBase> newest;
+    const FlowStatus first = readFrom(&newest, sample, copy_old);
+    bool is_last = true;  // whether `sample` is the last one taken
+    while (first == FlowStatus::NewData) {
+        std::lock_guard lock(mutex_);
+        auto next = takeLast();
+        if (!next && !is_last) setLast(sample);
+        if (!next) break;
+        is_last = next == newest || stampOf(last()) >= stampOf(sample);
+        if (is_last) {
+            copyLast(sample);
+            std::swap(newest, next);
+        }
+        next->notePassedOver();
+    }
     return first;
 }
 

@@ -8,10 +8,8 @@
 // Ports connect and disconnect at any time, from any thread, while samples are written and read. A port's destructor
 // disconnects it. At that moment the connected ports may be in use, but must not be destroyed or disconnected from this
 // port, and no call on this port may run or begin. A writer never waits for a reader longer than the copying of one
-// sample takes.
-// reader: at most for the copying of one sample.
+// sample takes, whatever their priorities are: the mutexes of a port have priority inheritance.
 #include <memory>
-#include <mutex>
 #include <string>
 #include <typeinfo>
 #include <vector>
@@ -19,6 +17,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Channel.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "types/Thread.hpp"
 #include "types/TypeName.hpp"
 
 namespace insonify::framework {
@@ -82,14 +81,18 @@ private:
     virtual std::shared_ptr<ChannelBase> makeChannel(OutputPortBase& source, ConnPolicy policy) const = 0;
     virtual void* last() = 0;
     virtual void copyLast(void* sample) const = 0;
+    virtual void setLast(const void* sample) = 0;
     virtual void forgetLast() = 0;
+    virtual types::Time stampOf(const void* sample) const = 0;
 
+    /** Takes the next sample into last(), under the mutex. Returns its channel; null: none waits. */
+    std::shared_ptr<ChannelBase> takeLast();
     /** Reads the next sample; sets `taken_from`, unless null, to the channel of a new sample. */
     FlowStatus readFrom(std::shared_ptr<ChannelBase>* taken_from, void* sample, bool copy_old);
 
     Need need_;
     bool triggers_ = true;
-    mutable std::mutex mutex_;  ///< Guards the channels and their contents; held for one copy of a sample.
+    mutable types::PriorityMutex mutex_;  ///< Guards the channels and their contents; held for one copy of a sample.
     std::vector<std::shared_ptr<ChannelBase>> channels_;
     bool has_last_ = false;
 };
@@ -123,10 +126,21 @@ private:
     virtual void setLast(const void* sample) = 0;
 
     std::atomic<uint64_t> written_{0};
-    mutable std::mutex mutex_;  ///< Guards the list; locked before an input port's mutex, never after.
+    mutable types::PriorityMutex mutex_;  ///< Guards the list; locked before an input port's mutex, never after.
     std::vector<Reader> readers_;
     bool keep_last_ = false, has_last_ = false;
 };
+
+/** Returns the time stamp of a sample; of a type without one 0. */
+template <class T>
+types::Time portStamp(const T& sample) {
+    if constexpr (requires { sample->time.microseconds; })
+        return sample ? sample->time : types::Time{};
+    else if constexpr (requires { sample.time.microseconds; })
+        return sample.time;
+    else
+        return {};
+}
 
 template <class T>
 class InputPort final : public InputPortBase {
@@ -138,7 +152,8 @@ public:
 
     /** Reads the next sample. With OldData, `sample` becomes the last sample read, unless `copy_old` is false. */
     FlowStatus read(T& sample, bool copy_old = true) { return readInto(&sample, copy_old); }
-    /** Drains the port and returns its newest sample; earlier samples count as skipped in their connections. */
+    /** Drains the port and returns its newest sample: the last one of a connection; of several connections, the one
+     *  with the latest stamp. The other samples count as skipped in their connections. */
     FlowStatus readNewest(T& sample, bool copy_old = true) { return readNewestInto(&sample, copy_old); }
     bool readNew(T& sample) { return read(sample, false) == FlowStatus::NewData; }
     /** Reads the sample to process: the next in lockstep, the newest (see readNewest) in realtime. False: no new
@@ -155,6 +170,8 @@ private:
     }
     void* last() override { return &last_; }
     void copyLast(void* sample) const override { *static_cast<T*>(sample) = last_; }
+    void setLast(const void* sample) override { last_ = *static_cast<const T*>(sample); }
+    types::Time stampOf(const void* sample) const override { return portStamp(*static_cast<const T*>(sample)); }
     void forgetLast() override { last_ = T{}; }
 
     T last_{};
@@ -167,10 +184,8 @@ public:
 
     void write(const T& sample) {
         writeFrom(&sample);
-        if constexpr (requires { sample->time.microseconds; })
-            noteWritten(sample ? sample->time : types::Time{});
-        else if constexpr (requires { sample.time.microseconds; })
-            noteWritten(sample.time);
+        if constexpr (requires { sample->time.microseconds; } || requires { sample.time.microseconds; })
+            noteWritten(portStamp(sample));
     }
     std::string typeName() const override { return types::typeName<T>(); }
     const std::type_info& type() const override { return typeid(T); }

@@ -135,15 +135,20 @@ void TaskContext::error(const std::string& why) {
 
 Outcome TaskContext::transition(const char* verb, auto&& work) {
     Outcome outcome;
-    activity_->call([&] {
-        if (transition_) {
-            outcome = refuse(std::string("cannot ") + verb + ": " + name_ + " is in the middle of " + transition_);
-            return;
-        }
-        transition_ = verb;
-        outcome = work();
-        transition_ = nullptr;
-    });
+    const auto cannot = [&](const std::string& why) { return refuse(std::string("cannot ") + verb + ": " + why); };
+    try {
+        activity_->call([&] {
+            if (transition_) {
+                outcome = cannot(name_ + " is in the middle of " + transition_);
+                return;
+            }
+            transition_ = verb;
+            outcome = work();
+            transition_ = nullptr;
+        });
+    } catch (const std::exception& failure) {  // there is no thread
+        return cannot(failure.what());
+    }
     return outcome;
 }
 

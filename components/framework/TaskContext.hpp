@@ -16,6 +16,7 @@
 #include "types/Plan.hpp"
 #include "types/RosNames.hpp"
 #include "types/TaskRecord.hpp"
+#include "types/Thread.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::framework {
@@ -88,7 +89,7 @@ public:
     TaskState state() const { return state_.load(); }
     bool isRunning() const { return state() == TaskState::Running || state() == TaskState::RunTimeError; }
 
-    // Transitions; each returns once its hooks have run on the task's thread.
+    // Transitions; each returns once its hooks have run on the task's thread. Refused if that cannot be started.
     Outcome configure();
     Outcome start();  ///< Clears the input ports, then startHook.
     Outcome stop();
@@ -217,9 +218,9 @@ private:
     std::shared_ptr<Environment> environment_;
     std::unique_ptr<Activity> activity_;
     std::unique_ptr<types::ConfigError> config_error_;
-    mutable std::mutex error_mutex_;
+    mutable types::PriorityMutex error_mutex_;
     std::string last_error_;
-    mutable std::mutex record_mutex_;
+    mutable types::PriorityMutex record_mutex_;
     types::TaskRecord record_;
     std::optional<types::Plan> recorded_plan_;
     std::vector<InputPortBase*> inputs_;

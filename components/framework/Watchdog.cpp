@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "components/framework/Activity.hpp"
+#include "components/framework/RealtimeExecutor.hpp"
+
 namespace insonify::framework {
 
 Watchdog::Watchdog(const std::vector<Limit>& limits, Report report) : report_(std::move(report)) {
@@ -11,7 +14,7 @@ Watchdog::Watchdog(const std::vector<Limit>& limits, Report report) : report_(st
         watched_.push_back({limit});
         interval_ = std::clamp(limit.seconds / 4, 0.001, interval_);
     }
-    thread_ = std::thread(&Watchdog::loop, this);
+    thread_ = types::startThread("the watchdog", [this] { loop(); });
 }
 
 Watchdog::~Watchdog() {
@@ -23,7 +26,18 @@ Watchdog::~Watchdog() {
     thread_.join();
 }
 
+/** Sets a priority above those of the tasks, so that a task that uses a processor without end is reported. */
+void Watchdog::outrankTasks() const {
+    ActivitySettings own;
+    for (const Watched& watched : watched_) {
+        const ActivitySettings& settings = watched.limit.task->activity().settings();
+        if (settings.fifo) own.fifo = true, own.priority = std::max(own.priority, std::min(settings.priority + 1, 99));
+    }
+    applyToThread(own);  // where it is not permitted, it was not for the tasks, who have said so
+}
+
 void Watchdog::loop() {
+    outrankTasks();
     std::unique_lock lock(mutex_);
     while (!wake_.wait_for(lock, std::chrono::duration<double>(interval_), [this] { return ending_; }))
         for (Watched& watched : watched_) look(watched);

@@ -11,7 +11,8 @@
 namespace insonify::framework {
 
 /** Watches tasks from its own thread while it exists. It reports a hanging cycle once, and its end, and each change of
- *  a task to RunTimeError and back. It cannot end a cycle. */
+ *  a task to RunTimeError and back. It cannot end a cycle. Its priority is above those of tasks with `scheduler: fifo`,
+ *  where the system permits it. */
 class Watchdog {
 public:
     struct Limit {
@@ -22,6 +23,7 @@ public:
     /** Called with "camera: ..." on the watchdog's thread. */
     using Report = std::function<void(const std::string&)>;
 
+    /** Throws std::runtime_error if there is no thread for it. */
     Watchdog(const std::vector<Limit>& limits, Report report);
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
@@ -33,6 +35,7 @@ private:
         int64_t reported = 0;  ///< Start of the hanging cycle that was reported; 0: none [ns].
         bool in_error = false;
     };
+    void outrankTasks() const;
     void loop();
     void look(Watched& watched) const;
     void lookForHang(Watched& watched) const;

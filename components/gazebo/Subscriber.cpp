@@ -16,6 +16,7 @@
 #include "components/gazebo/Discovery.hpp"
 #include "components/gazebo/Multicast.hpp"
 #include "types/ConfigError.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::gazebo {
 namespace {
@@ -53,7 +54,12 @@ public:
             names_.push_back(*name);
             socket_.set(zmq::sockopt::subscribe, *name);
         }
-        thread_ = std::thread([this] { run(); });
+        try {
+            thread_ = types::startThread("the topics of Gazebo", [this] { run(); });
+        } catch (...) {
+            close(stop_);
+            throw;
+        }
     }
     ~Worker() {
         const uint64_t one = 1;

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -207,7 +208,11 @@ bool EglContext::hasCard() {
         const auto look = [&] {
             found = std::ranges::any_of(all, isCard, [](const auto& one) { return one.display(); });
         };
-        std::thread(look).join();  // a thread of its own, so that the caller's context stays current
+        try {
+            std::thread(look).join();  // a thread of its own, so that the caller's context stays current
+        } catch (const std::system_error& refused) {
+            throw GlError(std::string("no thread to look for a graphics card: ") + refused.code().message());
+        }
         return found;
     }();
     return has;

@@ -102,7 +102,10 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
-    : path_(std::move(other.path_)), file_(std::exchange(other.file_, -1)), size_(other.size_) {}
+    : path_(std::move(other.path_)),
+      file_(std::exchange(other.file_, -1)),
+      syncs_(other.syncs_),
+      size_(other.size_) {}
 
 OutputFile::~OutputFile() {
     if (file_ >= 0) ::close(file_);
@@ -128,7 +131,13 @@ void OutputFile::fail(int error_number) {
     throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(error_number));
 }
 
+void OutputFile::sync() {
+    syncs_ = true;
+    if (fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) fail(errno);  // a device need not have it
+}
+
 void OutputFile::close() {
+    if (syncs_) sync();
     if (::close(std::exchange(file_, -1)) != 0)
         throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(errno));
 }

@@ -38,6 +38,9 @@ public:
     /** Writes all bytes. On failure, throws std::runtime_error with the system's reason; the file is truncated to its
      *  previous end and closed. */
     void append(const char* data, size_t size);
+    /** Waits until all bytes are on the disk. From then on, close() does as well. Throws as append(). */
+    void sync();
+    bool syncs() const { return syncs_; }
     /** Throws std::runtime_error with the system's reason. */
     void close();
     bool isOpen() const { return file_ >= 0; }
@@ -48,6 +51,7 @@ private:
 
     std::filesystem::path path_;
     int file_ = -1;
+    bool syncs_ = false;
     uint64_t size_ = 0;
 };
 

@@ -47,6 +47,9 @@ public:
     virtual void copy(size_t stream, Reader& log, const SampleRef& at) = 0;
 
     virtual void flush() = 0;  ///< Passes all samples to the system: they survive the end of this process.
+    /** Flushes, and waits until the samples are on the disk: they survive a power failure. The end of a file that has
+     *  been synced is synced as well. */
+    virtual void sync() = 0;
     virtual void close() = 0;  ///< Flushes and ends the file. Nothing may be written afterwards.
     /** Closes and continues in another file, with the same streams. After a failed write, omits the samples that were
      *  not flushed; may be repeated if next() itself has failed. Throws as createLog and close(). */

@@ -2,10 +2,16 @@
 
 #include <utility>
 
+#include "types/Thread.hpp"
+
 namespace insonify::logger {
 namespace {
 
 constexpr std::chrono::seconds retry_period{1};
+
+std::chrono::nanoseconds nanoseconds(double seconds) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+}
 
 /** Returns x.1.log for x.0.log and for x.log. */
 std::filesystem::path sequelOf(const std::filesystem::path& log) {
@@ -15,14 +21,18 @@ std::filesystem::path sequelOf(const std::filesystem::path& log) {
 
 }  // namespace
 
-LogThread::LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period, AtFailure at_failure)
+LogThread::LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period, AtFailure at_failure,
+                     double sync_period)
     : log_(log),
       rotation_(rotation),
       kept_before_(log.kept()),
-      flush_period_(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(flush_period))),
+      flush_period_(nanoseconds(flush_period)),
+      sync_period_(nanoseconds(sync_period)),
       at_failure_(at_failure),
+      opened_(log.path()),
+      next_sync_(Clock::now() + sync_period_),
       ring_(capacity),
-      thread_(&LogThread::run, this) {}
+      thread_(types::startThread("the log", [this] { run(); })) {}
 
 LogThread::~LogThread() {
     try {
@@ -32,10 +42,14 @@ LogThread::~LogThread() {
     }
 }
 
-LogThread::Entry& LogThread::freeEntry() {
+LogThread::Entry& LogThread::freeEntry(size_t bytes) {
     std::unique_lock lock(mutex_);
-    room_.wait(lock, [&] { return count_ < ring_.size() || failed_; });
+    const auto hasRoom = [&] {
+        return count_ < ring_.size() && (count_ == 0 || waiting_bytes_ + bytes <= max_bytes);
+    };
+    room_.wait(lock, [&] { return hasRoom() || failed_; });
     if (failed_) reportFailure();
+    waiting_bytes_ += bytes;
     return ring_[(first_ + count_) % ring_.size()];
 }
 
@@ -99,6 +113,7 @@ void LogThread::writeAll() {
         work(has_entry ? &ring_[first_] : nullptr);
         lock.lock();
         if (!has_entry) continue;
+        waiting_bytes_ -= std::exchange(ring_[first_].bytes, 0);
         first_ = (first_ + 1) % ring_.size();
         --count_;
         room_.notify_one();
@@ -112,13 +127,19 @@ void LogThread::work(Entry* entry) {
         entry = nullptr;  // a failing flush does not concern this entry
         if (Clock::now() < next_flush_) return;
         next_flush_ = Clock::now() + flush_period_;
-        if (!health_.fails) log_.flush();
+        if (!health_.fails) flush();
     } catch (const std::exception& error) {
         const bool is_refused = log_.isOpen();  // the file works, and cannot store this entry
         if (at_failure_ == AtFailure::Throw || (is_refused && (!entry || entry->declaration))) throw;
         is_refused ? refuse(*entry, error.what()) : beginOutage(error.what());
         if (entry && !is_refused) pass(*entry);
     }
+}
+
+void LogThread::flush() {
+    if (Clock::now() < next_sync_) return log_.flush();
+    log_.sync();
+    next_sync_ = Clock::now() + sync_period_;
 }
 
 void LogThread::write(Entry& entry) {
@@ -128,6 +149,7 @@ void LogThread::write(Entry& entry) {
         return;
     }
     rotation_.before(entry.received);
+    opened_ = log_.path();
     const auto write = [&](const auto& sample) {
         log_.write(entry.stream, entry.received, *types::carriedSample(sample));
     };
@@ -150,7 +172,8 @@ void LogThread::refuse(Entry& entry, const std::string& why) {
 
 void LogThread::beginOutage(const std::string& why) {
     const bool is_empty = kept_at_opening_ == log_.kept();  // continues in the same empty file
-    sequel_ = is_empty ? log_.path() : sequelOf(log_.path());
+    const bool is_unopened = log_.path() != opened_;        // at the rotation
+    sequel_ = is_empty || is_unopened ? log_.path() : sequelOf(log_.path());
     next_try_ = Clock::now() + retry_period;
     std::lock_guard lock(mutex_);
     ++health_.outages;
@@ -163,7 +186,9 @@ void LogThread::tryAgain() {
     next_try_ = Clock::now() + retry_period;
     std::string failure;
     try {
+        if (std::filesystem::is_directory(sequel_)) sequel_ = sequelOf(sequel_);
         log_.next(sequel_);
+        opened_ = sequel_;
         for (; !pending_.empty(); pending_.erase(pending_.begin())) pending_.front()(log_);
         log_.flush();
     } catch (const std::exception& error) {

@@ -32,24 +32,28 @@ using Declare = std::function<size_t(log::Writer&)>;
 
 /** Writes samples to a log on its own thread, in the order of push(), and flushes in between.
  *
- *  A ring of fixed size is between push() and the file. If the file is slower than the samples for long, push() waits
- *  for space. An error of the file is thrown once, by the next push() or by finish(), with the number of pushed samples
+ *  A ring of fixed size is between push() and the file, with at most max_bytes of samples. If the file is slower than
+ *  the samples for long, push() waits for space. An error of the file is thrown once, by the next push() or by finish(), with the number of pushed samples
  *  that are not in the file. With AtFailure::Heal, samples are dropped instead until the log can continue in its next
  *  file, x.1.log after x.0.log, which is tried each second. finish() throws if this does not succeed until the end. */
 class LogThread {
 public:
-    /** Until finish(), `log` and `rotation` are used only by the thread. Flushes every `flush_period` [s]; `capacity`
-     *  is above 0. */
+    static constexpr size_t max_bytes = size_t{256} << 20;  ///< Of waiting samples, apart from one of any size [B].
+
+    /** Until finish(), `log` and `rotation` are used only by the thread. Flushes every `flush_period` and syncs every
+     *  `sync_period` [s]; `capacity` is above 0. */
     LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period,
-              AtFailure at_failure = AtFailure::Throw);
+              AtFailure at_failure = AtFailure::Throw, double sync_period = 1e9);
     ~LogThread();
     LogThread(const LogThread&) = delete;
     LogThread& operator=(const LogThread&) = delete;
 
     /** Adds a sample of a stream, received at that time. Throws std::runtime_error once the file has failed. */
     void push(size_t stream, types::Time received, auto sample) {
-        Entry& entry = freeEntry();
+        const size_t bytes = bytesOf(*types::carriedSample(sample));
+        Entry& entry = freeEntry(bytes);
         entry.stream = stream;
+        entry.bytes = bytes;
         entry.received = received;
         entry.sample = std::move(sample);
         ++pushed_;
@@ -67,16 +71,32 @@ private:
         size_t stream = 0;
         types::Time received;
         types::AnySample sample;
+        size_t bytes = 0;  ///< Size of the sample in memory [B].
         Declare declaration;  ///< Instead of a sample.
     };
     using Clock = std::chrono::steady_clock;
 
-    Entry& freeEntry();
+    /** Returns the size of a sample in memory, without that of texts in lists [B]. */
+    template <class T>
+    static size_t bytesOf(const T& sample) {
+        size_t bytes = sizeof(T);
+        if constexpr (types::Described<T>) {
+            const auto add = [&]<class Value>(const types::Field&, const Value& value) {
+                if constexpr (requires { value.size() * sizeof(typename Value::value_type); })
+                    bytes += value.size() * sizeof(typename Value::value_type);
+            };
+            T::describe(sample, add);
+        }
+        return bytes;
+    }
+    /** Waits until there is room for an entry of this size. */
+    Entry& freeEntry(size_t bytes = 0);
     void commit();
     void run();
     void writeAll();
     void write(Entry& entry);
     void work(Entry* entry);  ///< One iteration of the thread: an entry, if there is one, and due flushes.
+    void flush();             ///< Also syncs, if that is due.
     void pass(Entry& entry);  ///< Releases a sample, written or lost; a stream waits for the next file.
     void refuse(Entry& entry, const std::string& why);
     void beginOutage(const std::string& why);
@@ -87,17 +107,19 @@ private:
     Rotation& rotation_;
     const uint64_t kept_before_;  ///< Samples in the log when the thread began.
     uint64_t pushed_ = 0;
-    std::chrono::nanoseconds flush_period_;
+    std::chrono::nanoseconds flush_period_, sync_period_;
     const AtFailure at_failure_;
     uint64_t handed_ = 0;           ///< Samples for the file so far, including lost samples.
     uint64_t kept_at_opening_ = 0;  ///< Samples in files when the present file was opened.
     std::vector<Declare> pending_;  ///< Streams declared in an outage.
+    std::filesystem::path opened_;  ///< The last file that could be opened.
     std::filesystem::path sequel_;  ///< The log's next file.
-    Clock::time_point next_try_, next_flush_;
+    Clock::time_point next_try_, next_flush_, next_sync_;
     LogHealth health_;  ///< Changed by the thread, under the mutex.
     mutable std::mutex mutex_;
     std::condition_variable work_, room_;
     std::vector<Entry> ring_;
+    size_t waiting_bytes_ = 0;      ///< Size of the waiting samples [B].
     size_t first_ = 0, count_ = 0;  ///< The thread owns ring_[first_] while count_ > 0; push() the entries after them.
     bool ending_ = false;
     bool failed_ = false;

@@ -31,6 +31,7 @@ struct LoggerConfig {
     std::string property_file = "properties.0.log";
     std::optional<double> max_file_size, max_file_duration;
     double flush_period = 1;
+    std::optional<double> sync_period;
     int queue = 64;
     bool record = true;
     std::map<std::string, std::string> metadata;
@@ -50,7 +51,13 @@ struct LoggerConfig {
               self.max_file_duration);
         visit({"flush_period", "s", "at most this much is lost when the process is killed", 0.001, 1},
               self.flush_period);
-        visit({"queue", "1", "max samples waiting for the file, in addition to the ports' buffers", 1, 65536},
+        visit({"sync_period", "s",
+               "at most this much is lost when the power fails: so often the log's thread waits for the disk; absent: "
+               "the system writes when it likes, usually within 30 s",
+               0.1, 1e6},
+              self.sync_period);
+        visit({"queue", "1", "max samples waiting for the file, at most 256 MiB, in addition to the ports' buffers", 1,
+               65536},
               self.queue);
         visit({"record", "", "false: samples are skipped until it is true again; may be set while running"},
               self.record);

@@ -222,7 +222,7 @@ bool LoggerTask::startHook() {
     health_ = {};
     thread_.emplace(*log_, *rotation_, static_cast<size_t>(config->queue),
                     environment().is_shard ? never : config->flush_period,
-                    heals() ? AtFailure::Heal : AtFailure::Throw);
+                    heals() ? AtFailure::Heal : AtFailure::Throw, config->sync_period.value_or(never));
     return true;
 }
 

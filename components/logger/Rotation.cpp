@@ -1,6 +1,7 @@
 #include "components/logger/Rotation.hpp"
 
-#include <vector>
+#include <iterator>
+#include <map>
 
 #include "components/log/Files.hpp"
 
@@ -8,11 +9,18 @@ namespace insonify::logger {
 
 void removeSequels(const std::filesystem::path& log) {
     if (!sequenceNumber(log)) return;
-    std::vector<std::filesystem::path> sequels;
+    std::map<unsigned, std::filesystem::path> sequels;
     std::error_code failed;
-    for (auto old = nextInSequence(log); std::filesystem::exists(old, failed); old = nextInSequence(old))
-        sequels.push_back(old);
-    for (; !sequels.empty(); sequels.pop_back()) log::removeLog(sequels.back());
+    const auto nameOf = [](const std::filesystem::path& file) { return file.stem().stem().string(); };
+    const auto folder = log.has_parent_path() ? log.parent_path() : std::filesystem::path(".");
+    for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+        const std::filesystem::path file = folder / entry.path().filename();
+        const auto number = sequenceNumber(file);
+        if (number > sequenceNumber(log) && file.extension() == log.extension() && nameOf(file) == nameOf(log) &&
+            entry.is_regular_file(failed))
+            sequels[*number] = file;
+    }
+    for (; !sequels.empty(); sequels.erase(std::prev(sequels.end()))) log::removeLog(sequels.rbegin()->second);
 }
 
 Rotation::Rotation(const LoggerConfig& config, log::Writer& log)
@@ -26,8 +34,8 @@ bool Rotation::due(types::Time now) const {
 void Rotation::before(types::Time now) {
     if (!began_) began_ = now;
     if (!due(now)) return;
+    began_ = now;  // also of a file that is opened later, because that fails now
     log_.next(nextInSequence(log_.path()));
-    began_ = now;
 }
 
 }  // namespace insonify::logger

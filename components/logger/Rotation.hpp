@@ -6,7 +6,8 @@
 
 namespace insonify::logger {
 
-/** Removes the files that follow `log` from an earlier run, because Rock would read them as parts of this run. Throws
+/** Removes the files that follow `log` from an earlier run, also after missing numbers, because Rock would read them as
+ *  parts of this run. Throws
  *  ConfigError when another logger writes the last of them, before removing any. */
 void removeSequels(const std::filesystem::path& log);
 

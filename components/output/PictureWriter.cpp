@@ -1,5 +1,7 @@
 #include "components/output/PictureWriter.hpp"
 
+#include "types/Thread.hpp"
+
 namespace insonify::output {
 
 std::vector<std::string> PictureHealth::notices() const {
@@ -8,7 +10,7 @@ std::vector<std::string> PictureHealth::notices() const {
 }
 
 PictureWriter::PictureWriter(PictureFiles files, AtPictureFailure at_failure)
-    : files_(std::move(files)), at_failure_(at_failure), thread_([this] { loop(); }) {}
+    : files_(std::move(files)), at_failure_(at_failure), thread_(types::startThread("the files of pictures", [this] { loop(); })) {}
 
 PictureWriter::~PictureWriter() { end(); }
 

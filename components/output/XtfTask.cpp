@@ -42,10 +42,15 @@ void XtfTask::write(const types::Sonar& line) {
 
 void XtfTask::put() {
     if (!file_) return void(++lost_);
+    const bool may_lose = framework::mayLose(environment());
     try {
-        file_->append(bytes_);
+        if (!may_lose) return file_->append(bytes_);
+        const bool is_lost = !file_->tryAppend(bytes_);
+        lost_ += is_lost ? 1 : 0;
+        if (is_lost) failure_ = "the disk is slower than the pings";
+        if (slow_.isDue(is_lost)) warn(config->file + ": " + failure_ + ", some are lost");
     } catch (const std::exception& failure) {
-        if (!framework::mayLose(environment())) throw;
+        if (!may_lose) throw;
         // The remains of an incomplete ping would corrupt later pings.
         file_.reset();
         ++lost_;

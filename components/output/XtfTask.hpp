@@ -8,6 +8,7 @@
 #include "components/output/ByteFile.hpp"
 #include "components/output/Xtf.hpp"
 #include "types/Range.hpp"
+#include "types/RecurringDiagnostic.hpp"
 
 namespace insonify::output {
 
@@ -32,7 +33,8 @@ struct XtfConfig {
  *
  *  In: `ping`; `pose`, the sonar in the world: the pose at the ping's time is used, or the last before it; `altitude`,
  *  of an altimeter, the newest. A ping before the first pose has none in the file, and is counted. In realtime a file
- *  that cannot be written ends: RunTimeError, and lost pings are counted. */
+ *  that cannot be written ends: RunTimeError, and lost pings are counted, as are those for which the disk is too
+ *  slow. */
 class XtfTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -58,6 +60,7 @@ private:
     bool has_pose_ = false;
     uint64_t without_pose_ = 0, lost_ = 0;
     std::string failure_;
+    types::RecurringDiagnostic slow_;
     types::Time last_;
     std::optional<ByteFile> file_;
     std::vector<char> bytes_;

@@ -201,7 +201,8 @@ Bathymetry::~Bathymetry() {
 }
 
 void Bathymetry::work() {
-    for (std::unique_lock lock(mutex_);;) {
+    types::useDefaultScheduling();
+    for (std::unique_lock<std::mutex> lock(mutex_);;) {
         asked_.wait(lock, [this] { return quit_ || !queue_.empty(); });
         if (quit_) return;
         const Tile tile = queue_.front();
@@ -232,7 +233,7 @@ void Bathymetry::ask(const std::vector<Tile>& tiles, bool first) {
         }
         queue_.insert(first ? queue_.begin() : queue_.end(), wanted.begin(), wanted.end());
     }
-    if (!worker_.joinable()) worker_ = std::thread([this] { work(); });
+    if (!worker_.joinable()) worker_ = types::startThread("the tiles of a survey", [this] { work(); });
     asked_.notify_one();
 }
 
@@ -244,9 +245,12 @@ void Bathymetry::keep(const std::vector<Tile>& tiles) {
 }
 
 types::MeshPtr Bathymetry::wait(const Tile& tile) {
-    std::unique_lock lock(mutex_);
+    std::unique_lock<std::mutex> lock(mutex_);
     const auto read = tiles_.find(tile);
-    read_.wait(lock, [&] { return read->second.done; });
+    if (!read->second.done) {
+        const types::LentScheduling lent(worker_);
+        read_.wait(lock, [&] { return read->second.done; });
+    }
     if (!read->second.failure) return read->second.mesh;
     const std::exception_ptr failure = read->second.failure;
     tiles_.erase(read);

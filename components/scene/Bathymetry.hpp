@@ -4,9 +4,7 @@
 #include <exception>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "components/scene/Surface.hpp"
 #include "components/scene/Survey.hpp"
 #include "types/Geometry.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::scene {
 
@@ -22,8 +21,8 @@ namespace insonify::scene {
  *
  *  The floor consists of objects named "bathymetry", one per tile of posts, in the axes of the world. They follow the
  *  objects of the scene and have the material "bathymetry". A separate thread reads the tiles, beginning before the
- *  vehicle needs them. A tile that is needed earlier is waited for, so that the floor around a place does not depend on
- *  time. */
+ *  vehicle needs them, without a realtime priority. A tile that is needed earlier is waited for, at the priority of the
+ *  waiting thread, so that the floor around a place does not depend on time. */
 class Bathymetry {
 public:
     /** @param map file of the mosaic on the floor, if the configuration has one.
@@ -81,7 +80,7 @@ private:
     std::vector<Tile> around_;            ///< Tiles that the next window may have in addition to the tiles of this one.
     std::shared_ptr<const std::vector<types::MeshPtr>> ahead_;
 
-    std::mutex mutex_;
+    types::PriorityMutex mutex_;
     std::condition_variable asked_, read_;
     std::map<Tile, Read> tiles_;
     std::deque<Tile> queue_;

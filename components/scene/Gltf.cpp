@@ -318,7 +318,8 @@ private:
             return std::move(mesh);
         };
         if (building_.size() >= std::max(1u, std::thread::hardware_concurrency())) finishMeshes();
-        building_.emplace_back(geometry_.meshes.size() - 1, std::async(std::launch::async, std::move(built)));
+        constexpr auto if_possible = std::launch::async | std::launch::deferred;  // without a thread on this one
+        building_.emplace_back(geometry_.meshes.size() - 1, std::async(if_possible, std::move(built)));
     }
 
     void finishMeshes() {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
 
@@ -10,17 +11,28 @@ namespace insonify::sonar {
 class OthersReceived {
 public:
     static constexpr double memory = 10;  ///< Time for which a pulse is kept: sound travels 15 km [s].
+    static constexpr double longest_ping = 200;  ///< Max time for which a ping waits for pulses [s].
 
+    /** Also forgets pulses that are far from it in time: a sonar that does not ping asks for none. */
     void add(types::TransmissionPtr sent) {
-        if (sent && sent->radiation) sent_.push_back(std::move(sent));
+        if (!sent || !sent->radiation) return;
+        const types::Time newest = sent->time;
+        std::erase_if(sent_, [&](const auto& other) {
+            return std::abs((newest - other->time).seconds()) > memory + longest_ping;
+        });
+        sent_.push_back(std::move(sent));
     }
+    size_t size() const { return sent_.size(); }  ///< Pulses that are kept [1].
     void clear() { sent_.clear(); }
 
     /** Gives a snapshot the pulses from which sound may arrive within the range of its sonar, and forgets old pulses.
      *  @param range  of the sonar [m]
      *  @param speed_of_sound  [m/s] */
     void give(types::Snapshot& scene, double range, double speed_of_sound) {
-        std::erase_if(sent_, [&](const auto& sent) { return (scene.time - sent->time).seconds() > memory; });
+        std::erase_if(sent_, [&](const auto& sent) {
+            const double age = (scene.time - sent->time).seconds();
+            return age > memory || age < -longest_ping;
+        });
         scene.transmissions.clear();
         for (const auto& sent : sent_) {
             const double half = glm::distance(sent->sonar.position, scene.sonar.position) / 2,

@@ -33,8 +33,8 @@ SonarConfig coarsest(SonarConfig config) {
 }  // namespace
 
 PingTask::~PingTask() {
-    stop();
-    cleanup();
+    if (isRunning()) stop();
+    if (state() == framework::TaskState::Stopped) cleanup();
 }
 
 std::vector<std::string> PingTask::notices() const {

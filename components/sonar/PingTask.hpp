@@ -44,7 +44,7 @@ namespace insonify::sonar {
 class PingTask : public TriggeredTask, public framework::Planned, public framework::Divisible {
 public:
     using TriggeredTask::TriggeredTask;
-    /** Stops and cleans up: the renderer must be destroyed on the task's own thread. */
+    /** Stops and cleans up, if that is due: the renderer must be destroyed on the task's own thread. */
     ~PingTask() override;
 
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless, at the time of its snapshot"};

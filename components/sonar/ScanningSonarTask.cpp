@@ -22,22 +22,23 @@ bool ScanningSonarTask::startHook() {
     asked_ = {};
     last_.reset();
     before_.reset();
-    step_checked_ = false;
+    periods_ = 0;
     return true;
 }
 
 bool ScanningSonarTask::propertiesHook() {
     if (scan_ && scan_->config() != config->head) {
+        if (isRunning() && periods_ > 0 && isFarTooSlow(mean_period_))
+            throw types::ConfigError("", "head.step_deg", stepText(mean_period_));
         scan_.emplace(config->head);
-        step_checked_ = false;
+        periods_ = 0;
     }
     return PingTask::propertiesHook();
 }
 
 const char* ScanningSonarTask::setLook(types::Snapshot& scene) {
     if (last_ && scene.time < *last_) return "the snapshot is older than the one before";
-    if (last_ && !step_checked_ && asked_.isUnknown()) checkStep((scene.time - *last_).seconds());
-    step_checked_ = last_.has_value();
+    if (last_ && asked_.isUnknown()) checkStep((scene.time - *last_).seconds());
     const double seconds = last_ ? (scene.time - *last_).seconds() : 0;
     last_ = scene.time;
     const Look look{scene.sonar.orientation, types::radians(bearingDeg())};
@@ -63,12 +64,24 @@ void ScanningSonarTask::stampBearings(types::Sonar& sample) {
     sample.bearings[0] = types::Angle::fromDeg(bearingDeg());
 }
 
-void ScanningSonarTask::checkStep(double period) const {
-    const double needed = stepDuration(config->head);
-    if (needed <= period * 1.01) return;  // one per cent for the jitter of a wall clock
-    throw types::ConfigError("", name() + ".head.step_deg",
-                             fmt::format("is {} deg, which takes {:.4g} s at {} deg/s; the ping period is {:.4g} s",
-                                         config->head.step_deg, needed, *config->head.speed_deg_per_s, period));
+std::string ScanningSonarTask::stepText(double period) const {
+    return fmt::format("is {} deg, which takes {:.4g} s at {} deg/s; the ping period is {:.4g} s",
+                       config->head.step_deg, stepDuration(config->head), *config->head.speed_deg_per_s, period);
+}
+
+bool ScanningSonarTask::isFarTooSlow(double period) const {
+    return !activity().realtime() && stepDuration(config->head) > 1.5 * period;
+}
+
+void ScanningSonarTask::checkStep(double seconds) {
+    constexpr int enough = 8;  // stamps of a network jitter, their mean does not
+    if (periods_ == enough) return;
+    mean_period_ += (seconds - (periods_ > 0 ? mean_period_ : 0)) / (periods_ + 1);
+    ++periods_;
+    if (periods_ == 1 && isFarTooSlow(mean_period_))
+        throw types::ConfigError("", name() + ".head.step_deg", stepText(mean_period_));
+    if (periods_ == enough && stepDuration(config->head) > 1.01 * mean_period_)
+        warn("head.step_deg " + stepText(mean_period_));
 }
 
 void registerTasks(framework::Registry& registry) {

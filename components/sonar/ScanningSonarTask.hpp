@@ -12,8 +12,9 @@ namespace insonify::sonar {
  *
  *  The scan starts at `head.left_deg` with the first ping after start. With `settings` connected, the head looks at the
  *  bearing that they request instead. A snapshot older than the one before leads to RunTimeError until time advances.
- *  Changing `head` during a scan starts the scan anew. A step that `head.speed_deg_per_s` cannot make between the first
- *  two pings is an error of the configuration. */
+ *  Changing `head` during a scan starts the scan anew. A step that takes `head.speed_deg_per_s` longer than the mean of the
+ *  first eight ping periods is a warning. In lockstep, a step that takes longer than one and a half periods between the
+ *  first two pings is an error of the configuration. */
 class ScanningSonarTask final : public PingTask {
 public:
     using PingTask::PingTask;
@@ -35,7 +36,11 @@ private:
         glm::dquat body;
         double bearing;
     };
-    void checkStep(double period) const;
+    /** Follows the periods of the first pings [s], and reports a step that the head cannot make. */
+    void checkStep(double seconds);
+    /** Returns whether a step takes so much longer than a period [s] that no jitter explains it. */
+    bool isFarTooSlow(double period) const;
+    std::string stepText(double period) const;
     /** Sets the angular velocity of a sonar whose head has been turned: that of its vehicle, plus the head's own if it
      *  sweeps. */
     void turn(types::Pose& sonar, const Look& look, double seconds) const;
@@ -46,7 +51,8 @@ private:
     types::Angle asked_;               ///< Requested by settings.
     std::optional<types::Time> last_;  ///< Time of the ping before.
     std::optional<Look> before_;       ///< Look direction of the ping before.
-    bool step_checked_ = false;
+    int periods_ = 0;         ///< Periods in the mean [1].
+    double mean_period_ = 0;  ///< Mean period of the first pings of the scan [s].
 };
 
 /** Registers the tasks of this folder for deployments. */

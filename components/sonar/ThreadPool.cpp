@@ -3,15 +3,26 @@
 #include <algorithm>
 #include <utility>
 
+#include "types/Thread.hpp"
+
 namespace insonify::sonar {
 
 ThreadPool::ThreadPool(int threads) {
     const int cores = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 16);
     const int count = threads > 0 ? threads : cores;
-    for (int part = 1; part < count; ++part) workers_.emplace_back([this, part] { work(part); });
+    workers_.reserve(static_cast<size_t>(count));
+    try {
+        for (int part = 1; part < count; ++part)
+            workers_.push_back(types::startThread("a worker of a sonar", [this, part] { work(part); }));
+    } catch (...) {
+        end();
+        throw;
+    }
 }
 
-ThreadPool::~ThreadPool() {
+ThreadPool::~ThreadPool() { end(); }
+
+void ThreadPool::end() {
     {
         std::lock_guard lock(mutex_);
         quit_ = true;

@@ -10,7 +10,8 @@ namespace insonify::sonar {
 /** A few threads that share the parts of one job. Running a job allocates nothing. */
 class ThreadPool {
 public:
-    /** `threads` counts the caller; 0: the number of the machine's cores, at most 16. */
+    /** `threads` counts the caller; 0: the number of the machine's cores, at most 16. Throws std::runtime_error if the
+     *  system permits fewer threads. */
     explicit ThreadPool(int threads = 0);
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;
@@ -53,6 +54,8 @@ private:
     /** Releases the workers that have not begun. */
     void dismiss();
     void work(int part);
+    /** Ends the workers, of which there may be fewer than wanted. */
+    void end();
 
     std::vector<std::thread> workers_;
     std::mutex mutex_;

@@ -26,6 +26,15 @@ const char* normalisePose(types::Pose& pose) {
     return nullptr;
 }
 
+/** Returns the block of properties that has this one; the first where none has, whose error names it. */
+framework::PropertiesBase* blockWith(const std::string& property, const std::vector<framework::PropertiesBase*>& all) {
+    const auto has = [&](const framework::PropertiesBase* block) {
+        return std::ranges::any_of(block->list(), [&](const auto& each) { return each.name == property; });
+    };
+    const auto found = std::ranges::find_if(all, has);
+    return found == all.end() ? all.front() : *found;
+}
+
 }  // namespace
 
 double TriggeredTask::realtimePeriod() const { return activity().realtime() ? period_.period() : 0; }
@@ -56,7 +65,7 @@ void TriggeredTask::followSnapshot(const types::Snapshot& scene) {
 bool TriggeredTask::takeGiven() {
     types::SnapshotPtr sample;
     types::Pose given;
-    if (!given_pose.readNew(given) || snapshot.readNewest(sample) == framework::FlowStatus::NoData) return false;
+    if (snapshot.readNewest(sample) == framework::FlowStatus::NoData || !given_pose.readNew(given)) return false;
     taken_.begun = now();
     taken_.scene = *sample;
     taken_.scene.sonar = given;
@@ -86,7 +95,7 @@ std::map<std::string, std::string> TriggeredTask::changedBy(const types::SonarSe
 
 void TriggeredTask::applySettings(const types::SonarSettings& asked) {
     const auto changed = changedBy(asked);
-    if (!changed.empty()) properties().front()->setAll(changed);
+    if (!changed.empty()) blockWith(changed.begin()->first, properties())->setAll(changed);
     if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
 }
 

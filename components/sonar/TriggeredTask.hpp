@@ -98,7 +98,7 @@ private:
     };
     /** Updates the periods, and evaluates the displacement since the snapshot before. */
     void followSnapshot(const types::Snapshot& scene);
-    /** Takes the next pose of `given_pose`, in the newest snapshot's scene. */
+    /** Takes the next pose of `given_pose`, in the newest snapshot's scene. Poses wait until there is a snapshot. */
     bool takeGiven();
     /** Takes the scene of a snapshot. In realtime its sonar pose is extrapolated to now, within its
      *  `max_extrapolation`. */

@@ -8,6 +8,7 @@
 
 #include "components/viewer/SceneMesh.hpp"
 #include "components/viewer/Server.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -64,7 +65,7 @@ Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Ho
       tasks_(host_.deployment ? host_.deployment->interfaces() : std::vector<types::TaskInterface>{}),
       interfaces_(bytesOf(interfacesText(tasks_, config.control))),
       server_(optionsOf(config_, sources_), *this),
-      publishing_(&Publisher::publishAll, this) {}
+      publishing_(types::startThread("the samples of the live view", [this] { publishAll(); })) {}
 
 Publisher::~Publisher() {
     {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "components/viewer/Session.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -31,7 +32,7 @@ public:
         : ServerContext(std::move(asked), answers), subscribers_(options.channels.size()) {
         listen();
         accept();
-        thread_ = std::thread(&Core::serve, this);
+        thread_ = types::startThread("the server of the live view", [this] { serve(); });
     }
     ~Core() override;
 

@@ -1,5 +1,7 @@
 #include "components/log/mcap/Bag.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -26,6 +28,14 @@ std::string firstFileOf(const fs::path& metadata) try {
     return YAML::LoadFile(metadata)["rosbag2_bagfile_information"]["relative_file_paths"][0].as<std::string>("");
 } catch (const YAML::Exception&) {
     return {};
+}
+
+/** Waits until a file is on the disk, which a rename alone does not. */
+void syncFile(const fs::path& path) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return;
+    fsync(file);
+    close(file);
 }
 
 struct Span {
@@ -97,6 +107,7 @@ void Bag::write(const ChunkWriter& present) const {
     const int why = errno;
     if (!file)
         throw std::runtime_error(draft.string() + ": cannot be written: " + std::generic_category().message(why));
+    if (present.syncs()) syncFile(draft);
     fs::rename(draft, path_);
 }
 

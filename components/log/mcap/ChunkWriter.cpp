@@ -269,6 +269,11 @@ std::vector<char> ChunkWriter::summaryBytes() const {
     return bytes;
 }
 
+void ChunkWriter::sync() {
+    flush();
+    if (isOpen()) file_->sync();
+}
+
 void ChunkWriter::close() {
     if (!isOpen()) return;
     flush();

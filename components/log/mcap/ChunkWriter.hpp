@@ -53,6 +53,8 @@ public:
     void addMetadata(const std::string& name, const Texts& texts);
 
     void flush();  ///< Ends the chunk: its messages survive the end of this process.
+    void sync();   ///< Flushes, and waits until the messages are on the disk.
+    bool syncs() const { return file_ && file_->syncs(); }  ///< Whether sync() has been called for this file.
     void close();  ///< Flushes and writes the summary. Nothing may be written afterwards.
     /** Drops the messages that are not in the file, after a failed write. */
     void discard();

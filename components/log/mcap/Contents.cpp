@@ -109,7 +109,8 @@ private:
     void inChunk(const ChunkInfo& chunk, uint64_t start, MessageRef& message) {
         if (message.log_ns < chunk.first_ns || message.log_ns > chunk.last_ns)
             throw FormatError(start, "the message's time is outside that of its chunk");
-        found_.chunks.back().messages[start - chunk.records_at] = {message.channel, message.log_ns};
+        if (takes_ == Takes::Strictly)
+            found_.chunks.back().messages[start - chunk.records_at] = {message.channel, message.log_ns};
         if (chunk.compression.empty()) return;
         message.offset = static_cast<uint32_t>(message.position - chunk.records_at);
         message.position = chunk.start;
@@ -117,6 +118,7 @@ private:
     }
 
     void chunk(const File::Record& record) {
+        if (!found_.chunks.empty()) found_.chunks.back().messages.clear();  // its indices have been read
         found_.chunks.push_back(chunkInfo(record));
         const ChunkInfo& chunk = found_.chunks.back();
         const size_t messages = found_.messages.size();

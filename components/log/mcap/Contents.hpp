@@ -28,8 +28,8 @@ struct ChunkInfo {
     uint64_t records_at = 0, records_size = 0;  ///< As stored in the file [B].
     uint32_t crc = 0;                           ///< 0: none.
     std::string compression;
-    /** The messages by their offset in the records. */
-    std::map<uint64_t, std::pair<uint16_t, uint64_t>> messages;  ///< Channel and log time.
+    /** The messages by their offset in the records, until their indices have been read: channel and log time. */
+    std::map<uint64_t, std::pair<uint16_t, uint64_t>> messages;
 };
 
 /** The contents of a file. */

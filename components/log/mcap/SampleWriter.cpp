@@ -214,8 +214,10 @@ void SampleWriter::next(std::filesystem::path path) {
     if (out_.isOpen()) transforms_.finish();
     out_.close();
     out_.discard();
-    if (out_.path() != path) bag_.add(out_.summary());  // otherwise next() has failed before
+    if (is_begun_ && out_.path() != path) bag_.add(out_.summary());
+    is_begun_ = false;  // until next() succeeds, which may be tried again with the same or another path
     out_.next(std::move(path));
+    is_begun_ = true;
     transforms_.nextFile();
     bag_.write(out_);
 }

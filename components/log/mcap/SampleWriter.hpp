@@ -30,6 +30,7 @@ public:
     void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
 
     void flush() override { out_.flush(); }
+    void sync() override { out_.sync(); }
     void close() override;
     void next(std::filesystem::path path) override;
 
@@ -57,6 +58,7 @@ private:
     ChunkWriter out_;
     Transforms transforms_;
     bool closed_ = false;
+    bool is_begun_ = true;  ///< Whether the present file could be opened.
     std::vector<uint16_t> channels_;  ///< For each stream.
     std::vector<Options> options_;    ///< For each stream.
     std::map<Schema, uint16_t> schemas_;

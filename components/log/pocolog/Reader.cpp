@@ -1,6 +1,7 @@
 #include "components/log/pocolog/Reader.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 #include "components/log/TypeNames.hpp"
@@ -17,16 +18,16 @@ struct Block {
     DataHeader header;
 };
 
-/** The result of one pass over the block headers of a file. */
+/** The receivers of what one pass over the block headers of a file finds, in file order. */
 struct Found {
-    std::vector<Declaration> declarations;
-    std::vector<Block> blocks;
-    std::vector<Gap> gaps;  ///< Unreadable parts, in file order.
+    std::function<void(Declaration)> declare;
+    std::function<void(const Block&)> add;
+    std::vector<Gap>& gaps;  ///< Unreadable parts.
 };
 
 class Scanner {
 public:
-    Scanner(const BlockFile& file, Found& found) : file_(file), found_(found) {}
+    Scanner(const BlockFile& file, const Found& found) : file_(file), found_(found) {}
 
     /** Reads complete blocks until the file ends; anything else is skipped or ends the pass. */
     void run(AtDamage at_damage) {
@@ -45,8 +46,8 @@ private:
     uint64_t take(uint64_t block) {
         const BlockHeader header = file_.header(block);
         if (header.type == BlockType::Stream && !index_.contains(header.stream)) {  // repetitions are harmless
-            found_.declarations.push_back(file_.declaration(block, header));
-            index_[header.stream] = found_.declarations.size() - 1;
+            found_.declare(file_.declaration(block, header));
+            index_.emplace(header.stream, index_.size());
         }
         if (header.type == BlockType::Data) sample(block, header);
         return block + sizeof header + header.size;
@@ -59,7 +60,7 @@ private:
                               "a sample of a stream that is not declared: " + std::to_string(header.stream));
         const DataHeader data = file_.data(block, header);
         const uint64_t position = block + sizeof header + data_header_size;
-        found_.blocks.push_back({stream->second, position, data});
+        found_.add({stream->second, position, data});
     }
 
     /** Returns the first place from `position` on with a plausible block, or the end of the file. */
@@ -94,8 +95,8 @@ private:
     }
 
     const BlockFile& file_;
-    Found& found_;
-    std::map<uint16_t, size_t> index_;  ///< From the number in the file to the index in `declarations`.
+    const Found& found_;
+    std::map<uint16_t, size_t> index_;  ///< From the number in the file to that among the declarations.
 };
 
 void checkPrologue(const Prologue& prologue, const std::filesystem::path& path) {
@@ -110,8 +111,7 @@ void checkPrologue(const Prologue& prologue, const std::filesystem::path& path) 
 }
 
 /** Scans a file. Throws ConfigError that names `path` when it is not a pocolog v2 file. */
-Found scan(const BlockFile& file, const std::filesystem::path& path, AtDamage at_damage) {
-    Found found;
+void scan(const BlockFile& file, const std::filesystem::path& path, AtDamage at_damage, const Found& found) {
     Prologue prologue;
     const size_t there = std::min<size_t>(file.size(), sizeof prologue);
     if (there < magic.size() || !file.read(0, &prologue, there))
@@ -126,7 +126,6 @@ Found scan(const BlockFile& file, const std::filesystem::path& path, AtDamage at
         found.gaps.push_back({0, there, there, "the file ends within its prologue"});
     else
         Scanner(file, found).run(at_damage);
-    return found;
 }
 
 }  // namespace
@@ -144,17 +143,16 @@ void decode(std::span<const char> bytes, types::SampleRoom room) {
 }
 
 Reader::Reader(const std::filesystem::path& path, AtDamage at_damage) : log::Reader(path), file_(path) {
-    Found found = scan(file_, path, at_damage);
-    for (Declaration& declared : found.declarations) {
+    const auto declare = [this](Declaration declared) {
         streams_.push_back({declared.name, declared.type, sampleOf(declared.type), metadataFromYaml(declared.yaml)});
         registries_.push_back(std::move(declared.registry));
         yamls_.push_back(std::move(declared.yaml));
-    }
-    for (const Block& block : found.blocks) {
+    };
+    const auto add = [this](const Block& block) {
         addSample(block.stream, block.header.received(), block.header.time(), block.position);
         stored_.push_back({block.header.size, block.header.compressed != 0});
-    }
-    gaps_ = std::move(found.gaps);
+    };
+    scan(file_, path, at_damage, {declare, add, gaps_});
 }
 
 std::span<const char> Reader::bytesOf(const SampleRef& at) {

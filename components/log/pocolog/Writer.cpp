@@ -177,6 +177,11 @@ void Writer::flush() {
     buffer_.clear();
 }
 
+void Writer::sync() {
+    flush();
+    if (isOpen()) file_->sync();
+}
+
 void Writer::close() {
     if (!isOpen()) return;
     flush();

@@ -42,6 +42,7 @@ public:
     void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
 
     void flush() override;
+    void sync() override;
     void close() override;  ///< Also writes the index.
     void next(std::filesystem::path path) override;
 

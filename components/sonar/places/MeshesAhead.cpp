@@ -1,5 +1,6 @@
 #include "components/sonar/places/MeshesAhead.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -22,15 +23,16 @@ void MeshesAhead::take(const Meshes& meshes, const MaterialLaws& laws) {
         next_ = meshes ? meshes : std::make_shared<const std::vector<types::MeshPtr>>();
         laws_ = laws;
     }
-    if (!worker_.joinable()) worker_ = std::thread([this] { work(); });
+    if (!worker_.joinable()) worker_ = types::startThread("meshes ahead", [this] { work(); });
     asked_.notify_one();
 }
 
 MeshesAhead::Made MeshesAhead::make(const types::MeshPtr& mesh, const MaterialLaws& laws) try {
-    Made made{MeshTree::of(mesh), MeshFacts::of(mesh), {}, {}, {}};
+    Made made{mesh, MeshTree::of(mesh), MeshFacts::of(mesh), {}, {}, {}};
     made.tree->tree();
     made.facts->box();
     made.facts->longestEdge();
+    made.facts->triangles();
     made.planes = made.facts->planes();
     made.facets = made.facts->facets(glm::dmat3(1), laws);
     made.curves = made.facts->curves(glm::dmat3(1));
@@ -40,14 +42,21 @@ MeshesAhead::Made MeshesAhead::make(const types::MeshPtr& mesh, const MaterialLa
 }
 
 void MeshesAhead::work() {
-    for (std::unique_lock lock(mutex_);;) {
+    types::useDefaultScheduling();
+    for (std::unique_lock<std::mutex> lock(mutex_);;) {
         asked_.wait(lock, [this] { return quit_ || next_; });
         if (quit_) return;
         const Meshes meshes = std::exchange(next_, nullptr);
         const MaterialLaws laws = laws_;
-        lock.unlock();
         std::vector<Made> made;
-        for (const types::MeshPtr& mesh : *meshes) made.push_back(make(mesh, laws));
+        for (size_t i = 0; i < meshes->size() && !quit_ && !next_; ++i) {
+            lock.unlock();
+            made.push_back(make((*meshes)[i], laws));
+            lock.lock();
+        }
+        for (Made& old : made_)
+            if (next_ && std::ranges::count(*next_, old.mesh) > 0) made.push_back(std::move(old));
+        lock.unlock();
         made_ = std::move(made);  // only now, so that data that is still needed is not made twice
         lock.lock();
     }

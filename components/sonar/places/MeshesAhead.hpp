@@ -1,18 +1,18 @@
 #pragma once
 #include <condition_variable>
 #include <memory>
-#include <mutex>
-#include <thread>
 #include <vector>
 
 #include "components/sonar/echo/MaterialLaws.hpp"
 #include "components/sonar/places/MeshFacts.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::sonar {
 
 /** Prepares the expensive data of meshes that a later ping will need, on its own thread, which starts with the first
- *  mesh. A ping that needs a mesh earlier waits for it, so the pings do not depend on the progress of the thread. */
+ *  mesh, without a realtime priority. A ping that needs a mesh earlier waits for it, and lends its priority meanwhile,
+ *  so the pings do not depend on the progress of the thread. */
 class MeshesAhead {
 public:
     using Meshes = std::shared_ptr<const std::vector<types::MeshPtr>>;
@@ -28,6 +28,7 @@ public:
 private:
     /** Data of a mesh that is kept until a geometry has the mesh. */
     struct Made {
+        types::MeshPtr mesh;
         std::shared_ptr<MeshTree> tree;
         std::shared_ptr<MeshFacts> facts;
         MeshFacts::Planes planes;
@@ -38,7 +39,7 @@ private:
     static Made make(const types::MeshPtr& mesh, const MaterialLaws& laws);
 
     std::thread worker_;
-    std::mutex mutex_;
+    types::PriorityMutex mutex_;
     std::condition_variable asked_;
     Meshes taken_, next_;  ///< Argument of the last take(); meshes that the worker has not received yet.
     MaterialLaws laws_;

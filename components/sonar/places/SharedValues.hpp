@@ -1,7 +1,10 @@
 #pragma once
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
+
+#include "types/Thread.hpp"
 
 namespace insonify::sonar {
 
@@ -23,30 +26,44 @@ public:
     }
 
 private:
-    std::mutex mutex_;
+    types::PriorityMutex mutex_;
     std::map<Key, std::weak_ptr<Value>> values_;
 };
 
-/** A value that is made at the first request. Thread-safe; other threads wait for the first. */
+/** Work that is done once, at the first call. Thread-safe; other threads wait for the first, and lend it their priority
+ *  meanwhile. Work that throws is done again at the next call. */
+class Once {
+public:
+    void call(const auto& work) {
+        if (done_.load(std::memory_order_acquire)) return;
+        const std::lock_guard alone(mutex_);
+        if (done_.load(std::memory_order_relaxed)) return;
+        work();
+        done_.store(true, std::memory_order_release);
+    }
+    bool isDone() const { return done_.load(std::memory_order_acquire); }
+
+private:
+    types::PriorityMutex mutex_;
+    std::atomic<bool> done_{false};
+};
+
+/** A value that is made at the first request, by Once. */
 template <class Value>
 class Lazy {
 public:
     template <class Make>
     const Value& get(const Make& make) {
-        std::call_once(once_, [&] {
-            value_ = make();
-            made_ = true;
-        });
+        once_.call([&] { value_ = make(); });
         return value_;
     }
     /** Calls `change(value)` where it has been made. Nobody may ask for it meanwhile. */
     void renew(const auto& change) {
-        if (made_) change(value_);
+        if (once_.isDone()) change(value_);
     }
 
 private:
-    std::once_flag once_;
-    bool made_ = false;
+    Once once_;
     Value value_{};
 };
 

@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "components/sonar/places/SharedValues.hpp"
-
 namespace insonify::sonar {
 namespace {
 
@@ -100,7 +98,7 @@ std::shared_ptr<MeshTree> MeshTree::of(const types::MeshPtr& mesh) {
 }
 
 const EmbreeScene& MeshTree::tree() {
-    std::call_once(built_, [this] {
+    built_.call([this] {
         parts_.clear();
         positions_ = mesh_->positions;
         positions_.emplace_back();  // Embree reads 16 bytes at each position
@@ -121,7 +119,7 @@ std::shared_ptr<StillTree> StillTree::of(const std::vector<TreeObject>& objects)
 }
 
 const EmbreeScene& StillTree::tree() {
-    std::call_once(built_, [this] { build(); });
+    built_.call([this] { build(); });
     return *tree_;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <glm/mat4x4.hpp>
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "components/sonar/places/SharedValues.hpp"
 #include "components/sonar/rays/Embree.hpp"
 #include "types/Geometry.hpp"
 
@@ -68,7 +68,7 @@ public:
 
 private:
     types::MeshPtr mesh_;
-    std::once_flag built_;
+    Once built_;
     std::vector<glm::vec3> positions_;
     std::vector<TreePart> parts_;
     std::unique_ptr<EmbreeScene> tree_;
@@ -97,7 +97,7 @@ private:
     void build();
 
     std::vector<TreeObject> objects_;
-    std::once_flag built_;
+    Once built_;
     std::vector<std::vector<glm::vec3>> positions_;  ///< Positions of each object.
     std::vector<TreePart> parts_;                    ///< Part of each geometry.
     std::unique_ptr<EmbreeScene> tree_;

@@ -2,14 +2,25 @@
 
 #include <algorithm>
 
+#include "types/Thread.hpp"
+
 namespace insonify::study {
 
 Workers::Workers() {
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-    for (unsigned i = 1; i < cores; ++i) threads_.emplace_back([this] { wait(); });
+    threads_.reserve(cores);
+    try {
+        for (unsigned i = 1; i < cores; ++i)
+            threads_.push_back(types::startThread("a worker of a path tracer", [this] { wait(); }));
+    } catch (...) {
+        end();
+        throw;
+    }
 }
 
-Workers::~Workers() {
+Workers::~Workers() { end(); }
+
+void Workers::end() {
     {
         const std::lock_guard lock(mutex_);
         quit_ = true;

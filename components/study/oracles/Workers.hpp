@@ -10,6 +10,7 @@ namespace insonify::study {
 /** Threads that persist between jobs: one per core, including the caller. */
 class Workers {
 public:
+    /** Throws std::runtime_error if the system permits fewer threads. */
     Workers();
     ~Workers();
     Workers(const Workers&) = delete;
@@ -30,6 +31,7 @@ private:
     void run(int count, Call call, const void* context);
     void takeTurns();
     void wait();
+    void end();
 
     std::vector<std::thread> threads_;
     std::mutex mutex_;

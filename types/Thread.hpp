@@ -1,0 +1,52 @@
+#pragma once
+#include <pthread.h>
+#include <sched.h>
+
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace insonify::types {
+
+/** Throws std::runtime_error: there is no thread for `what`, with the limits that may be the reason. */
+[[noreturn]] void throwNoThread(const std::string& what, const std::system_error& refused);
+
+/** Starts a thread. Throws std::runtime_error that names `what` if the system permits no more threads. */
+template <class Work>
+std::thread startThread(const std::string& what, Work&& work) {
+    try {
+        return std::thread(std::forward<Work>(work));
+    } catch (const std::system_error& refused) {
+        throwNoThread(what, refused);
+    }
+}
+
+/** Gives this thread the default scheduling of the system. A thread that a realtime task starts would otherwise have the
+ *  task's priority, and delay it on its own processor. The permitted processors stay. */
+void useDefaultScheduling();
+
+/** Lends the scheduling of this thread to another one, for which it waits; then the other has the default scheduling.
+ *  Without effect where this thread has no realtime priority. */
+class LentScheduling {
+public:
+    explicit LentScheduling(std::thread& other);
+    ~LentScheduling();
+    LentScheduling(const LentScheduling&) = delete;
+    LentScheduling& operator=(const LentScheduling&) = delete;
+
+private:
+    std::thread& other_;
+    bool is_lent_ = false;
+};
+
+/** A std::mutex whose owner runs at the highest priority of the threads that wait for it (PTHREAD_PRIO_INHERIT). So a
+ *  realtime thread waits only while the mutex is held, never for threads with a priority between its own and the
+ *  owner's. */
+class PriorityMutex : public std::mutex {
+public:
+    PriorityMutex();
+};
+
+}  // namespace insonify::types
