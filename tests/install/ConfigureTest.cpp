@@ -47,7 +47,8 @@ public:
     /** Configures with these options and none of those before. */
     Outcome configure(const std::vector<std::string>& options) const {
         std::vector<std::string> words{INSONIFY_CMAKE, "-S", insonify::test::source_dir,        "-B", "build", "-G",
-                                       "Ninja",        "-U", "CMAKE_DISABLE_FIND_PACKAGE_*"};
+                                       "Ninja",        "-U", "CMAKE_DISABLE_FIND_PACKAGE_*",
+                                       "--no-warn-unused-cli"};
         words.insert(words.end(), options.begin(), options.end());
         return call(folder_, words);
     }
