@@ -34,9 +34,10 @@ void Detector::take(const types::Sonar& ping, const DetectionConfig& config, con
     levels_.resize(ping.bins.size());
     double strongest = 0;
     for (size_t i = 0; i < levels_.size(); ++i) {
-        const float received = ping.bins[i];
-        const bool is_water = i < rules.water.size() && !(received > rules.water[i]);
-        levels_[i] = is_water ? 0 : tables_.at(i % ping.bin_count, static_cast<double>(received));
+        const size_t k = i % ping.bin_count;
+        const double level = tables_.at(k, static_cast<double>(ping.bins[i]));
+        const bool is_water = i < rules.water.size() && level <= static_cast<double>(rules.water[i]) * tables_.gain(k);
+        levels_[i] = is_water ? 0 : level;
         strongest = std::max(strongest, levels_[i]);
     }
     minimum_ = std::max(strongest * shareOf(config.threshold_db), std::numeric_limits<double>::min());
