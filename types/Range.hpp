@@ -11,7 +11,8 @@ namespace insonify::types {
  *  sensor_msgs/Range. */
 struct Range {
     static constexpr const char* type_name = "/insonify/Range";
-    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();           ///< Nothing is in range.
+    static constexpr double too_near = -std::numeric_limits<double>::infinity();  ///< Nearer than range_min (REP 117).
 
     Time time;
     double range = none;
@@ -23,7 +24,7 @@ struct Range {
 
     static void describe(auto& self, auto& visit) {
         visit({"time", "us", "when the range was true in the world"}, self.time);
-        visit({"range", "m", "to the first return; NaN: there is none"}, self.range);
+        visit({"range", "m", "to the first return; NaN: there is none; -inf: it is nearer than range_min"}, self.range);
         visit({"range_min", "m", "min range of returns"}, self.range_min);
         visit({"range_max", "m", "max range of returns"}, self.range_max);
         visit({"field_of_view", "rad", "opening of the beam"}, self.field_of_view);

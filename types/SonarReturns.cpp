@@ -22,7 +22,7 @@ void report(const Sonar& ping, const SonarTruth& truth, size_t at, const Return&
 
 }  // namespace
 
-void SonarReturns::take(const Sonar& ping, const SonarTruth& truth) {
+void SonarReturns::take(const Sonar& ping, const SonarTruth& truth, const std::vector<uint32_t>& strongest) {
     time = ping.time;
     bearings = ping.bearings;
     forEachArray(*this, [&](const char*, auto& numbers, auto) {
@@ -30,7 +30,6 @@ void SonarReturns::take(const Sonar& ping, const SonarTruth& truth) {
     });
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
         const auto begin = static_cast<ptrdiff_t>(beam * ping.bin_count), end = begin + ping.bin_count;
-        const auto strongest = std::max_element(ping.bins.begin() + begin, ping.bins.begin() + end);
         const auto shown = [&](ptrdiff_t bin) {
             const auto at = static_cast<size_t>(bin);
             return truth.object[at] != SonarTruth::no_object && !truth.isByMirror(at);
@@ -40,8 +39,8 @@ void SonarReturns::take(const Sonar& ping, const SonarTruth& truth) {
         if (first < end)
             report(ping, truth, static_cast<size_t>(first),
                    {first_range[beam], first_level[beam], first_elevation[beam]});
-        if (strongest != ping.bins.begin() + end && *strongest > 0)
-            report(ping, truth, static_cast<size_t>(strongest - ping.bins.begin()),
+        if (strongest[beam] < ping.bin_count)
+            report(ping, truth, beam * ping.bin_count + strongest[beam],
                    {strongest_range[beam], strongest_level[beam], strongest_elevation[beam]});
     }
 }

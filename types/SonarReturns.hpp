@@ -25,10 +25,10 @@ struct SonarReturns {
     std::vector<float> strongest_elevation;
 
     /** Fills the returns from a ping and its truth, which have the same shape. The first return is the nearest bin that
-     *  shows an object. The strongest return is the bin with the max echo; if that is from a sidelobe or the water, its
-     *  elevation is NaN. Ranges are those of the bin's middle; levels are 10 log10 of the bin. Allocates nothing when
-     *  the number of beams has not changed. */
-    void take(const Sonar& ping, const SonarTruth& truth);
+     *  shows an object. If the strongest return is from a sidelobe, its elevation is NaN. Ranges are those of the bin's
+     *  middle; levels are 10 log10 of the bin. Allocates nothing when the number of beams has not changed.
+     *  @param strongest number of the strongest bin of each beam; bin_count: none */
+    void take(const Sonar& ping, const SonarTruth& truth, const std::vector<uint32_t>& strongest);
 
     std::vector<size_t> shape() const { return {bearings.size()}; }
     /** Returns the error of the lists, as the rest of a sentence after "a sample"; null when there is none. */
@@ -50,7 +50,7 @@ struct SonarReturns {
         visit({"first_range", "m", "slant range of the nearest bin that shows an object"}, self.first_range);
         visit({"first_level", "dB", "10 log10 of that bin"}, self.first_level);
         visit({"first_elevation", "rad", "from which its echo comes, positive up"}, self.first_elevation);
-        visit({"strongest_range", "m", "slant range of the bin with the greatest echo"}, self.strongest_range);
+        visit({"strongest_range", "m", "slant range of the strongest return, without spreading, ring-down and water"}, self.strongest_range);
         visit({"strongest_level", "dB", "10 log10 of that bin"}, self.strongest_level);
         visit({"strongest_elevation", "rad", "from which its echo comes; NaN: of no object in the beam"},
               self.strongest_elevation);

@@ -95,7 +95,7 @@ bool PublisherTask::configureHook() {
     if (named.tf_static) announceMounts(named.tf_static->topic);
     if (named.parameter_services && environment().deployment)
         parameters_.emplace(*node_, named.node.node_name, name(), *environment().deployment);
-    takeFrequencies();
+    takeSonars();
     node_->announce();
     return true;
 }
@@ -129,18 +129,19 @@ void PublisherTask::announceMounts(const std::string& topic) {
     if (!tf_static_->write(bytes)) throw std::runtime_error("the mounts cannot be published: " + tf_static_->failure());
 }
 
-void PublisherTask::takeFrequencies() {
+void PublisherTask::takeSonars() {
     known_changes_ = *environment().record_changes;
     inputs_.forEach([](auto& input) {
         const auto given = framework::upstreamNumber(input.port, {"frequency_khz", "absorption.frequency_khz"});
         const double frequency = given.value_or(0);
-        for (const auto& publication : input.kept.publications) publication->takeFrequency(frequency);
+        const types::ReturnRules rules = framework::upstreamReturnRules(input.port);
+        for (const auto& publication : input.kept.publications) publication->takeSonar(frequency, rules);
     });
 }
 
 void PublisherTask::updateHook() {
     using Clock = std::chrono::steady_clock;
-    if (*environment().record_changes != known_changes_) takeFrequencies();
+    if (*environment().record_changes != known_changes_) takeSonars();
     inputs_.forEach([this]<class Input>(Input& input) {
         auto start = Clock::now();
         for (typename Input::Carried sample{}; input.port.readNew(sample); start = Clock::now()) {

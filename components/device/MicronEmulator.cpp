@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "components/device/DeviceBins.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::device {
@@ -157,7 +158,10 @@ Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
 void MicronEmulator::takePing(const types::Sonar& ping) {
     if (!line_ || !line_->asked.take(ping.time)) return;
     warned_ = false;
-    line_->data = dataOf(ping);
+    types::Sonar scaled = ping;
+    const bool is_other = ping.bin_count == command_.bins &&
+                          takeBinWidth(listening() * device_.speed_of_sound / 2 / command_.bins, scaled);
+    line_->data = dataOf(is_other ? scaled : ping);
 }
 
 void MicronEmulator::finishLine() {

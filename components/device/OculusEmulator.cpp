@@ -152,7 +152,8 @@ OculusResult OculusEmulator::resultOf(const Asked& asked, const types::Sonar& co
     result.speed_of_sound = static_cast<double>(codes.speed_of_sound);
     result.start_s = (asked.settings.time - started_).seconds();
     result.start_ticks = static_cast<uint32_t>(static_cast<uint64_t>(result.start_s * oculus_ticks_per_second));
-    result.range_resolution = asked.settings.range / codes.bin_count;
+    result.range_resolution = codes.binWidth();
+    if (!(result.range_resolution > 0)) result.range_resolution = asked.settings.range / codes.bin_count;
     encoder_.encode(codes, result);
     result.settle();
     return result;

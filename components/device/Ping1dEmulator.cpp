@@ -24,14 +24,16 @@ bool isMeasurement(uint16_t message) {
 
 }  // namespace
 
-Ping1dReturn ping1dReturn(std::span<const float> codes) {
+Ping1dReturn ping1dReturn(std::span<const float> profile, size_t first) {
+    first = std::min(first, profile.size());
+    const std::span<const float> codes = profile.subspan(first);
     const float max_code = codes.empty() ? 0 : *std::ranges::max_element(codes);
     if (!(max_code > 0)) return {};
     const auto strong = [&](float code) { return code >= max_code / 2; };
     const auto begin = std::ranges::find_if(codes, strong);
     const auto end = std::find_if_not(begin, codes.end(), strong);
     const double mean = std::accumulate(codes.begin(), codes.end(), 0.0) / static_cast<double>(codes.size());
-    return {static_cast<size_t>(std::max_element(begin, end) - codes.begin()),
+    return {first + static_cast<size_t>(std::max_element(begin, end) - codes.begin()),
             static_cast<uint16_t>(std::lround(100 * (1 - mean / static_cast<double>(max_code))))};
 }
 
@@ -173,8 +175,9 @@ void Ping1dEmulator::finish(const types::Sonar& ping) {
     Ping1dMeasurement& made = last_.measurement;
     const auto samples = std::min<size_t>(static_cast<size_t>(config_.profile_samples), ping.bin_count);
     const auto profile = std::span(ping.bins).last(samples);
-    const Ping1dReturn found = ping1dReturn(profile);
     const double step = static_cast<double>(made.length) / static_cast<double>(samples);
+    const double blanked = std::max(0.0, (1000 * config_.nearest - made.start) / step);
+    const Ping1dReturn found = ping1dReturn(profile, static_cast<size_t>(blanked + 1e-9));
     made.confidence = found.confidence;
     made.distance =
         found.confidence == 0

@@ -9,6 +9,7 @@ namespace insonify::device {
 struct Ping1dConfig {
     double max_range = 100;
     int profile_samples = 200;
+    double nearest = 0;  ///< Nearer returns are blanked: the sonar's `range_min` or its receiver's; not a key [m].
 
     static void describe(auto& self, auto& visit) {
         visit({"max_range", "m", "end of the scan, at most", 1, 1000}, self.max_range);
@@ -23,8 +24,9 @@ struct Ping1dReturn {
 };
 
 /** Finds the maximum of the first run of codes that reach half of the max. Confidence is the difference of the max and
- *  the mean code, as a part of the max. */
-Ping1dReturn ping1dReturn(std::span<const float> codes);
+ *  the mean code, as a part of the max.
+ *  @param first codes before this are blanked */
+Ping1dReturn ping1dReturn(std::span<const float> codes, size_t first = 0);
 
 /** A Blue Robotics Ping1D: an echo sounder that sends the distance of its target and the profile of its echoes.
  *

@@ -2,6 +2,7 @@
 #include "components/device/Ping1dEmulator.hpp"
 #include "components/device/PingDeviceTask.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Upstream.hpp"
 
 namespace insonify::device {
 
@@ -24,7 +25,11 @@ public:
 
 private:
     const PingEnds& ends() const override { return config->ends; }
-    std::unique_ptr<PingDevice> makeDevice() const override { return std::make_unique<Ping1dEmulator>(config->device); }
+    std::unique_ptr<PingDevice> makeDevice() const override {
+        Ping1dConfig device = config->device;
+        device.nearest = framework::upstreamReturnRules(ping).range_min;
+        return std::make_unique<Ping1dEmulator>(device);
+    }
 };
 
 }  // namespace insonify::device

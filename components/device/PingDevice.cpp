@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/device/DeviceBins.hpp"
+
 namespace insonify::device {
 namespace {
 
@@ -58,10 +60,12 @@ bool PingTurn::take(const types::SonarPtr& ping, types::Time now) {
     const double speed = static_cast<double>(ping->speed_of_sound);
     const bool other = speed > 0 && std::abs(speed / speed_of_sound_ - 1) > 1e-6;
     if (other) speed_of_sound_ = speed;
-    if (other && !std::exchange(again_, true))
+    if (other && !std::exchange(again_, true)) {
         ask(now);
-    else
-        ping_ = ping;
+        return true;
+    }
+    auto scaled = std::make_shared<types::Sonar>(*ping);
+    ping_ = takeBinWidth(speed_of_sound_ * listens_ / 2 / ping->bin_count, *scaled) ? scaled : ping;
     return true;
 }
 

@@ -9,6 +9,7 @@
 #include "components/framework/TaskContext.hpp"
 #include "types/DeploymentControl.hpp"
 #include "types/Plan.hpp"
+#include "types/ReturnLevels.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::framework {
@@ -26,6 +27,15 @@ public:
     /** Returns, in realtime, the clock that all tasks read instead of `wall`; it may follow `wall` at its own pace.
      *  None: this task has no clock. Called once, when the connections are made. */
     virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
+};
+
+/** A sonar: the source of pings in which others detect returns. */
+class ReturnSource {
+public:
+    virtual ~ReturnSource() = default;
+
+    /** Returns what is known of the bins of its pings, with the present configuration. */
+    virtual types::ReturnRules returnRules() const = 0;
 };
 
 /** A task that plays a recording. */

@@ -5,7 +5,9 @@
 
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/framework/YamlText.hpp"
+#include "types/Sonar.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -70,6 +72,20 @@ std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer
     const auto value = upstreamValue(port, paths);
     const double* const number = value ? std::get_if<double>(&*value) : nullptr;
     return number ? std::optional(*number) : std::nullopt;
+}
+
+types::ReturnRules upstreamReturnRules(const InputPortBase& port) {
+    types::ReturnRules rules;
+    forEachUpstream(port, [&](const TaskContext& task) {
+        const auto* const sonar = dynamic_cast<const ReturnSource*>(&task);
+        if (sonar) rules = sonar->returnRules();
+        return sonar != nullptr;
+    });
+    const bool is_amplified = std::ranges::any_of(
+        port.channels(), [](const auto& channel) { return channel->source().content() == types::left_receiver; });
+    if (!is_amplified) return rules;
+    const double blanked = upstreamNumber(port, {"blanking.range_min"}).value_or(0);
+    return {.range_min = std::max(rules.range_min, blanked)};
 }
 
 std::optional<types::Mount> upstreamMount(const InputPortBase& port) {

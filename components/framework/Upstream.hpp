@@ -7,6 +7,7 @@
 
 #include "components/framework/Port.hpp"
 #include "types/Mount.hpp"
+#include "types/ReturnLevels.hpp"
 #include "types/TaskRecord.hpp"
 
 namespace insonify::framework {
@@ -20,6 +21,10 @@ std::optional<types::PropertyValue> upstreamValue(const InputPortBase& port, std
 
 /** As upstreamValue, for a number. */
 std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer_list<const char*> paths);
+
+/** Returns what is known of the bins of a port's pings: of the nearest sonar upstream, and of the receiver between; the
+ *  defaults where there is no sonar. */
+types::ReturnRules upstreamReturnRules(const InputPortBase& port);
 
 /** As upstreamValue, for the property `mount`: the pose on its body of the sensor that made the samples. */
 std::optional<types::Mount> upstreamMount(const InputPortBase& port);

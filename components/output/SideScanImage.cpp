@@ -31,18 +31,23 @@ float meanOf(const float* bins, uint32_t count, double from, double to) {
 }  // namespace
 
 SideScanImage::SideScanImage(const SideScanPictureConfig& config)
-    : WaterfallImage(config), ground_range_(config.ground_range) {}
+    : WaterfallImage(config), ground_range_(config.ground_range), is_decibel_(config.scale == BinScale::Decibel) {}
 
-double SideScanImage::altitudeOf(const types::Sonar& ping) const {
+double SideScanImage::altitudeOf(const types::Sonar& ping) {
     if (!ground_range_) return 0;
     if (ground_range_->altitude) return *ground_range_->altitude;
     if (std::isfinite(altitude_)) return altitude_;
-    const auto strongest = std::max_element(ping.bins.begin(), ping.bins.end());
-    const float minimum = *strongest * static_cast<float>(std::pow(10, ground_range_->threshold_db / 10));
+    levels_.take(ping, ping.bin_count, returns_);
+    const auto levelAt = [&](size_t i) {
+        const float bin = is_decibel_ ? std::pow(10.0f, ping.bins[i] / 10) : ping.bins[i];
+        return levels_.at(i % ping.bin_count, static_cast<double>(bin));
+    };
+    double strongest = 0;
+    for (size_t i = 0; i < ping.bins.size(); ++i) strongest = std::max(strongest, levelAt(i));
+    const double minimum = strongest * std::pow(10, ground_range_->threshold_db / 10);
     uint32_t first = ping.bin_count;
-    for (size_t k = 0; k < ping.bins.size(); ++k)
-        if (ping.bins[k] > 0 && ping.bins[k] >= minimum)
-            first = std::min(first, static_cast<uint32_t>(k % ping.bin_count));
+    for (size_t i = 0; strongest > 0 && i < ping.bins.size(); ++i)
+        if (levelAt(i) >= minimum) first = std::min(first, static_cast<uint32_t>(i % ping.bin_count));
     return ping.binStart(first == ping.bin_count ? 0 : first + 0.5);
 }
 

@@ -4,6 +4,7 @@
 #include "components/output/PictureConfig.hpp"
 #include "components/output/WaterfallImage.hpp"
 #include "types/Range.hpp"
+#include "types/ReturnLevels.hpp"
 
 namespace insonify::output {
 
@@ -16,7 +17,7 @@ struct GroundRangeConfig {
         visit({"altitude", "m",
                "height above the bottom; absent: that of port altitude, else the range of the first return", 0, 1e5},
               self.altitude);
-        visit({"threshold_db", "dB", "min level of the first return, relative to the ping's strongest bin", -300, 0},
+        visit({"threshold_db", "dB", "min level of the first return without spreading, relative to the strongest of the ping", -300, 0},
               self.threshold_db);
     }
 };
@@ -41,14 +42,19 @@ public:
 
     /** Sets the measured height above the bottom for the following pings [m]; not finite: unknown. */
     void setAltitude(double altitude) { altitude_ = altitude; }
+    /** Sets what is known of the bins of the following pings. */
+    void setReturns(const types::ReturnRules& returns) { returns_ = returns; }
 
 private:
     void fillRow(const types::Sonar& ping, cv::Mat& row) override;
     void addRanges(Overlay& overlay, double range) const override;
-    double altitudeOf(const types::Sonar& ping) const;
+    double altitudeOf(const types::Sonar& ping);
 
     std::optional<GroundRangeConfig> ground_range_;
+    bool is_decibel_;
     double altitude_ = types::Range::none;
+    types::ReturnRules returns_;
+    types::ReturnLevels levels_;
 };
 
 }  // namespace insonify::output

@@ -1,6 +1,8 @@
 #pragma once
 #include <deque>
+#include <optional>
 
+#include "components/framework/Upstream.hpp"
 #include "components/output/PictureTask.hpp"
 #include "components/output/SideScanImage.hpp"
 
@@ -22,6 +24,7 @@ private:
         auto painter = std::make_unique<SideScanImage>(*config);
         painter_ = painter.get();
         altitudes_.clear();
+        known_changes_.reset();
         return painter;
     }
     void updateHook() override {
@@ -30,6 +33,10 @@ private:
         if (!ping.readNew(sample)) return;
         while (altitudes_.size() > 1 && altitudes_[1].time <= sample->time) altitudes_.pop_front();
         if (!altitudes_.empty()) painter_->setAltitude(altitudes_.front().range);
+        if (const uint64_t changes = *environment().record_changes; changes != known_changes_) {
+            known_changes_ = changes;
+            painter_->setReturns(framework::upstreamReturnRules(ping));
+        }
         take(*sample);
     }
     void keepAltitudes() {
@@ -43,6 +50,7 @@ private:
     }
 
     SideScanImage* painter_ = nullptr;
+    std::optional<uint64_t> known_changes_;  ///< Of the tasks' records, when the sonar's bins were last asked for.
     std::deque<types::Range> altitudes_;  ///< The altitude in use, and later altitudes.
 };
 

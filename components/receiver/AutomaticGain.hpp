@@ -11,7 +11,7 @@ namespace insonify::receiver {
  *  @param means mean intensity of each bin over the beams, other gain included [1]
  *  @param first bins before this, and bins of NaN, are skipped
  *  @param target level of the means with the gain [dB]
- *  @param bin_ms duration of a bin [ms]
+ *  @param bin_ms time in which the echoes of a bin are received: two-way [ms]
  *  @param gains_db output, gain of each bin [dB] */
 void followLevel(const AutomaticGainConfig& config, std::span<const double> means, size_t first, double target,
                  double bin_ms, std::span<double> gains_db);

@@ -130,7 +130,7 @@ double Receiver::gainDb(const types::Sonar& ping, double r) const {
 }
 
 void Receiver::makeTables(const types::Sonar& ping) {
-    const Axis axis{ping.bin_count, ping.binWidth(), 1e3 * ping.binSeconds(),
+    const Axis axis{ping.bin_count, ping.binWidth(), ping.binSeconds(),
                     std::isnan(ping.beam_width.rad) ? -1 : ping.beam_width.rad};  // NaN does not equal itself
     if (axis == axis_) return;
     axis_ = axis;
@@ -168,7 +168,7 @@ void Receiver::followLevel(const types::Sonar& ping) {
     for (size_t k = 0; k < count; ++k)
         means_[k] *= std::min(powerOf(fixed_db_[k]), 1e200) / std::max(1u, ping.beam_count);
     receiver::followLevel(*config_.automatic_gain, means_, silent_, config_.automatic_gain->target_db + scaleDb(),
-                          1e3 * ping.binSeconds(), automatic_db_);
+                          2e3 * ping.binSeconds(), automatic_db_);
     for (size_t k = 0; k < count; ++k) {
         const double gain = fixed_db_[k] + automatic_db_[k];
         factor_[k] = std::min(powerOf(gain), 1e300);

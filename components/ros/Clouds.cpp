@@ -165,7 +165,9 @@ void convert(const types::Range& range, const std::string& frame_id, Range& mess
     message.field_of_view = static_cast<float>(range.field_of_view.rad);
     message.min_range = static_cast<float>(range.range_min);
     message.max_range = static_cast<float>(range.range_max);
-    message.range = range.isKnown() ? static_cast<float>(range.range) : std::numeric_limits<float>::infinity();
+    constexpr float nothing = std::numeric_limits<float>::infinity();  // REP 117
+    message.range = range.isKnown() ? static_cast<float>(range.range)
+                                    : (range.range == types::Range::too_near ? -nothing : nothing);
     message.variance = 0;
 }
 
@@ -174,7 +176,8 @@ void convert(const Range& message, types::Range& range) {
     range.field_of_view = {static_cast<double>(message.field_of_view)};
     range.range_min = static_cast<double>(message.min_range);
     range.range_max = static_cast<double>(message.max_range);
-    range.range = std::isfinite(message.range) ? static_cast<double>(message.range) : types::Range::none;
+    const double measured = static_cast<double>(message.range);
+    range.range = std::isfinite(measured) || measured < 0 ? measured : types::Range::none;
 }
 
 }  // namespace insonify::ros

@@ -92,18 +92,53 @@ Vector3 directionOf(double bearing_rad, SensorFrame frame) {
     return frame == SensorFrame::ZForward ? Vector3{0, -port, ahead} : Vector3{ahead, port, 0};
 }
 
-DetectionThreshold::DetectionThreshold(const types::Sonar& ping, const SonarOptions& options) : ping_(ping) {
-    minimum_ = binAt(referenceDb(ping, options) + options.threshold_db, options.scale);
-    const float min_echo = options.scale == BinScale::Linear ? std::numeric_limits<float>::denorm_min()
-                                                             : std::nextafter(static_cast<float>(nothing_db), 0.0f);
-    minimum_ = std::max(minimum_, min_echo);
+namespace {
+
+const types::ReturnLevels& levelsOf(const types::Sonar& ping, const SonarOptions& options) {
+    static thread_local types::ReturnLevels levels;  // reuses its memory
+    types::ReturnRules rules = options.returns;
+    rules.range_min = rangeMin(options);
+    levels.take(ping, ping.bin_count, rules);
+    return levels;
+}
+
+}  // namespace
+
+double rangeMin(const SonarOptions& options) { return options.range_min.value_or(options.returns.range_min); }
+
+DetectionThreshold::DetectionThreshold(const types::Sonar& ping, const SonarOptions& options)
+    : ping_(ping),
+      levels_(levelsOf(ping, options)),
+      is_linear_(options.scale == BinScale::Linear),
+      is_absolute_(options.reference_db.has_value()) {
+    if (!is_linear_) {
+        minimum_ = static_cast<double>(
+            std::max(binAt(referenceDb(ping, options) + options.threshold_db, options.scale),
+                     std::nextafter(static_cast<float>(nothing_db), 0.0f)));
+        return;
+    }
+    double reference = is_absolute_ ? std::pow(10, *options.reference_db / 10) : 0;
+    for (size_t i = 0; !is_absolute_ && i < ping.bins.size(); ++i)
+        reference = std::max(reference, levels_.at(i % ping.bin_count, static_cast<double>(ping.bins[i])));
+    minimum_ = std::max(std::min(reference, std::numeric_limits<double>::max()) * std::pow(10, options.threshold_db / 10),
+                        std::numeric_limits<double>::denorm_min());
 }
 
 std::optional<uint32_t> DetectionThreshold::firstOf(uint32_t beam) const {
     const float* bins = ping_.bins.data() + size_t{beam} * ping_.bin_count;
-    const float* first = std::find_if(bins, bins + ping_.bin_count, [&](float bin) { return isReturn(bin); });
-    if (first == bins + ping_.bin_count) return std::nullopt;
-    return static_cast<uint32_t>(first - bins);
+    for (uint32_t k = 0; k < ping_.bin_count; ++k)
+        if (isReturn(k, bins[k])) return k;
+    return std::nullopt;
+}
+
+bool DetectionThreshold::isTooNear(uint32_t beam) const {
+    const float* bins = ping_.bins.data() + size_t{beam} * ping_.bin_count;
+    if (firstOf(beam)) return false;
+    for (size_t k = 0; k < levels_.first(); ++k)
+        if (is_linear_ ? levels_.unblanked(k, static_cast<double>(bins[k])) >= minimum_
+                       : bins[k] >= static_cast<float>(minimum_))
+            return true;
+    return false;
 }
 
 void fillImage(const types::Sonar& ping, const SonarOptions& options, SonarImageData& image) {

@@ -13,17 +13,29 @@ inline float binCentre(const types::Sonar& ping, uint32_t k) { return static_cas
 /** Returns the unit vector at a bearing (positive to port) in the plane of the fan. */
 Vector3 directionOf(double bearing_rad, SensorFrame frame);
 
-/** Decides which bins of one ping are returns, by a threshold. */
+/** Returns the range from which on bins of a ping are returns [m]. */
+double rangeMin(const SonarOptions& options);
+
+/** Decides which bins of one ping are returns, by a threshold for types::ReturnLevels. It is relative to the strongest
+ *  level of the ping; with a `reference_db`, to that level of a bin. Of levels in decibels only the range counts. */
 class DetectionThreshold {
 public:
     DetectionThreshold(const types::Sonar& ping, const SonarOptions& options);
-    bool isReturn(float bin) const { return bin >= minimum_; }
+    /** Whether bin `k` of a beam, which has this value, is a return. */
+    bool isReturn(size_t k, float bin) const {
+        if (is_linear_) return levels_.at(k, static_cast<double>(bin)) >= minimum_ * (is_absolute_ ? levels_.gain(k) : 1);
+        return k >= levels_.first() && bin >= static_cast<float>(minimum_);
+    }
     /** Returns the first bin of a beam that is a return. */
     std::optional<uint32_t> firstOf(uint32_t beam) const;
+    /** Whether a beam has no return, but a strong echo nearer than rangeMin(). */
+    bool isTooNear(uint32_t beam) const;
 
 private:
     const types::Sonar& ping_;
-    float minimum_;
+    const types::ReturnLevels& levels_;
+    bool is_linear_, is_absolute_;
+    double minimum_;
 };
 
 /** Writes the bins in the order and type of the options. */

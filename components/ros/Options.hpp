@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "types/Describe.hpp"
+#include "types/ReturnLevels.hpp"
 #include "types/WorldFrame.hpp"
 
 namespace insonify::ros {
@@ -36,6 +37,8 @@ struct SonarOptions {
     double threshold_db = -20;
     double frequency_khz = 0;
     std::string frame_id = "sonar";
+    std::optional<double> range_min;
+    types::ReturnRules returns;  ///< Of the sonar whose pings are converted; not a key.
 
     static void describe(auto& self, auto& visit) {
         visit({"order", "", "order of an image's echoes: all beams of a bin together, or all bins of a beam"},
@@ -51,6 +54,9 @@ struct SonarOptions {
         visit({"reference_db", "dB", "level of the strongest echo; absent: that of each ping", -3000, 3000},
               self.reference_db);
         visit({"threshold_db", "dB", "min level of a return, relative to the reference", -300, 0}, self.threshold_db);
+        visit({"range_min", "m",
+               "nearer bins are no returns; absent: the sonar's range_min, or its receiver's blanking", 0, 1e5},
+              self.range_min);
         visit({"frequency_khz", "kHz", "frequency of the device; 0: that of the sonar, if known", 0, 1e5},
               self.frequency_khz);
         visit({"frame_id", "", "name of the sonar's frame"}, self.frame_id);

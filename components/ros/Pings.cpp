@@ -118,7 +118,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2&
         const float x = static_cast<float>(direction.x), y = static_cast<float>(direction.y),
                     z = static_cast<float>(direction.z);
         for (uint32_t bin = 0; bin < ping.bin_count; ++bin)
-            if (const float echo = ping.bins[size_t{beam} * ping.bin_count + bin]; rule.isReturn(echo)) {
+            if (const float echo = ping.bins[size_t{beam} * ping.bin_count + bin]; rule.isReturn(bin, echo)) {
                 const float range = binCentre(ping, bin);
                 addPoint({x * range, y * range, z * range, echo}, message);
             }
@@ -139,7 +139,8 @@ void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& m
         message.ranges.resize(ray + 1, std::numeric_limits<float>::quiet_NaN());
         message.intensities.resize(ray + 1, 0);
         const auto bin = rule.firstOf(arc.beams[place]);
-        message.ranges[ray] = bin ? binCentre(ping, *bin) : std::numeric_limits<float>::infinity();
+        constexpr float nothing = std::numeric_limits<float>::infinity();
+        message.ranges[ray] = bin ? binCentre(ping, *bin) : rule.isTooNear(arc.beams[place]) ? -nothing : nothing;
         if (bin) message.intensities[ray] = ping.bins[size_t{arc.beams[place]} * ping.bin_count + *bin];
     }
     const size_t rays = message.ranges.size();
@@ -147,7 +148,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& m
     message.angle_min = static_cast<float>(first);
     message.angle_increment = rays > 1 ? static_cast<float>((last - first) / static_cast<double>(rays - 1)) : 0;
     message.angle_max = static_cast<float>(last);
-    message.range_min = 0;
+    message.range_min = static_cast<float>(rangeMin(options));
     message.range_max = static_cast<float>(ping.binStart(ping.bin_count));
 }
 

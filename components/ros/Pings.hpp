@@ -28,7 +28,8 @@ void convert(const types::Sonar& ping, const SonarOptions& options, SonarRanges&
 /** Writes every bin at or above the threshold as a point: x, y, z [m], intensity: the bin. */
 void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2& message);
 
-/** Writes first returns as above, infinite where there is none. Rays are ordered from starboard to port for any order
+/** Writes first returns as above, infinite where there is none (REP 117), -infinite where
+ *  there is only an echo nearer than `range_min`. Rays are ordered from starboard to port for any order
  *  of beams; angles exceed pi across +-180 degrees. If beams are at multiples of the min angle between two of them, the
  *  rays in gaps have range NaN. Throws std::invalid_argument for beams at other angles. */
 void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& message);

@@ -29,7 +29,8 @@ struct AltimeterConfig {
  *
  *  The beam looks along x of the sonar frame. It is `beam_width_deg` wide about z and `beam_height_deg` about y: a
  *  mount with `pitch_deg: 90` looks straight down. In addition to the ping it writes `range`: the middle of the first
- *  bin that reaches the threshold, in the noiseless ping; NaN where no bin does. */
+ *  bin that reaches the threshold, in the noiseless ping without spreading, ring-down and water. Where no bin does, it is
+ *  types::Range::too_near if there is a surface in the beam nearer than `range_min`, else NaN. */
 class AltimeterTask final : public PingTask {
 public:
     using PingTask::PingTask;
@@ -41,6 +42,17 @@ public:
 
 protected:
     void writeMore(const types::Sonar& sample, const types::Pose& sonar) override;
+    bool configureHook() override;
+    void cleanupHook() override;
+
+private:
+    /** Returns whether a surface in the beam is nearer than `range_min`. */
+    bool isTooNear();
+
+    Detector detector_;
+    std::unique_ptr<SonarRenderer> near_;  ///< Of the range up to `range_min`; made when it is needed.
+    types::GeometryPtr near_scene_;
+    types::Sonar near_ping_;
 };
 
 }  // namespace insonify::sonar

@@ -222,7 +222,25 @@ void PingTask::prepareRenderer() {
     takePlan();
 }
 
+const DetectionRules& PingTask::detectionRules() {
+    if (!rules_) rules_ = DetectionRules::of(renderer_->renderPlan());
+    return *rules_;
+}
+
+void PingTask::findStrongest(const types::Sonar& sample, const DetectionRules& rules,
+                             std::vector<uint32_t>& strongest) {
+    DetectionConfig any;
+    any.threshold_db = -3000;
+    detector_.take(sample, any, rules);
+    strongest.resize(sample.beam_count);
+    for (uint32_t beam = 0; beam < sample.beam_count; ++beam) {
+        const auto found = detector_.strongest(beam);
+        strongest[beam] = found ? static_cast<uint32_t>(found->bin) : sample.bin_count;
+    }
+}
+
 void PingTask::takePlan() {
+    rules_.reset();
     plan_ = renderer_->plan();
     if (const std::string note = depthNotice(renderer_->renderPlan(), takenScene()); !note.empty())
         plan_->notices.push_back(note);
@@ -236,6 +254,7 @@ void PingTask::followQuality(types::Sonar& sample, double ms) {
     const bool changed = quality_->follow(*renderer_, takenScene(), sample, ms, 1e3 * realtimePeriod());
     std::ranges::move(quality_->takeNotices(), std::back_inserter(plan_->notices));
     if (!changed) return;
+    rules_.reset();
     plan_->rows = quality_->quality().rows;
     plan_->columns_per_beam = quality_->quality().columns_per_beam;
     plan_->predicted_error = quality_->quality().error;
@@ -299,7 +318,8 @@ void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<type
     if (truth.connected()) truth.write(reported);
     if (!returns.connected()) return;
     const auto found = all_returns_.take();
-    found->take(sample, *reported);
+    findStrongest(sample, strongest_);
+    found->take(sample, *reported, strongest_);
     all_returns_.stock(*found);
     returns.write(found);
 }

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
@@ -10,6 +11,7 @@
 #include "components/sonar/PingDiagnostics.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/TriggeredTask.hpp"
+#include "components/sonar/echo/Detection.hpp"
 #include "components/sonar/quality/QualityKeeper.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarElements.hpp"
@@ -41,7 +43,10 @@ namespace insonify::sonar {
  *
  *  In a run that is divided into shards every ping is that of the whole run. Its quality has to be given, because a
  *  chosen quality depends on the pings before. */
-class PingTask : public TriggeredTask, public framework::Planned, public framework::Divisible {
+class PingTask : public TriggeredTask,
+                 public framework::Planned,
+                 public framework::Divisible,
+                 public framework::ReturnSource {
 public:
     using TriggeredTask::TriggeredTask;
     /** Stops and cleans up, if that is due: the renderer must be destroyed on the task's own thread. */
@@ -70,6 +75,7 @@ public:
     /** Reports files of sound speeds and of beams that cannot be used. */
     void check(types::Diagnostics& diagnostics) const override;
     std::string indivisible() const override;
+    types::ReturnRules returnRules() const override { return returnRulesOf(sonarConfig()); }
 
     /** Sets the number of threads of the next renderer; 0: the number of cores. */
     void useThreads(int threads) { threads_ = threads; }
@@ -92,12 +98,19 @@ protected:
     virtual bool wantsTruth() const { return truth.connected() || returns.connected(); }
     /** Copies the names of all objects into a truth. */
     void nameObjects(types::SonarTruth& truth_of_ping) const;
+    /** Returns what a detector knows of the pings of the renderer. */
+    const DetectionRules& detectionRules();
     /** Makes the last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
     /** Advances a turning head after a ping has been rendered or rehearsed. */
     virtual void goOn() {}
     /** Writes the other outputs of a ping that is about to be written, from the pose where it was rendered. */
     virtual void writeMore(const types::Sonar& /*sample*/, const types::Pose& /*sonar*/) {}
+    /** Fills the number of the strongest bin of each beam of a ping; bin_count: none. */
+    virtual void findStrongest(const types::Sonar& sample, std::vector<uint32_t>& strongest) {
+        findStrongest(sample, detectionRules(), strongest);
+    }
+    void findStrongest(const types::Sonar& sample, const DetectionRules& rules, std::vector<uint32_t>& strongest);
     /** Returns the plan of a sonar that covers in one ping what this sonar covers, to explain missing echoes. */
     virtual RenderPlan coverage(const types::Snapshot& scene) const;
     /** Returns the pings of one revolution of a turning head [1]. */
@@ -146,6 +159,9 @@ private:
     std::unique_ptr<SonarRenderer> renderer_;
     std::optional<QualityKeeper> quality_;  ///< None where the quality is given.
     std::optional<PingDiagnostics> diagnostics_;
+    std::optional<DetectionRules> rules_;  ///< None before they are needed.
+    Detector detector_;                    ///< Of the strongest returns.
+    std::vector<uint32_t> strongest_;      ///< Bin of each beam.
     bool culling_untold_ = false;      ///< Whether the plan still lacks what the first ping's culling omitted.
     int threads_ = 0;                  ///< Threads of the renderer [1].
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.

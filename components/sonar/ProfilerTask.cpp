@@ -10,9 +10,9 @@ void ProfilerTask::writeMore(const types::Sonar& sample, const types::Pose& sona
     cloud->clear();
     cloud->reserve(sample.beam_count);
     cloud->time = sample.time;
-    const Detector detector(config->detection, sample);
+    detector_.take(sample, config->detection, detectionRules());
     for (uint32_t beam = 0; beam < sample.beam_count; ++beam)
-        if (const auto found = detector.strongest(beam)) {
+        if (const auto found = detector_.strongest(beam)) {
             const double bearing = sample.bearings[beam].rad;
             const glm::dvec3 direction(std::cos(bearing), std::sin(bearing), 0);
             cloud->add(sonar.position + sonar.orientation * direction * found->range,

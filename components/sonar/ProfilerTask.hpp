@@ -40,6 +40,7 @@ protected:
     void writeMore(const types::Sonar& sample, const types::Pose& sonar) override;
 
 private:
+    Detector detector_;
     framework::SamplePool<types::PointCloud> clouds_;
 };
 

@@ -136,6 +136,7 @@ void Sonar3dTask::shape(types::Sonar& sample) {
         map_.horizontal_interval[column] = -types::radians(across.centreDeg(static_cast<int>(column)));
     map_.distances.assign(rows * columns, types::DepthMap::too_far);
     map_.remissions.assign(rows * columns, 0);
+    levels_.assign(rows * columns, 0);
 }
 
 void Sonar3dTask::addTo(types::Sonar& sample, int column) const {
@@ -144,23 +145,24 @@ void Sonar3dTask::addTo(types::Sonar& sample, int column) const {
 }
 
 void Sonar3dTask::detect(int column, bool with_truth) {
-    const Detector detector(config->detection, fan_);
+    detector_.take(fan_, config->detection, detectionRules());
     const size_t from_left = map_.horizontal_size - 1 - static_cast<size_t>(column);
     for (uint32_t beam = 0; beam < fan_.beam_count; ++beam)
-        if (const auto found = detector.strongest(beam)) {
+        if (const auto found = detector_.strongest(beam)) {
             const size_t cell = size_t{map_.vertical_size - 1 - beam} * map_.horizontal_size + from_left;
             map_.distances[cell] = static_cast<float>(found->range);
             map_.remissions[cell] = found->intensity;
+            levels_[cell] = found->level;
             if (with_truth) GridTruth::copyReturn(fan_truth_, beam, found->bin, cell, return_truth_);
         }
 }
 
 void Sonar3dTask::writeMore(const types::Sonar& sample, const types::Pose& sonar) {
     if (!wantsReturns()) return;
-    const float strongest = *std::max_element(map_.remissions.begin(), map_.remissions.end());
-    const float minimum = strongest * static_cast<float>(std::pow(10, config->detection.threshold_db / 10));
+    const double strongest = *std::max_element(levels_.begin(), levels_.end());
+    const double minimum = strongest * std::pow(10, config->detection.threshold_db / 10);
     for (size_t cell = 0; cell < map_.distances.size(); ++cell)  // weak in the ping, if not in their azimuth
-        if (map_.remissions[cell] < minimum) {
+        if (levels_[cell] < minimum) {
             map_.distances[cell] = types::DepthMap::too_far;
             map_.remissions[cell] = 0;
             if (range_truth.connected()) GridTruth::forget(cell, return_truth_);
@@ -172,6 +174,16 @@ void Sonar3dTask::writeMore(const types::Sonar& sample, const types::Pose& sonar
     *image = map_;
     maps_.stock(*image);
     range_image.write(image);
+}
+
+void Sonar3dTask::findStrongest(const types::Sonar& sample, std::vector<uint32_t>& strongest) {
+    DetectionRules rules{detectionRules().returns, {}};
+    const std::vector<float>& fan = detectionRules().water;
+    if (!fan.empty()) rules.water.assign(sample.bins.size(), 0);
+    for (size_t beam = 0; beam < sample.beam_count; ++beam)  // each is the sum over all elevations
+        for (size_t i = 0; i < fan.size(); ++i)
+            rules.water[beam * sample.bin_count + i % sample.bin_count] += fan[i];
+    PingTask::findStrongest(sample, rules, strongest);
 }
 
 void Sonar3dTask::writeReturnTruth() {

@@ -84,6 +84,7 @@ protected:
     bool wantsTruth() const override { return PingTask::wantsTruth() || range_truth.connected(); }
     RenderPlan coverage(const types::Snapshot& scene) const override;
     void writeMore(const types::Sonar& sample, const types::Pose& sonar) override;
+    void findStrongest(const types::Sonar& sample, std::vector<uint32_t>& strongest) override;
     /** Applies `field_of_view` and `beam_count` to a row of beams side by side, and `beam_height` to one beam. */
     std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const override;
 
@@ -100,6 +101,8 @@ private:
     types::Sonar fan_;            ///< Beams of one azimuth.
     sonar::Stages fan_stages_{};  ///< Sum over all azimuths of the last ping.
     types::DepthMap map_;
+    std::vector<double> levels_;  ///< Of the return of each cell of the map, without spreading [1].
+    Detector detector_;
     GridTruth grid_truth_;
     types::SonarTruth fan_truth_;     ///< Truth of one azimuth.
     types::SonarTruth return_truth_;  ///< One bin for each cell of the map.

@@ -39,8 +39,7 @@ private:
     static types::SonarPtr answer(const types::SonarSettings& asked) {
         auto ping = std::make_shared<types::Sonar>();
         ping->time = asked.time;
-        ping->speed_of_sound = 1500;
-        ping->bin_duration = {1};
+        ping->setBins(asked.range / asked.bin_count, 1500);
         ping->bin_count = asked.bin_count;
         ping->beam_count = asked.beam_count;
         ping->bins.assign(size_t{asked.bin_count} * asked.beam_count, 6554);

@@ -280,6 +280,9 @@ TEST_F(Ping1dEmulatorTest, ReportsTheFirstStrongReturn) {
     EXPECT_EQ(ping1dReturn(codes).confidence, 88) << "the mean is 1.22 of 10";
     EXPECT_EQ(ping1dReturn(std::vector<float>(10, 0.0f)).confidence, 0);
     EXPECT_EQ(ping1dReturn({}).confidence, 0);
+    codes[0] = 1000;  // ring-down
+    EXPECT_EQ(ping1dReturn(codes, 1).bin, 21u) << "blanked";
+    EXPECT_EQ(ping1dReturn(codes, 200).confidence, 0);
 }
 
 TEST_F(Ping1dEmulatorTest, CodesAreScaledToBytes) {

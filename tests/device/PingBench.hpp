@@ -18,7 +18,7 @@ inline std::shared_ptr<types::Sonar> pingFor(const types::SonarSettings& asked, 
     ping->bin_count = asked.bin_count;
     ping->beam_count = 1;
     ping->bearings = {asked.bearing};
-    ping->bin_duration = types::Time::fromSeconds(asked.range / asked.bin_count / static_cast<double>(speed_of_sound));
+    ping->setBins(asked.range / asked.bin_count, static_cast<double>(speed_of_sound));
     ping->bins.resize(asked.bin_count);
     for (size_t k = 0; k < ping->bins.size(); ++k) ping->bins[k] = static_cast<float>(k * 257);
     return ping;

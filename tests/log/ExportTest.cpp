@@ -181,7 +181,7 @@ TEST(ExportTest, CsvHasALineForEachBinOfTruthAndEachBeamOfReturns) {
     types::SonarTruth direct = truth(1'500'000);
     direct.path[0] = 0;
     types::SonarReturns returns;
-    returns.take(ping(1'500'000, 1, 2), direct);
+    returns.take(ping(1'500'000, 1, 2), direct, {0});
     log.write(log.addStream<types::SonarReturns>("sonar.returns"), {1}, returns);
     log.close();
     pocolog::Reader reader(folder / "x.0.log");

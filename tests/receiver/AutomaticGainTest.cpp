@@ -48,7 +48,7 @@ TEST(AutomaticGainTest, AJumpIsFollowedInTheTimesOfAttackAndRelease) {
     std::vector<float> steps(600, 1e-4f);
     std::fill(steps.begin() + 200, steps.begin() + 400, 1.0f);
     const types::Sonar ping = beamsOf(steps);
-    const double bin_ms = 1e-3 * static_cast<double>(ping.bin_duration.microseconds);
+    const double bin_ms = 2e-3 * static_cast<double>(ping.bin_duration.microseconds);  // there and back
     const std::vector<float> bins = heldBins(following(), ping);
     for (size_t k = 0; k < 200; ++k) {
         const double up = 1 - (1 - 1e-4) * std::exp(-static_cast<double>(k + 1) * bin_ms / 2);

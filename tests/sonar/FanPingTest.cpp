@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/echo/Detection.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "tests/support/Tables.hpp"
 #include "types/Angle.hpp"
@@ -126,7 +127,14 @@ Shown shownOf(const SonarConfig& config, const types::Snapshot& snapshot, int th
     renderer.setTruth(shown.ping, &shown.truth);
     renderer.render(snapshot, shown.ping);
     shown.truth.objects.resize(snapshot.geometry->objects.size());
-    shown.returns.take(shown.ping, shown.truth);
+    Detector detector;
+    detector.take(shown.ping, {}, DetectionRules::of(renderer.renderPlan()));
+    std::vector<uint32_t> strongest;
+    for (uint32_t beam = 0; beam < shown.ping.beam_count; ++beam) {
+        const auto found = detector.strongest(beam);
+        strongest.push_back(found ? static_cast<uint32_t>(found->bin) : shown.ping.bin_count);
+    }
+    shown.returns.take(shown.ping, shown.truth, strongest);
     return shown;
 }
 

@@ -287,7 +287,7 @@ TEST(ImperfectionsTest, AClockThatJittersSamplesAllBeamsAtTheSameWrongTimes) {
         types::Snapshot snapshot = flatBottom();
         snapshot.time.microseconds = time;
         return imperfectPing(
-            withErrors(config, {.clock_jitter_us = sd_bins * static_cast<double>(clean.bin_duration.microseconds)}),
+            withErrors(config, {.clock_jitter_us = sd_bins * 2e6 * clean.binSeconds()}),  // there and back
             snapshot);
     };
     const types::Sonar one = jittered(0.3, 5), again = jittered(0.3, 5), next = jittered(0.3, 6);

@@ -534,7 +534,7 @@ TEST(MultipathTest, TheTruthNamesThePathOfMostOfABinsEnergy) {
         EXPECT_NEAR(truth.elevation[at], received_from > 0 ? received_from : truth.elevation[at], 0.1);
     }
     types::SonarReturns returns;
-    returns.take(ping, truth);
+    returns.take(ping, truth, std::vector<uint32_t>(ping.beam_count, ping.bin_count));
     EXPECT_NEAR(returns.first_range[1], r1, 0.5) << "ghosts are no first returns";
     for (size_t k = 0; k < ping.bins.size(); ++k) {
         EXPECT_EQ(ping.bins[k] > 0, truth.object[k] >= 0) << k;

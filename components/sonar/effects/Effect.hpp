@@ -129,6 +129,9 @@ public:
     /** Adds the notices about the effect in this plan. */
     virtual void note(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/,
                       std::vector<std::string>& /*notices*/) const {}
+    /** Returns the greatest mean intensity that each bin of a ping receives of it without any surface, in the ping's
+     *  order; empty: none. */
+    virtual std::vector<float> withoutSurfaces(const RenderPlan& /*plan*/) const { return {}; }
     /** Makes the effect's part in the pings of a plan that includes it. Plan and geometry outlive the result. Null
      *  where the effect does nothing in a ping. */
     virtual std::unique_ptr<PingEffect> make(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/) const {

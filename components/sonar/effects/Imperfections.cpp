@@ -43,7 +43,7 @@ private:
     void jitter(types::Sonar& ping) {
         kept_.assign(ping.bins.begin(), ping.bins.end());
         const auto count = static_cast<double>(ping.bin_count);
-        const double bins_per_us = 1 / static_cast<double>(ping.bin_duration.microseconds);
+        const double bins_per_us = 1e-6 / (2 * ping.binSeconds());  // of the receiver's clock: two-way
         for (size_t k = 0; k < ping.bin_count; ++k) {
             const uint64_t word = types::hashed(own_.seed, static_cast<uint64_t>(ping.time.microseconds), k);
             const double normal = std::sqrt(-2 * std::log(types::unit(word >> 32))) *

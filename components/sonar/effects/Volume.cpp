@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "components/sonar/echo/CellDeposit.hpp"
+#include "components/sonar/echo/EchoGrid.hpp"
 #include "components/sonar/echo/Estimators.hpp"
 #include "components/sonar/effects/Effect.hpp"
 #include "components/sonar/field/ScattererLattice.hpp"
@@ -120,6 +121,13 @@ std::vector<double> openSolidAngles(const RenderPlan& plan) {
     return all;
 }
 
+/** Returns the water's intensity in bin j for a steradian and no absorption [1/sr]. */
+double waterBetween(const BinGrid& grid, int j, double strength) {
+    const double nearest = std::max(grid.range_min, grid.bin_width / 4);
+    const double from = std::max(grid.edge(j), nearest), to = std::max(grid.edge(j + 1), from);
+    return strength * (1 / from - 1 / to);
+}
+
 /** Intensity of the water itself, from the solid angle that receives its echo. */
 class VolumeInPings final : public PingEffect {
 public:
@@ -149,12 +157,9 @@ void VolumeInPings::takeQuality() {
     open_.assign(plan_.cells.size(), 0.0);
     if (layers_.empty()) open_ = openSolidAngles(plan_);
     const double strength = strongest(plan_.config), beta = makeAbsorption(plan_.config).intensityPerMetre();
-    const double nearest = std::max(grid.range_min, grid.bin_width / 4);
     intensity_.clear();
-    for (int j = 0; j < grid.bin_count; ++j) {
-        const double from = std::max(grid.edge(j), nearest), to = std::max(grid.edge(j + 1), from);
-        intensity_.push_back(strength * (1 / from - 1 / to) * std::exp(-beta * grid.centre(j)));
-    }
+    for (int j = 0; j < grid.bin_count; ++j)
+        intensity_.push_back(waterBetween(grid, j, strength) * std::exp(-beta * grid.centre(j)));
 }
 
 void VolumeInPings::addToCell(const uint64_t* changes, size_t cell, double unit, std::span<float> bins) const {
@@ -166,6 +171,26 @@ void VolumeInPings::addToCell(const uint64_t* changes, size_t cell, double unit,
         bins[j] = static_cast<float>(
             std::min(double{bins[j]} + intensity_[j] * received, double{std::numeric_limits<float>::max()}));
     }
+}
+
+/** Returns the intensities of the water alone, all of it as strong as its strongest layer. */
+std::vector<float> openWater(const RenderPlan& plan) {
+    const double strength = strongest(plan.config), beta = makeAbsorption(plan.config).intensityPerMetre();
+    const std::vector<double> open = openSolidAngles(plan);
+    types::Sonar ping;
+    ping.resize(static_cast<uint32_t>(plan.grid.bin_count), static_cast<uint32_t>(plan.beams.size()));
+    EchoGrid grid(plan, 1);
+    for (size_t cell = 0; cell < open.size(); ++cell) {
+        const std::span<float> bins = grid.cell(cell, ping);
+        for (int j = 0; j < plan.grid.bin_count; ++j) {
+            const double of_steradian = waterBetween(plan.grid, j, strength) * std::exp(-beta * plan.grid.centre(j));
+            bins[static_cast<size_t>(j)] = static_cast<float>(open[cell] * of_steradian);
+        }
+    }
+    ThreadPool alone(1);
+    grid.finish(ping, alone);
+    plan.beams.toTableOrder(std::span(ping.bins), ping.bin_count);
+    return ping.bins;
 }
 
 /** Volume reverberation (ACOUSTICS.md 3.9): echoes of the water, also in layers, without the part that cells hide. */
@@ -190,6 +215,7 @@ public:
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& /*geometry*/) const override {
         return std::make_unique<VolumeInPings>(plan);
     }
+    std::vector<float> withoutSurfaces(const RenderPlan& plan) const override { return openWater(plan); }
     std::string takeOut(SonarConfig& config) const override {
         if (config.volume.empty()) return {};
         config.volume.clear();

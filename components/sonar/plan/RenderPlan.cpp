@@ -73,6 +73,18 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     return plan;
 }
 
+types::ReturnRules returnRulesOf(const SonarConfig& config) {
+    types::ReturnRules rules;
+    rules.spreads = config.model == Model::Physical;
+    rules.range_min = config.range_min;
+    if (rules.spreads) rules.absorption_db_per_m = makeAbsorption(config).db_per_m;
+    if (config.pulse && config.pulse->ring_down) {
+        rules.ring_down_db = *config.pulse->ring_down->level_db;
+        rules.ring_down_db_per_m = *config.pulse->ring_down->decay_db_per_m;
+    }
+    return rules;
+}
+
 acoustics::Absorption makeAbsorption(const SonarConfig& config) {
     if (!config.absorption) return {};
     const AbsorptionConfig& absorption = *config.absorption;

@@ -15,6 +15,7 @@
 #include "components/sonar/fan/Directivity.hpp"
 #include "components/sonar/plan/SonarConfig.hpp"
 #include "types/Geometry.hpp"
+#include "types/ReturnLevels.hpp"
 
 namespace insonify::sonar {
 
@@ -129,6 +130,9 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
 
 /** Returns the configured absorption; none when the block is absent. A law needs `water`. */
 acoustics::Absorption makeAbsorption(const SonarConfig& config);
+
+/** Returns what is known of the bins of a configured sonar, for the detection of returns. */
+types::ReturnRules returnRulesOf(const SonarConfig& config);
 
 }  // namespace insonify::sonar
 
