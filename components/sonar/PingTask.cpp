@@ -278,6 +278,8 @@ void PingTask::render() {
     prepareRenderer();
     const auto sample = pool_.take();
     const auto reported = takeTruth();
+    const auto signals = elements.connected() ? signals_.take() : nullptr;
+    if (signals) renderer_->setElements(*sample, signals.get());
     const auto start = std::chrono::steady_clock::now();
     const bool received = renderPing(*renderer_, takenScene(), *sample, reported.get());
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
@@ -289,8 +291,9 @@ void PingTask::render() {
             if (what.reason == Reason::Lacking) plan_->notices.push_back("Warning: " + plan_->omitted.back().reason);
         }
     }
-    const auto signals = elements.connected() ? takeElements(*sample) : nullptr;  // before anything renders again
     followQuality(*sample, took.count());
+    if (signals) renderer_->setElements(*sample, nullptr);
+    if (signals) signals_.stock(*signals);
     if (const std::string diagnostic = diagnosticOf(received, *sample); !diagnostic.empty()) warn(diagnostic);
     stampBearings(*sample);
     pool_.stock(*sample);
@@ -322,13 +325,6 @@ void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<type
     found->take(sample, *reported, strongest_);
     all_returns_.stock(*found);
     returns.write(found);
-}
-
-std::shared_ptr<types::SonarElements> PingTask::takeElements(const types::Sonar& sample) {
-    const auto signals = signals_.take();
-    renderer_->takeElements(sample, *signals);
-    signals_.stock(*signals);
-    return signals;
 }
 
 types::Time PingTask::lastEcho() const {

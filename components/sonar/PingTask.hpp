@@ -142,7 +142,6 @@ private:
     void rehearse();
     /** Returns the truth that the next ping fills; null where no output needs it. */
     std::shared_ptr<types::SonarTruth> takeTruth();
-    std::shared_ptr<types::SonarElements> takeElements(const types::Sonar& sample);
     void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& reported);
     /** Returns the time in realtime at which the last echo of this ping's range is back. */
     types::Time lastEcho() const;

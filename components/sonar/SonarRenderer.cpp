@@ -51,7 +51,9 @@ struct SonarRenderer::Parts {
     std::unique_ptr<EchoRenderer> echoes;
     const types::Sonar* reported_ping = nullptr;
     types::SonarTruth* truth = nullptr;  ///< Filled with `reported_ping`; null: no truth.
-    std::optional<LineArray> array;      ///< Made at the first ping whose signals are taken.
+    const types::Sonar* heard_ping = nullptr;
+    types::SonarElements* signals = nullptr;  ///< Filled with `heard_ping`; null: no signals.
+    std::optional<LineArray> array;           ///< Made at the first ping whose signals are taken.
 };
 
 SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr given, const RenderOptions& options)
@@ -165,6 +167,7 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
     parts_->echoes->render(snapshot, ping, parts_->stages);
     parts_->echoes->setTruth(nullptr);
     finish(snapshot, ping);
+    if (&ping == parts_->heard_ping && parts_->signals) takeElements(ping, *parts_->signals);
     if (!truth) return;
     types::SonarTruth::forEachArray(*truth, [&](const char*, auto& numbers, auto) {
         parts_->plan.beams.toTableOrder(std::span(numbers), truth->bin_count);
@@ -188,9 +191,15 @@ void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) 
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+void SonarRenderer::setElements(const types::Sonar& ping, types::SonarElements* signals) {
+    if (signals && !(parts_->echoes->field() && parts_->plan.config.elements))
+        throw std::logic_error("the sonar has no elements");
+    parts_->heard_ping = &ping;
+    parts_->signals = signals;
+}
+
 void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements& signals) {
     const EchoField* field = parts_->echoes->field();
-    if (!field || !parts_->plan.config.elements) throw std::logic_error("the sonar has no elements");
     if (!parts_->array) parts_->array.emplace(lineArrayOf(parts_->plan.config));
     takeSignals(parts_->plan, *field, *parts_->array, signals);
     signals.time = ping.time;

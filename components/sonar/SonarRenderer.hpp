@@ -34,9 +34,9 @@ public:
      *  arrive through sidelobes, or that the pulse spreads into a bin, have no truth. */
     void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
 
-    /** Fills `signals` with those of the array's elements in `ping`, which must be the last that was rendered. Takes
-     *  some time and allocates. Throws std::logic_error where the sonar has no `elements`. */
-    void takeElements(const types::Sonar& ping, types::SonarElements& signals);
+    /** Makes each later rendering of `ping` fill `signals` with those of the array's elements, which takes some time and
+     *  allocates. Null: no more. Throws std::logic_error where the sonar has no `elements`. */
+    void setElements(const types::Sonar& ping, types::SonarElements* signals);
 
     /** Forgets all pings, as if it had just been made. Returns false where a new renderer is needed: with motion in a
      *  ping, with bent rays, or where it rasterises. */
@@ -68,6 +68,7 @@ public:
 
 private:
     struct Parts;
+    void takeElements(const types::Sonar& ping, types::SonarElements& signals);
     /** Adds what the bins contain in addition to the echoes of surfaces. */
     void finish(const types::Snapshot& snapshot, types::Sonar& ping);
     std::unique_ptr<Parts> parts_;

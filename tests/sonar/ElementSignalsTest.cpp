@@ -56,8 +56,8 @@ Received received(const SonarConfig& config) {
     Received result;
     const types::Snapshot snapshot = twoTargets();
     SonarRenderer renderer(config, snapshot.geometry);
+    renderer.setElements(result.ping, &result.signals);
     renderer.render(snapshot, result.ping);
-    renderer.takeElements(result.ping, result.signals);
     return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "components/sonar/fan/BeamFan.hpp"
 
@@ -9,7 +10,10 @@ namespace insonify::sonar {
 namespace {
 
 constexpr int max_rows = 2048, max_columns = 256, rungs_per_doubling = 8;
-constexpr double step_of_samples = 4, worth_a_trade = 0.85;
+constexpr int max_steps = 12;
+constexpr double step_of_samples = 4, worth_a_step = 0.95, worth_lowering = 0.8;
+constexpr double margin = 1.25, margin_of_means = 1.5;  ///< Predicted error over the measured difference [1].
+constexpr double least_part = 0.2;                      ///< Smallest part of rows or columns in an error [1].
 
 /** Returns whether a device can rasterise this number of columns per beam. */
 bool fits(SonarConfig config, int columns) {
@@ -18,22 +22,30 @@ bool fits(SonarConfig config, int columns) {
     return makeFrusta(config, makeBeams(config)).front().columns <= max_image_size;
 }
 
-/** Returns the error of the finer of two pings relative to their difference; the spacing of the samples differs by
- *  `ratio` < 1. */
-double shareOfFiner(double ratio) { return 1 / std::sqrt(1 + 1 / (ratio * ratio)); }
-
 int fewerRows(int rows) { return std::max(1, static_cast<int>(std::lround(0.6 * rows))); }
 int fewerColumns(int columns) { return std::max(1, (columns + 1) / 2); }
 
-double rowShare(const Quality& q) { return shareOfFiner(static_cast<double>(fewerRows(q.rows)) / q.rows); }
-double columnShare(const Quality& q) {
-    return shareOfFiner(static_cast<double>(fewerColumns(q.columns_per_beam)) / q.columns_per_beam);
+/** Returns up to `wanted` columns, as many as can be rasterised, and at least `columns`. */
+int moreColumns(const SonarConfig& config, int columns, int wanted) {
+    while (wanted > columns && !fits(config, wanted)) --wanted;
+    return wanted;
 }
 
 }  // namespace
 
 double ErrorModel::error(int rows, int columns_per_beam) const {
     return std::hypot(of_rows * at.rows / rows, of_columns * at.columns_per_beam / columns_per_beam);
+}
+
+ErrorModel ErrorModel::movedTo(const Quality& other) const {
+    const auto& [rows, columns, unused] = other;
+    return {{rows, columns, error(rows, columns)},
+            of_rows * at.rows / rows,
+            of_columns * at.columns_per_beam / columns};
+}
+
+ErrorModel ErrorModel::scaled(double factor) const {
+    return {{at.rows, at.columns_per_beam, at.error * factor}, of_rows * factor, of_columns * factor};
 }
 
 QualityLadder::QualityLadder(const SonarConfig& config) {
@@ -63,7 +75,7 @@ Quality QualityLadder::choose(const ErrorModel& model, double target, double max
     return best;
 }
 
-ErrorEstimator::ErrorEstimator(const SonarConfig& config) {
+ErrorEstimator::ErrorEstimator(const SonarConfig& config, double least) : config_(config), least_(least) {
     const double count = config.bin_count;
     for (int i = 0; i < config.bin_count; ++i)
         weights_.push_back(config.model == Model::Physical ? std::pow((i + 0.5) / count, 10) : 1);
@@ -80,63 +92,147 @@ double ErrorEstimator::change(const std::vector<float>& coarse, const std::vecto
     return norm > 0 ? std::sqrt(error / norm) : 0;
 }
 
-double ErrorEstimator::changeBy(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
-                                int rows, int columns_per_beam) {
+void ErrorEstimator::render(SonarRenderer& renderer, const types::Snapshot& scene, int rows, int columns_per_beam,
+                            types::Sonar& ping) {
     renderer.setQuality(rows, columns_per_beam);
-    renderer.render(scene, coarse_);
+    renderer.render(scene, ping);
     rendered_ += Quality{rows, columns_per_beam}.samples();
-    return change(coarse_.bins, ping.bins);
 }
 
-ErrorModel ErrorEstimator::model(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
-                                 const Quality& quality) {
+double ErrorEstimator::changeToCoarser(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
+                                       const Quality& quality) {
+    render(renderer, scene, fewerRows(quality.rows), fewerColumns(quality.columns_per_beam), other_);
+    return change(other_.bins, ping.bins);
+}
+
+ErrorModel ErrorEstimator::measure(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
+                                   const Quality& quality) {
     const auto& [rows, columns, unused] = quality;
-    ErrorModel model{quality, rowShare(quality) * changeBy(renderer, scene, ping, fewerRows(rows), columns),
-                     columnShare(quality) * changeBy(renderer, scene, ping, rows, fewerColumns(columns))};
-    model.at.error = model.error();
-    renderer.setQuality(rows, columns);
+    const auto finer = [&](double by_rows, int by_columns, types::Sonar& other) {
+        const int more = moreColumns(config_, columns, by_columns * columns);
+        render(renderer, scene, static_cast<int>(std::lround(by_rows * rows)), more, other);
+        return static_cast<double>(more) / columns;
+    };
+    finer(2.2, 2, other_);
+    const double to_finer = change(ping.bins, other_.bins);
+    finer(3, 3, finest_);
+    const double to_finest = change(ping.bins, finest_.bins);
+    const double ratio = finer(1, 2, other_), of_rows = std::min(change(other_.bins, finest_.bins), to_finest);
+    double measured = std::max(to_finer, to_finest), of_columns = std::sqrt(to_finest * to_finest - of_rows * of_rows);
+    if (ratio < 2) {  // these columns are the last that can be rasterised
+        measured = std::hypot(measured, changeToCoarser(renderer, scene, ping, quality));
+        of_columns = to_finest;
+    }
+    const double least = std::max(least_part * to_finest, 1e-12);
+    ErrorModel model{quality, std::max(of_rows, least), std::max(of_columns, least)};
+    measured *= config_.model == Model::Physical ? margin : margin_of_means;
+    model = model.scaled(measured / std::hypot(model.of_rows, model.of_columns));
+    model.at.error = measured;
     return model;
 }
 
-double ErrorEstimator::error(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
-                             const Quality& quality) {
-    const auto& [rows, columns, unused] = quality;
-    const double changed = changeBy(renderer, scene, ping, fewerRows(rows), fewerColumns(columns));
-    renderer.setQuality(rows, columns);
-    return std::max(rowShare(quality), columnShare(quality)) * changed;
+double ErrorEstimator::least(const types::Sonar& ping) const {
+    if (config_.model == Model::Physical) return least_;
+    double norm = 0, brightest = 0;
+    for (const float value : ping.bins) {
+        norm += double{value} * value;
+        brightest = std::max(brightest, double{value});
+    }
+    return norm > 0 ? std::max(least_, brightest / std::sqrt(norm)) : least_;
 }
+
+namespace {
+
+/** The qualities that a search has measured. */
+class Search {
+public:
+    Search(const QualityLadder& ladder, const QualityGoal& goal) : ladder_(ladder), goal_(goal) {}
+
+    bool hasReached(const ErrorModel& model) const { return model.at.error <= goal_.target; }
+    /** Adds a measured quality. One that is coarser in rows and columns has at least the error of a finer one. */
+    void add(ErrorModel model) {
+        const auto isCoarser = [](const Quality& a, const Quality& b) {
+            return a.rows <= b.rows && a.columns_per_beam <= b.columns_per_beam;
+        };
+        for (ErrorModel& other : measured_) {
+            if (isCoarser(other.at, model.at)) other.at.error = std::max(other.at.error, model.at.error);
+            if (isCoarser(model.at, other.at)) model.at.error = std::max(other.at.error, model.at.error);
+        }
+        measured_.push_back(model);
+    }
+    /** Returns the quality with the fewest samples that reaches the target, else that with the most. */
+    const ErrorModel& best() const {
+        return *std::ranges::min_element(measured_, [&](const ErrorModel& a, const ErrorModel& b) {
+            if (hasReached(a) != hasReached(b)) return hasReached(a);
+            return hasReached(a) ? a.at.samples() < b.at.samples() : a.at.samples() > b.at.samples();
+        });
+    }
+    /** Returns the next quality to measure; none: the search is over. */
+    std::optional<Quality> next() const {
+        const ErrorModel& last = measured_.back();
+        if (!hasReached(last) && hasReached(best())) return {};
+        const Quality other = hasReached(last) ? coarser(last) : finer(last);
+        const bool is_new = std::ranges::none_of(measured_, [&](const ErrorModel& m) { return m.at == other; });
+        return is_new && static_cast<int>(measured_.size()) < max_steps ? std::optional(other) : std::nullopt;
+    }
+
+private:
+    Quality finer(const ErrorModel& from) const {
+        const double limit = std::min(goal_.max_samples, step_of_samples * from.at.samples());
+        const Quality other = ladder_.choose(from, target_share * goal_.target, limit, goal_.minimum);
+        return other.error <= worth_a_step * from.at.error && other.samples() <= limit ? other : from.at;
+    }
+    /** Lets the error grow as fast as it fell since the last quality that had not reached the target. */
+    Quality coarser(const ErrorModel& from) const {
+        double target = target_share * goal_.target;
+        for (const ErrorModel& failed : measured_) {
+            const double predicted = from.error(failed.at.rows, failed.at.columns_per_beam) / from.at.error;
+            if (hasReached(failed) || predicted <= 1 || target <= from.at.error) continue;
+            const double power = std::clamp(std::log(failed.at.error / from.at.error) / std::log(predicted), 1.0, 4.0);
+            target = std::min(target, from.at.error * std::pow(target_share * goal_.target / from.at.error, 1 / power));
+        }
+        const Quality other =
+            ladder_.choose(from, target, worth_lowering * from.at.samples(), goal_.minimum);
+        return other.error <= target ? other : from.at;
+    }
+
+    const QualityLadder& ladder_;
+    QualityGoal goal_;
+    std::vector<ErrorModel> measured_;
+};
+
+}  // namespace
 
 ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRenderer& renderer,
                  const types::Snapshot& scene, const Quality& start, const QualityGoal& goal, types::Sonar& ping) {
-    const auto goTo = [&](const Quality& next) {
-        renderer.setQuality(next.rows, next.columns_per_beam);
+    const auto render = [&](const Quality& quality) {
+        renderer.setQuality(quality.rows, quality.columns_per_beam);
         renderer.render(scene, ping);
-        return estimator.model(renderer, scene, ping, next);
     };
-    ErrorModel model = estimator.model(renderer, scene, ping, start);
-    while (model.error() > goal.target) {
-        const double samples = std::min(goal.max_samples, step_of_samples * model.at.samples());
-        const Quality finer = ladder.choose(model, target_share * goal.target, samples, model.at);
-        const Quality other = ladder.choose(model, target_share * goal.target, samples);
-        if (!(finer == model.at))
-            model = goTo(finer);
-        else if (goal.trades && other.error < worth_a_trade * model.error())
-            return goTo(other);
-        else
-            break;
+    Search search(ladder, goal);
+    search.add(estimator.measure(renderer, scene, ping, start));
+    Quality rendered = start;
+    while (const auto next = search.next()) {
+        rendered = *next;
+        render(rendered);
+        search.add(estimator.measure(renderer, scene, ping, rendered));
     }
-    return model;
+    ErrorModel best = search.best();
+    if (!(best.at == rendered)) render(best.at);
+    if (best.at.error > 0) best = best.scaled(std::max(1.0, estimator.least(ping) / best.at.error));
+    return best;
 }
 
 Quality chooseQuality(const SonarConfig& config, const types::Snapshot& scene) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double target = config.targetError().value_or(0);
     SonarRenderer renderer(config, scene.geometry);
-    ErrorEstimator estimator(config);
+    ErrorEstimator estimator(config, target > 0 ? least_share * target : least_error);
     types::Sonar ping;
     const Quality start;
     renderer.setQuality(start.rows, start.columns_per_beam);
     renderer.render(scene, ping);
-    const QualityGoal goal{config.targetError().value_or(0), config.maxSamples().value_or(infinity) / config.beams()};
+    const QualityGoal goal{target, config.maxSamples().value_or(infinity) / config.beams()};
     return climb(estimator, QualityLadder(config), renderer, scene, start, goal, ping).at;
 }
 

@@ -11,8 +11,8 @@ namespace insonify::sonar {
 /** Samples per beam, and the resulting error. */
 struct Quality {
     int rows = 64, columns_per_beam = 2;
-    /** Relative L2 error of bin energies after a gain of 50 log10(r) (`physical`), of bins (`cerqueira2017`); NaN: not
-     *  predicted [1]. */
+    /** Relative L2 error of bin energies after a gain of 50 log10(r) (`physical`), of bins (`cerqueira2017`), which the
+     *  error exceeds in at most one of 20 scenes; NaN: not predicted [1]. */
     double error = std::numeric_limits<double>::quiet_NaN();
 
     double samples() const { return static_cast<double>(rows) * columns_per_beam; }  ///< Samples of one beam [1].
@@ -21,14 +21,16 @@ struct Quality {
     }
 };
 
-/** The error estimated at one quality, in two parts that are inversely proportional to rows and to columns. Both fall
- *  at least this fast where surfaces are resolved. Elsewhere the next estimate corrects the model. */
+/** The error predicted at one quality, in two parts that are inversely proportional to rows and to columns. */
 struct ErrorModel {
     Quality at;
     double of_rows = 0, of_columns = 0;  ///< [1]
 
     double error(int rows, int columns_per_beam) const;
-    double error() const { return error(at.rows, at.columns_per_beam); }
+    /** Returns the model moved to another quality, whose error it predicts. */
+    ErrorModel movedTo(const Quality& other) const;
+    /** Returns the model with all errors multiplied by `factor`. */
+    ErrorModel scaled(double factor) const;
 };
 
 /** The available qualities: 64 to 2048 rows, 9 % apart, with 2, 3, 4, 6, 8, 12 ... 256 columns per beam, up to what a
@@ -45,31 +47,40 @@ private:
     std::vector<int> rows_, columns_;
 };
 
-/** Estimates the error of pings by comparing them with cheaper pings of the same snapshot.
+/** Measures the error of pings by comparing them with other pings of the same snapshot.
  *
- *  Uses three fifths of the rows rather than half, because an edge along the rows may be equally wrong at half the
- *  rows. Halves the columns. Assumes that the two errors are independent and proportional to the spacing of the
- *  samples. */
+ *  A ping's error is the larger of its differences to two finer pings, of about 2 and 3 times its rows and columns,
+ *  with a margin of a quarter; for `cerqueira2017` of a half, as a bin on an edge is any mean of two surfaces. Two,
+ *  because samples at multiples of each other may miss the same thing. Where no finer ping can be rasterised, the
+ *  difference to a coarser one is added. */
 class ErrorEstimator {
 public:
-    explicit ErrorEstimator(const SonarConfig& config);
-    /** Estimates the errors of rows and of columns separately; costs 1.1 pings. */
-    ErrorModel model(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
-                     const Quality& quality);
-    /** Estimates the error of both together [1]; costs 0.3 pings. */
-    double error(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
-                 const Quality& quality);
+    /** `least`: the smallest error that is predicted where there is an echo [1]. */
+    ErrorEstimator(const SonarConfig& config, double least);
+    /** Measures the error of a ping of this quality, and its parts; costs 15 pings. Leaves the renderer at another
+     *  quality. */
+    ErrorModel measure(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
+                       const Quality& quality);
+    /** Returns the difference to a ping of three fifths of the rows and half the columns, relative to the ping; costs
+     *  0.3 pings. Leaves the renderer at that quality. */
+    double changeToCoarser(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
+                           const Quality& quality);
+    /** Returns the smallest error that is predicted for a ping: a surface between all samples may be missed. For
+     *  `cerqueira2017` it is that of the brightest bin, which the smallest piece of a surface can fill [1]. */
+    double least(const types::Sonar& ping) const;
 
-    /** Returns the samples per beam of all pings rendered for estimates [1]. */
+    /** Returns the samples per beam of all pings rendered to measure [1]. */
     double rendered() const { return rendered_; }
 
 private:
     double change(const std::vector<float>& coarse, const std::vector<float>& fine) const;
-    double changeBy(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping, int rows,
-                    int columns_per_beam);
+    void render(SonarRenderer& renderer, const types::Snapshot& scene, int rows, int columns_per_beam,
+                types::Sonar& ping);
 
+    SonarConfig config_;
+    double least_;
     std::vector<double> weights_;  ///< Weights of the squares of a beam's bins [1].
-    types::Sonar coarse_;
+    types::Sonar finest_, other_;
     double rendered_ = 0;
 };
 
@@ -77,20 +88,23 @@ private:
 struct QualityGoal {
     double target = 0;                                             ///< Error [1].
     double max_samples = std::numeric_limits<double>::infinity();  ///< Max samples per beam [1].
-    bool trades = true;  ///< Whether rows may be traded for columns, and vice versa, at the max samples.
+    Quality minimum = {};                                          ///< At least these rows and these columns.
 };
 
-/** Raises the quality from `start`, at which `ping` has been rendered, until the estimated error is at most the target,
- *  or the max samples are reached.
+/** Finds the quality with the fewest samples whose measured error is at most the target, or with the smallest error
+ *  within the max samples, from `start`, at which `ping` has been rendered.
  *
- *  Each step uses the estimate of the step before and at most four times its samples. All steps together thus take
- *  about the time of three pings at the last quality. Renders `ping` again where the quality has changed, and leaves
- *  the renderer at the new quality. Rows and columns are not lowered, except in exchange for each other. */
+ *  Each step goes where the parts of the last measured error lead, to at most four times its samples. All steps
+ *  together take about the time of 25 pings at the last quality. Leaves `ping` rendered at the quality that it returns
+ *  with its error, and the renderer at any. */
 ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRenderer& renderer,
                  const types::Snapshot& scene, const Quality& start, const QualityGoal& goal, types::Sonar& ping);
 
-/** Goal of a new choice, when the error was above the target or a lower quality suffices [1 of the target]. */
-constexpr double target_share = 0.8;
+/** Error that a step aims at [1 of the target]. */
+constexpr double target_share = 0.92;
+
+/** Smallest error that is predicted [1 of the target], and without a target [1]. */
+constexpr double least_share = 0.2, least_error = 0.01;
 
 /** Returns the quality that a sonar chooses in one snapshot, for its configuration's target and max samples. */
 Quality chooseQuality(const SonarConfig& config, const types::Snapshot& scene);

@@ -10,17 +10,20 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr int patience_after_fall = 20, max_patience = 320, forgiven_after = 400;
+constexpr int patience_after_fall = 20, max_patience = 320, forgiven_after = 400, more_patience = 4, most_turns = 1024;
 constexpr double fall_to = 0.9, climb_to = 0.97, max_change = 4, min_climb = 1.09;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double watched_share = 0.2618034;  ///< Share of the pings; irrational, to cover all bearings of a head.
-constexpr double first_turn_share = 0.5;     ///< The same in the first turn of a head.
 constexpr int rarely = 16;  ///< One of this number of due pings is evaluated where the budget is used up.
-constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, worth_lowering = 0.7, near_limit = 0.8;
-constexpr double overhead = 0.15, pings_to_choose = 10;  ///< Max total cost of estimates [share of the pings, pings].
+constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, has_fallen = 0.67, near_limit = 0.8;
+constexpr double least_look = 0.25;  ///< Least share of the worst error by which a target is lowered [1].
+constexpr double overhead = 0.15, pings_to_choose = 40;  ///< Max total cost of new choices [share of the pings, pings].
+constexpr double min_per_change = 1.5;  ///< Least growth of the error with the difference to a coarser ping [1].
+constexpr double pings_to_measure = 15, max_delay = 4;     ///< Max time to measure for a budget [pings, budgets].
+constexpr double off_measure = 1.2;  ///< Margin where the error of another quality is taken from one comparison [1].
 constexpr int min_pings = 64, settled = 20, max_notices = 20;
-constexpr double worth_reporting = 1.2, too_far_from_model = 4;
+constexpr double worth_reporting = 1.2;
 
 }  // namespace
 
@@ -67,7 +70,7 @@ QualityKeeper::QualityKeeper(const SonarConfig& config, int turn)
       target_(config.targetError().value_or(0)),
       turn_(turn),
       ladder_(config),
-      estimator_(config) {
+      estimator_(config, target_ > 0 ? least_share * target_ : least_error) {
     if (config.quality.budget_ms) budget_.emplace(*config.quality.budget_ms, Quality().samples() * beams_);
 }
 
@@ -78,91 +81,113 @@ double QualityKeeper::maxSamples() const {
 
 bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
                            double period_ms) {
-    if (!renderer.hasEchoes()) return false;
-    ++pings_;
-    ++since_change_;
-    received_samples_ += model_.at.samples();
-    if (!std::exchange(chosen_, true)) {
-        choose(renderer, scene, ping);
-        return true;
+    const Quality before = model_.at;
+    if (next_) {
+        model_ = model_.movedTo(*std::exchange(next_, {}));
+        change_ = -1;
+        since_change_ = 0;
     }
-    const bool limited = keepBudget(renderer, scene, ping, ms, period_ms);
-    const bool watched = !limited && isDue() && watch(renderer, scene, ping);
-    reportBudget(scene, ms);
-    return limited || watched;
+    if (renderer.hasEchoes()) {
+        ++pings_;
+        ++since_change_;
+        received_samples_ += model_.at.samples();
+        if (!std::exchange(chosen_, true)) {
+            choose(renderer, scene, ping, target_, {});
+        } else {
+            keepBudget(renderer, scene, ping, ms, period_ms);
+            if (!next_ && isDue()) watch(renderer, scene, ping);
+            reportBudget(scene, ms);
+        }
+    }
+    const Quality& next = next_ ? *next_ : model_.at;
+    renderer.setQuality(next.rows, next.columns_per_beam);
+    return chosen_ && !(before == model_.at && before.error == model_.at.error);
 }
 
-void QualityKeeper::choose(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
+bool QualityKeeper::mayChoose() const {
+    const bool no_time = budget_ && model_.at.samples() > near_limit * budget_->limit() / beams_;
+    return !no_time && choosing_ <= overhead * received_samples_ + pings_to_choose * model_.at.samples();
+}
+
+void QualityKeeper::choose(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double target,
+                           const Quality& minimum) {
     const Quality before = model_.at;
-    const bool is_first = pings_ == 1, sees_all = turn_ == 1;
-    model_ = climb(estimator_, ladder_, renderer, scene, before, {target_, maxSamples(), is_first || sees_all}, ping);
-    const Quality enough = ladder_.choose(model_, target_share * target_, maxSamples(), before);
-    if (enough.samples() <= worth_lowering * model_.at.samples()) moveTo(renderer, enough);
-    modelled_ = model_.at.samples();
+    const double rendered = estimator_.rendered();
+    take(climb(estimator_, ladder_, renderer, scene, model_.at, {target, maxSamples(), minimum}, ping), renderer, scene,
+         ping);
+    const bool is_first = pings_ == 1;
+    if (!is_first) choosing_ += estimator_.rendered() - rendered;
+    if (is_first || !(before == model_.at)) reportChoice(scene);
+}
+
+void QualityKeeper::take(const ErrorModel& measured, SonarRenderer& renderer, const types::Snapshot& scene,
+                         const types::Sonar& ping) {
+    model_ = measured;
+    measured_ = model_.at.error;
+    least_ = estimator_.least(ping);
+    change_ = estimator_.changeToCoarser(renderer, scene, ping, model_.at);
+    per_change_ = change_ > 0 ? measured_ / change_ : min_per_change;
     since_change_ = 0;
     worst_ = 0;
-    reportChoice(scene);
 }
 
-void QualityKeeper::moveTo(SonarRenderer& renderer, const Quality& quality) {
-    model_ = {quality, model_.of_rows * model_.at.rows / quality.rows,
-              model_.of_columns * model_.at.columns_per_beam / quality.columns_per_beam};
-    renderer.setQuality(quality.rows, quality.columns_per_beam);
-}
-
-bool QualityKeeper::isDue() {
+bool QualityKeeper::isDue() const {
     const auto watched = [](int64_t pings, double share) { return std::floor(static_cast<double>(pings) * share); };
-    if (estimator_.rendered() > overhead * received_samples_ + pings_to_choose * model_.at.samples()) return false;
     const bool no_time = budget_ && model_.at.samples() > near_limit * budget_->limit() / beams_;
     const bool is_first_turn = turn_ > 1 && pings_ <= turn_;
-    const double share = no_time ? watched_share / rarely : is_first_turn ? first_turn_share : watched_share;
+    if (no_time && change_ < 0 && since_change_ == settled) return true;
+    if (is_first_turn && !no_time) return true;
+    const double share = no_time ? watched_share / rarely : watched_share;
     return watched(pings_, share) != watched(pings_ - 1, share);
 }
 
-bool QualityKeeper::watch(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
-    const double error = estimator_.error(renderer, scene, ping, model_.at);
-    worst_ = std::max(worst_, error);
-    if (error > std::max(off_target * target_, off_prediction * model_.at.error)) {
-        choose(renderer, scene, ping);
-        return true;
+double QualityKeeper::errorOf(double change) {
+    if (change_ < 0) {  // the first look at a quality that was chosen for its time
+        change_ = change;
+        const double error = std::max(off_measure * per_change_ * change, least_error);
+        model_ = model_.scaled(error / model_.at.error);
+        measured_ = model_.at.error = error;
     }
-    return since_change_ >= std::max(turn_, min_pings) && lower(renderer, scene, ping);
+    const double fall = change < change_ ? change / change_ : 1, rise = std::max(0.0, change - change_);
+    return measured_ * fall + std::max(per_change_, min_per_change) * rise;
 }
 
-bool QualityKeeper::lower(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
+void QualityKeeper::watch(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
+    const double error = errorOf(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
+    worst_ = std::max(worst_, error);
+    if (error > std::max(off_target * target_, off_prediction * measured_) && mayChoose()) {
+        if (std::exchange(lowered_, false)) turns_ = std::min(more_patience * turns_, most_turns);
+        return choose(renderer, scene, ping, target_, turn_ == 1 ? Quality() : model_.at);
+    }
+    model_.at.error = std::max(model_.at.error, error);
+    if (since_change_ >= turns_ * std::max(turn_, min_pings)) settle(renderer, scene, ping, error);
+}
+
+void QualityKeeper::settle(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double error) {
     const double worst = std::exchange(worst_, 0);
     since_change_ = 0;
-    if (worst > well_within * target_ || model_.at == Quality()) return false;
-    ErrorModel model = estimator_.model(renderer, scene, ping, model_.at);
-    const double scale = model.error() > 0 ? std::max(1.0, worst / model.error()) : 1;
-    model.of_rows *= scale;
-    model.of_columns *= scale;
-    const Quality enough = ladder_.choose(model, target_share * target_, maxSamples());
-    if (enough.samples() > worth_lowering * model_.at.samples()) return false;
-    model_ = model;
-    moveTo(renderer, enough);
-    reportChoice(scene);
-    return true;
+    model_.at.error = worst;
+    const bool is_idle = worst <= well_within * target_ && worst <= has_fallen * measured_;
+    if (!is_idle || model_.at == Quality() || !mayChoose()) return;
+    const double look = worst > 0 ? std::max(error / worst, least_look) : 1;
+    choose(renderer, scene, ping, target_ * look, {});
+    model_.at.error /= look;
+    lowered_ = true;
 }
 
-bool QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
-                               double period_ms) {
+void QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
+                               double ms, double period_ms) {
     const QualityConfig& wanted = config_.quality;
     const bool by_period = period_ms > 0 && !wanted.target_error && !wanted.max_samples && !wanted.budget_ms;
     if (by_period && budget_) budget_->setBudget(period_ms);
     if (by_period && !budget_) budget_.emplace(period_ms);
     const double before = maxSamples();
-    if (!budget_ || !budget_->note(ms, model_.at.samples() * beams_)) return false;
+    if (!budget_ || !budget_->note(ms, model_.at.samples() * beams_)) return;
     const bool rises = maxSamples() > before;
-    if (rises && maxSamples() > too_far_from_model * modelled_) {
-        choose(renderer, scene, ping);
-        return true;
-    }
+    if (rises && pings_to_measure * ms <= max_delay * budget_->budget())
+        take(estimator_.measure(renderer, scene, ping, model_.at), renderer, scene, ping);
     const Quality next = ladder_.choose(model_, target_share * target_, maxSamples(), rises ? model_.at : Quality());
-    if (next == model_.at) return false;
-    moveTo(renderer, next);
-    since_change_ = 0;
-    return true;
+    if (!(next == model_.at)) next_ = next;
 }
 
 void QualityKeeper::report(const std::string& notice) {
@@ -177,10 +202,12 @@ std::string QualityKeeper::text() const {
 }
 
 std::string QualityKeeper::limitText() const {
+    if (least_ > target_) return "a single bin is that much of the ping";
+    if (ladder_.choose(model_, target_share * target_, infinity).samples() <= maxSamples())
+        return "there is no finer quality";
     if (budget_ && budget_->limit() < config_.maxSamples().value_or(infinity))
         return fmt::format("the budget of {:.4g} ms allows no more", budget_->budget());
-    return config_.maxSamples() ? fmt::format("max_samples {:.0f} allows no more", *config_.maxSamples())
-                                : "there is no finer quality";
+    return fmt::format("max_samples {:.0f} allows no more", config_.maxSamples().value_or(infinity));
 }
 
 void QualityKeeper::reportChoice(const types::Snapshot& scene) {
