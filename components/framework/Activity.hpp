@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "types/OwnProcess.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::framework {
@@ -44,7 +45,7 @@ public:
     void configure(ActivitySettings settings);
 
     /** Runs `work` on the task's thread and waits until it ends; runs it directly when called on that thread. Rethrows
-     *  what `work` throws. Allocates nothing. */
+     *  what `work` throws; std::runtime_error in a forked child, where there is no such thread. Allocates nothing. */
     template <class Work>
     void call(Work&& work) {
         using Callable = std::remove_reference_t<Work>;
@@ -82,6 +83,7 @@ private:
 
     TaskContext& owner_;
     ActivitySettings settings_;
+    types::OwnProcess process_;
     std::mutex mutex_;
     std::condition_variable wake_, served_;
     Job* first_job_ = nullptr;

@@ -21,6 +21,7 @@ ThreadPool::~ThreadPool() {
 }
 
 void ThreadPool::start(Call call, const void* context) {
+    process_.require("this pool of threads");
     {
         std::lock_guard lock(mutex_);
         call_ = call;

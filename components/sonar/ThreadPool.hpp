@@ -5,9 +5,12 @@
 #include <thread>
 #include <vector>
 
+#include "types/OwnProcess.hpp"
+
 namespace insonify::sonar {
 
-/** A few threads that share the parts of one job. Running a job allocates nothing. */
+/** A few threads that share the parts of one job. Running a job allocates nothing. In a forked child, where the threads
+ *  are missing, it throws std::runtime_error. */
 class ThreadPool {
 public:
     /** `threads` counts the caller; 0: the number of the machine's cores, at most 16. */
@@ -54,6 +57,7 @@ private:
     void dismiss();
     void work(int part);
 
+    types::OwnProcess process_;
     std::vector<std::thread> workers_;
     std::mutex mutex_;
     std::condition_variable started_, done_;
