@@ -66,6 +66,7 @@ uint64_t PoseAxes::gridSize() const {
 }
 
 void TrajectoryPoses::check(types::Diagnostics& diagnostics) const {
+    times.check(diagnostics);
     if (file.empty()) diagnostics.push_back({"", "has no file"});
     if (count.has_value() == period.has_value())
         diagnostics.push_back({"", "must have one of count and period, which set the number of poses"});

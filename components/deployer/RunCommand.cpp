@@ -94,13 +94,41 @@ namespace {
 
 using command::OutputFolder;
 
-/** Returns the duration of a lockstep run by its trajectories, where no limit ends it; 0: unknown [s]. */
-double trajectoryLength(const framework::Deployment& deployment) {
-    double longest = 0;
+/** The trajectory that ends last, and when, where no limit ends a run in lockstep. */
+struct LastTrajectory {
+    std::string task;
+    double end = 0;  ///< Infinite for a loop; 0: unknown [s].
+};
+
+LastTrajectory lastTrajectory(const framework::Deployment& deployment) {
+    LastTrajectory last;
     for (const auto& task : deployment.tasks())
-        if (const auto* trajectory = dynamic_cast<const pose::TrajectoryTask*>(task.get()))
-            longest = std::max(longest, trajectory->duration());
-    return deployment.spec().lockstep ? longest : 0;
+        if (const auto* trajectory = dynamic_cast<const pose::TrajectoryTask*>(task.get());
+            trajectory && trajectory->duration() > last.end)
+            last = {task->name(), trajectory->duration()};
+    return deployment.spec().lockstep ? last : LastTrajectory{};
+}
+
+/** Refuses a run in lockstep that no limit ends and that would last longer than anybody means; reports one that never
+ *  ends. */
+void refuseUnmeantLength(const framework::Deployment& deployment, const RunOptions& options) {
+    constexpr double week = 7 * 86'400;  // [s]
+    const auto& limits = options.limits;
+    const LastTrajectory last = lastTrajectory(deployment);
+    if (last.end <= week || limits.samples > 0 || limits.duration_s > 0 || limits.shard) return;
+    if (!std::isfinite(last.end)) {
+        if (!options.quiet)
+            fmt::print(stderr,
+                       "notice: {}: loops, so the run ends at SIGINT; --duration S or --pings N ends it earlier\n",
+                       last.task);
+        return;
+    }
+    throw types::ConfigError(
+        deployment.spec().file, "tasks." + last.task,
+        fmt::format("its trajectory ends {:.12g} s ({:.3g} days) after the start of the run, which no limit ends; more "
+                    "than {:g} days need --duration S or --pings N. If its times are of another unit or clock, set "
+                    "time_unit, start or start_s",
+                    last.end, last.end / 86'400, week / 86'400));
 }
 
 /** Shows a run's progress on a terminal: done, total and remaining time. */
@@ -108,7 +136,8 @@ class RunProgress {
 public:
     RunProgress(const framework::Deployment& deployment, const RunOptions& options)
         : line_(!options.quiet), pings_(options.limits.samples), seconds_(options.limits.duration_s) {
-        if (pings_ == 0 && seconds_ == 0) seconds_ = trajectoryLength(deployment);
+        const double end = lastTrajectory(deployment).end;
+        if (pings_ == 0 && seconds_ == 0 && std::isfinite(end)) seconds_ = end;
     }
     void operator()(const framework::Progress& progress) {
         const double done = static_cast<double>(progress.samples);
@@ -229,6 +258,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
 
     const std::atomic<bool>& stop = stopOnSignals();
     deployment.configure();
+    refuseUnmeantLength(deployment, options);
     folder.keep();
     if (folder.hadFiles() && !options.quiet && !options.shard)
         fmt::print(stderr, "notice: {} has files already; those with the names of this run's files are replaced\n",

@@ -33,6 +33,7 @@ void Activity::configure(ActivitySettings settings) {
 }
 
 void Activity::submit(Job& job) {
+    process_.require("this task");
     std::unique_lock<std::mutex> lock(mutex_);
     if (thread_.get_id() == std::this_thread::get_id()) {
         lock.unlock();

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "types/OwnProcess.hpp"
 #include "types/Thread.hpp"
 #include "types/Time.hpp"
 
@@ -45,7 +46,8 @@ public:
     void configure(ActivitySettings settings);
 
     /** Runs `work` on the task's thread and waits until it ends; runs it directly when called on that thread. Rethrows
-     *  what `work` throws. Allocates nothing. Throws std::runtime_error if the thread cannot be started. */
+     *  what `work` throws. Allocates nothing. Throws std::runtime_error if the thread cannot be started, and in a forked
+     *  child, where there is no such thread. */
     template <class Work>
     void call(Work&& work) {
         using Callable = std::remove_reference_t<Work>;
@@ -83,6 +85,7 @@ private:
 
     TaskContext& owner_;
     ActivitySettings settings_;
+    types::OwnProcess process_;
     types::PriorityMutex mutex_;
     std::condition_variable wake_, served_;
     Job* first_job_ = nullptr;

@@ -89,7 +89,14 @@ Deployment::Deployment(DeploymentSpec spec, Registry& registry, std::filesystem:
     executor_ = makeExecutor();
 }
 
-Deployment::~Deployment() { cleanup(); }
+Deployment::~Deployment() {
+    if (!process_.isForked()) {
+        cleanup();
+        return;
+    }
+    static_cast<void>(new Graph(std::move(graph_)));  // destructors would wait for threads, and write to the files
+    static_cast<void>(executor_.release());
+}
 
 void Deployment::makeEnvironment(std::filesystem::path output_folder, uint64_t seed) {
     const auto folder = std::filesystem::path(spec_.file).parent_path();

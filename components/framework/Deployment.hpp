@@ -13,6 +13,7 @@
 #include "components/framework/Executor.hpp"
 #include "components/framework/Graph.hpp"
 #include "components/framework/Registry.hpp"
+#include "types/OwnProcess.hpp"
 
 namespace insonify::framework {
 
@@ -31,7 +32,8 @@ struct RunResult : Progress {
  *      RunResult result = deployment.run({.duration_s = 10}, stop, {});
  *
  *  Tasks configure in file order, start readers before writers, and stop and clean up writers before readers. A reader
- *  runs a last cycle before it stops, so that no waiting sample is lost. The destructor cleans up. */
+ *  runs a last cycle before it stops, so that no waiting sample is lost. The destructor cleans up, but in a forked
+ * child, where the threads are missing and the files are those of the parent, it leaves everything as it is. */
 class Deployment final : public types::DeploymentControl {
 public:
     /** Makes and checks the tasks; configures none. Throws types::ConfigError with every diagnostic, those of `spec`
@@ -88,6 +90,7 @@ private:
     void stopAll(std::vector<std::string>& failures);
     void noteFailed(std::vector<std::string>& failures) const;
 
+    types::OwnProcess process_;
     DeploymentSpec spec_;
     std::shared_ptr<Environment> environment_;
     std::unique_ptr<Executor> executor_;  ///< Outlives the tasks, which read its clock.

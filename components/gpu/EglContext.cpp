@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -38,6 +39,15 @@ bool hasNode() {
         const std::string name = node.path().filename().string();
         return std::ranges::any_of(drivers, [&](std::string_view driver) { return name.starts_with(driver); });
     });
+}
+
+/** OpenGL's libraries have threads and displays of their own, which a forked child lacks. */
+void requireOwnProcess() {
+    static const pid_t first = getpid();
+    if (first != getpid())
+        throw GlError(
+            "OpenGL was used before this process was forked from another; start processes with spawn, or fork "
+            "before the first sonar that rasterises");
 }
 
 bool clientHas(const char* extension) { return hasEgl() && epoxy_has_egl_extension(EGL_NO_DISPLAY, extension); }
@@ -203,6 +213,7 @@ bool EglContext::hasCard() {
         std::vector<Candidate> all = candidates("auto");
         std::erase_if(all, [](const Candidate& candidate) { return !candidate.may_be_card; });
         if (all.empty()) return false;
+        requireOwnProcess();
         const auto alone = making();
         bool found = false;
         const auto look = [&] {
@@ -236,6 +247,7 @@ void EglContext::destroy() {
 }
 
 void EglContext::create(const std::string& device) {
+    requireOwnProcess();
     const std::vector<Candidate> all = candidates(device);
     const auto opens = [&](const Candidate& candidate) {
         const EGLDisplay display = candidate.display();

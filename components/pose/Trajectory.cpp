@@ -36,6 +36,12 @@ std::vector<Trajectory::Stamp> stampsOf(const std::vector<Waypoint>& waypoints) 
     return stamps;
 }
 
+std::vector<Trajectory::Stamp> inRun(std::vector<Trajectory::Stamp> stamps, const TrajectoryTimes& times) {
+    const double first = stamps.empty() ? 0 : stamps.front().time;
+    for (Trajectory::Stamp& stamp : stamps) stamp.time = times.inRun(stamp.time, first);
+    return stamps;
+}
+
 /** Returns the body rate that rotates `from` into `to` in `seconds`, the shorter way [rad/s]. */
 glm::dvec3 angularVelocity(const glm::dquat& from, const glm::dquat& to, double seconds) {
     glm::dquat turn = glm::conjugate(from) * to;
@@ -105,7 +111,29 @@ glm::dquat Waypoint::orientation() const {
            glm::angleAxis(types::radians(roll_deg), glm::dvec3(1, 0, 0));
 }
 
+void TrajectoryTimes::check(types::Diagnostics& diagnostics) const {
+    if (start_s && start == TrajectoryStart::FirstPose)
+        diagnostics.push_back({"start_s", "is given together with start: first_pose; give one of the two"});
+}
+
+TimeUnit TrajectoryTimes::unitOf(double first) const {
+    if (time_unit) return *time_unit;
+    constexpr double since_1973 = 1e8;  // [s] since 1970; in seconds the next units would be after the year 5000
+    for (const auto& [unit, per_second] :
+         {std::pair(TimeUnit::Nanoseconds, 1e9), std::pair(TimeUnit::Microseconds, 1e6),
+          std::pair(TimeUnit::Milliseconds, 1e3)})
+        if (first >= since_1973 * per_second) return unit;
+    return TimeUnit::Seconds;
+}
+
+double TrajectoryTimes::inRun(double time, double first) const {
+    constexpr double per_second[] = {1, 1e3, 1e6, 1e9};
+    const double scale = per_second[static_cast<size_t>(unitOf(first))];
+    return (time - (start == TrajectoryStart::FirstPose ? first : start_s.value_or(0) * scale)) / scale;
+}
+
 void TrajectoryConfig::check(types::Diagnostics& diagnostics) const {
+    times.check(diagnostics);
     if (file && !waypoints.empty())
         diagnostics.push_back({"waypoints", "is given together with file; give one of the two"});
     if (!file && waypoints.empty())
@@ -123,7 +151,13 @@ Trajectory::Trajectory(std::vector<Stamp> stamps, bool smooth) : stamps_(std::mo
     if (smooth && stamps_.size() > 1) spline_.emplace(splineThrough(stamps_));
 }
 
-Trajectory::Trajectory(const std::vector<Waypoint>& waypoints, bool smooth) : Trajectory(stampsOf(waypoints), smooth) {}
+Trajectory::Trajectory(const std::vector<Stamp>& stamps, bool smooth, const TrajectoryTimes& times)
+    : Trajectory(inRun(stamps, times), smooth) {
+    unit_ = times.unitOf(stamps.front().time);
+}
+
+Trajectory::Trajectory(const std::vector<Waypoint>& waypoints, bool smooth, const TrajectoryTimes& times)
+    : Trajectory(stampsOf(waypoints), smooth, times) {}
 
 void Trajectory::placeOnSpline(size_t stamp, double time, types::Pose& pose) const {
     const auto [v, rate] = spline_->at(stamp, time);
@@ -164,7 +198,7 @@ double Trajectory::inLoop(double time) const {
     return length > 0 && time > first ? first + std::fmod(time - first, length) : time;
 }
 
-Trajectory Trajectory::fromCsv(const std::filesystem::path& file, bool smooth) {
+Trajectory Trajectory::fromCsv(const std::filesystem::path& file, bool smooth, const TrajectoryTimes& times) {
     static const std::vector<types::CsvColumn> columns{{"time"}, {"x"}, {"y"}, {"z"}, {"qw"}, {"qx"}, {"qy"}, {"qz"}};
     std::vector<Stamp> stamps;
     size_t odd_lengths = 0;
@@ -173,7 +207,7 @@ Trajectory Trajectory::fromCsv(const std::filesystem::path& file, bool smooth) {
         odd_lengths += types::isOddlyLong(orientation);
         stamps.push_back({row[0], {row[1], row[2], row[3]}, orientation / glm::length(orientation)});
     }
-    Trajectory trajectory(std::move(stamps), smooth);
+    Trajectory trajectory(stamps, smooth, times);
     trajectory.odd_lengths_ = odd_lengths;
     return trajectory;
 }

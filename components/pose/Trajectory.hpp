@@ -26,12 +26,46 @@ struct Waypoint {
     glm::dquat orientation() const;
 
     static void describe(auto& self, auto& visit) {
-        visit({"time", "s", "since the start of the run", -1e9, 1e9}, self.time);
+        visit(
+            {"time", "s", "since the start of the run, unless start, start_s or time_unit say otherwise", -1e19, 1e19},
+            self.time);
         visit({"position", "m", "of the body in the world: north, west, up", -1e9, 1e9}, self.position);
         visit({"roll_deg", "deg", "about x, positive lowers starboard", -360, 360}, self.roll_deg);
         visit({"pitch_deg", "deg", "about y, positive looks down", -360, 360}, self.pitch_deg);
         visit({"yaw_deg", "deg", "about z, positive turns to port", -360, 360}, self.yaw_deg);
     }
+};
+
+enum class TimeUnit { Seconds, Milliseconds, Microseconds, Nanoseconds };
+
+/** What a trajectory begins with at the start of the run. */
+enum class TrajectoryStart { Run, FirstPose };
+
+/** The clock of the times of a trajectory. */
+struct TrajectoryTimes {
+    std::optional<TimeUnit> time_unit = {};
+    TrajectoryStart start = TrajectoryStart::Run;
+    std::optional<double> start_s = {};
+
+    static void describe(auto& self, auto& visit) {
+        visit({"time_unit", "",
+               "of the times: s, ms, us or ns; absent: that of times since 1970 where the first is one of after 1973, "
+               "else s"},
+              self.time_unit);
+        visit({"start", "", "run: times count from the start of the run; first_pose: the run starts at the first time"},
+              self.start);
+        visit({"start_s", "s",
+               "time of the trajectory at the start of the run, the same for trajectories of one clock; absent: 0",
+               -1e10, 1e10},
+              self.start_s);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+    /** Returns the unit of a trajectory whose first time is `first`. */
+    TimeUnit unitOf(double first) const;
+    /** Returns a time [unit] of a trajectory whose first time is `first` [unit] as a time of the run [s]. */
+    double inRun(double time, double first) const;
+
+    bool operator==(const TrajectoryTimes&) const = default;
 };
 
 /** The source of a trajectory: either a file or waypoints. */
@@ -41,10 +75,12 @@ struct TrajectoryConfig {
     bool loop = false;
     bool smooth = false;
     std::optional<SeaMotionConfig> motion = {};
+    TrajectoryTimes times = {};
 
     static void describe(auto& self, auto& visit) {
-        visit({"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz in [s], [m], [1]"}, self.file);
+        visit({"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz in [s] or time_unit, [m], [1]"}, self.file);
         visit({"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
+        TrajectoryTimes::describe(self.times, visit);
         visit({"loop", "", "whether the trajectory restarts at its first stamp after the last; else it ends there"},
               self.loop);
         visit({"smooth", "",
@@ -96,12 +132,15 @@ public:
     /** @param stamps at least one, at strictly increasing times
      *  @throws std::invalid_argument for other stamps. */
     explicit Trajectory(std::vector<Stamp> stamps, bool smooth = false);
-    explicit Trajectory(const std::vector<Waypoint>& waypoints, bool smooth = false);
+    /** @param times the clock of the stamps */
+    Trajectory(const std::vector<Stamp>& stamps, bool smooth, const TrajectoryTimes& times);
+    explicit Trajectory(const std::vector<Waypoint>& waypoints, bool smooth = false, const TrajectoryTimes& times = {});
 
     /** Reads a CSV with header `time,x,y,z,qw,qx,qy,qz`. Normalises quaternions and skips blank lines.
      *  @throws types::ConfigError with line and column of every diagnostic: a field that is missing, superfluous or not
      *  a finite number, a time that does not increase, a quaternion shorter than 1e-6. */
-    static Trajectory fromCsv(const std::filesystem::path& file, bool smooth = false);
+    static Trajectory fromCsv(const std::filesystem::path& file, bool smooth = false,
+                              const TrajectoryTimes& times = {});
 
     /** Returns the pose of "body" in frame "world" at `time` [s] since the start of the run. It has a velocity in the
      *  world [m/s] and an angular velocity in the body [rad/s], both zero outside the stamps. Does not set
@@ -112,6 +151,8 @@ public:
     double inLoop(double time) const;
 
     const std::vector<Stamp>& stamps() const { return stamps_; }
+    /** Returns the unit in which the times were given. */
+    TimeUnit timeUnit() const { return unit_; }
     /** Returns how many quaternions of the file had a length that differs from 1 by more than 1 %. */
     size_t oddLengths() const { return odd_lengths_; }
 
@@ -121,7 +162,18 @@ private:
 
     std::vector<Stamp> stamps_;
     std::optional<Spline> spline_;
+    TimeUnit unit_ = TimeUnit::Seconds;
     size_t odd_lengths_ = 0;
 };
 
 }  // namespace insonify::pose
+
+template <>
+struct insonify::types::EnumNames<insonify::pose::TimeUnit> {
+    static constexpr std::string_view names[] = {"s", "ms", "us", "ns"};
+};
+
+template <>
+struct insonify::types::EnumNames<insonify::pose::TrajectoryStart> {
+    static constexpr std::string_view names[] = {"run", "first_pose"};
+};

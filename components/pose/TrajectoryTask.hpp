@@ -16,7 +16,9 @@ namespace insonify::pose {
 
 /** Moves the vehicle along a prescribed trajectory. Needs a periodic activity.
  *
- *  Each cycle writes the pose at now(); the trajectory's times count from the start of the run. The task is finished
+ *  Each cycle writes the pose at now(); the trajectory's times count from the start of the run, or as TrajectoryTimes
+ *  says. check() and configure report times of another clock: those that begin more than an hour after the start of the
+ *  run, end before it, or are beyond 1e9 s. The task is finished
  *  once the next pose would be beyond the last stamp (with a single waypoint: after one pose). If it keeps running, it
  *  holds the last pose. With `loop` it restarts at the first stamp after each last stamp, and is never finished. With
  *  `motion` waves move the body about the trajectory, by the time of the run, also outside the stamps. An invalid file
@@ -30,20 +32,23 @@ public:
 
     void check(types::Diagnostics& diagnostics) const override;
     bool finished() const override { return finished_; }
-    /** Returns how many quaternions of the file have an odd length, and how many poses after the last stamp were that
-     *  of the last stamp. */
+    /** Returns the time until which the vehicle stands at its first pose, how many quaternions of the file have an odd
+     *  length, and how many poses after the last stamp were that of the last stamp. */
     std::vector<std::string> notices() const override;
     /** Returns the trajectory of the properties, configured or not. Throws types::ConfigError as
      *  Trajectory::fromCsv. */
     Trajectory trajectory() const;
-    /** Returns the time of the last stamp [s]; 0 before the task is configured. */
-    double duration() const { return trajectory_ ? trajectory_->stamps().back().time : 0; }
+    /** Returns the time of the last of several stamps [s]; infinite for a loop, 0 for a fixed pose and before the task
+     * is configured. */
+    double duration() const;
 
 private:
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
     void cleanupHook() override;
+    /** Returns a warning that the trajectory has not begun at the start of the run; empty: it has. */
+    std::string waitText() const;
     /** Returns whether the next pose of this period would be beyond the trajectory. */
     bool isLast(types::Time elapsed);
 

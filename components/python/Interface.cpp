@@ -11,13 +11,27 @@
 #include "components/framework/ConfigReader.hpp"
 #include "components/python/Samples.hpp"
 #include "types/ConfigError.hpp"
+#include "types/OwnProcess.hpp"
 
 namespace insonify::python {
 namespace {
 
 using command::Json;
 
-class SimulationHandle final : public Handle {
+/** Something that steps, with threads, which only the process that made it may use. */
+class Stepped : public Handle {
+public:
+    /** Returns a handle for use in this process; throws in a forked child. */
+    template <class Kind>
+    static Kind& usable(Handle& handle) {
+        auto& stepped = dynamic_cast<Kind&>(handle);
+        stepped.process.require("the simulation");
+        return stepped;
+    }
+    types::OwnProcess process;
+};
+
+class SimulationHandle final : public Stepped {
 public:
     SimulationHandle(const std::string& deployment, deployer::SimulationOptions options)
         : simulation(deployment, std::move(options)) {}
@@ -135,7 +149,7 @@ deployer::SimulationOptions optionsOf(uint64_t seed, const char* const* override
     return options;
 }
 
-class BatchHandle final : public Handle {
+class BatchHandle final : public Stepped {
 public:
     BatchHandle(const std::string& deployment, const deployer::SimulationOptions& options, size_t count)
         : batch(deployment, options, count) {
@@ -176,10 +190,17 @@ private:
 
 const char* insonify_error() { return said.c_str(); }
 
-void insonify_free(Handle* handle) { delete handle; }
+void insonify_free(Handle* handle) {
+    const auto* stepped = dynamic_cast<const Stepped*>(handle);
+    if (stepped && stepped->process.isForked()) return;  // to end it would wait for the threads of the parent
+    delete handle;
+}
 
 const char* insonify_facts(const Handle* handle) {
-    return guarded(nullptr, [&] { return keep(handle->facts()); });
+    return guarded(nullptr, [&] {
+        if (const auto* stepped = dynamic_cast<const Stepped*>(handle)) stepped->process.require("the simulation");
+        return keep(handle->facts());
+    });
 }
 
 size_t insonify_arrays(const Handle* handle, Array* arrays, size_t room) {
@@ -203,14 +224,14 @@ Handle* insonify_batch(const char* deployment, uint64_t seed, const char* const*
 }
 
 Handle* insonify_batch_step(Handle* batch, const double* poses) {
-    return guarded(nullptr, [&]() -> Handle* { return dynamic_cast<BatchHandle&>(*batch).step(poses).release(); });
+    return guarded(nullptr, [&]() -> Handle* { return Stepped::usable<BatchHandle>(*batch).step(poses).release(); });
 }
 
 int insonify_batch_reset(Handle* batch, const size_t* which, const uint64_t* seeds, size_t count) {
     return guarded(-1, [&] {
         std::vector<std::optional<uint64_t>> given(count);
         for (size_t i = 0; seeds && i < count; ++i) given[i] = seeds[i];
-        dynamic_cast<BatchHandle&>(*batch).batch.reset({which, count}, given);
+        Stepped::usable<BatchHandle>(*batch).batch.reset({which, count}, given);
         return 0;
     });
 }
@@ -220,7 +241,8 @@ int insonify_step(Handle* simulation, const char* const* ports, const double* po
     return guarded(-1, [&] {
         std::map<std::string, types::Pose> at;
         for (size_t i = 0; i < port_count; ++i) at[ports[i]] = poseOf(poses + 7 * i);
-        const auto made = dynamic_cast<SimulationHandle&>(*simulation).simulation.step(std::move(at), unlessNull(time));
+        const auto made =
+            Stepped::usable<SimulationHandle>(*simulation).simulation.step(std::move(at), unlessNull(time));
         for (const auto& each : made) *pings++ = each.ping ? pingHandle(each.ping, each.truth).release() : nullptr;
         return 0;
     });
@@ -228,7 +250,7 @@ int insonify_step(Handle* simulation, const char* const* ports, const double* po
 
 int insonify_reset(Handle* simulation, const uint64_t* seed) {
     return guarded(-1, [&] {
-        dynamic_cast<SimulationHandle&>(*simulation).simulation.reset(unlessNull(seed));
+        Stepped::usable<SimulationHandle>(*simulation).simulation.reset(unlessNull(seed));
         return 0;
     });
 }

@@ -13,6 +13,8 @@ extern "C" {
 /** Returns the error of this thread's last call: `{kind, message, diagnostics}`, where kind is an exception of Python's
  *  or ConfigError. Valid until the thread's next call, as are all texts. */
 const char* insonify_error();
+/** Frees a handle; a simulation of the parent is left as it is in a forked child, which may not use it either:
+ *  RuntimeError. */
 void insonify_free(Handle* handle);
 /** Returns a handle's facts as JSON. */
 const char* insonify_facts(const Handle* handle);

@@ -17,6 +17,26 @@ double spanOf(const log::Reader& log) {
     return (std::ranges::max(samples, {}, &log::SampleRef::time).time - samples.front().time).seconds();
 }
 
+/** Returns a warning of the longest time without samples, if it is longer than an hour, as after stamps of another
+ * clock.
+ */
+std::string gapText(const log::Reader& log) {
+    constexpr double long_gap = 3600;  // [s]
+    const auto& samples = log.samples();
+    types::Time before, gap, after;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        if (i > 0 && samples[i].time - before > gap) gap = samples[i].time - before, after = samples[i].time;
+        before = i == 0 ? samples[i].time : std::max(before, samples[i].time);
+    }
+    if (!(gap.seconds() > long_gap)) return "";
+    const double from = (after - samples.front().time).seconds();
+    return fmt::format(
+        "Warning: the log has no sample for {:.6g} s (its stamps may be of two clocks), which its replay waits for; "
+        "from: "
+        "{:.6f} begins behind it, and pace: 0 does not wait",
+        gap.seconds(), from);
+}
+
 /** Whether a stream has Rock's beams or scans, which are also pings. */
 bool isOlderPing(const log::Stream& stream) { return log::holdsPings(stream) && !stream.holds<types::Sonar>(); }
 
@@ -47,6 +67,7 @@ void ReplayTask::open() {
     log_ = log::openLog(inputPath(config->file));
     by_stream_.resize(log_->streams().size());
     span_s_ = spanOf(*log_);
+    gap_text_ = gapText(*log_);
 }
 
 std::optional<types::Playback> ReplayTask::playback() const {
@@ -81,6 +102,7 @@ void ReplayTask::check(types::Diagnostics& diagnostics) const {
 std::vector<std::string> ReplayTask::notices() const {
     if (!log_) return {};
     std::vector<std::string> notices;
+    if (!gap_text_.empty()) notices.push_back(gap_text_);
     if (!log_->complete())
         notices.push_back(log_->path().string() + ": " + log_->diagnostic() + "; played up to there");
     for (size_t i = 0; i < by_stream_.size(); ++i) {

@@ -33,7 +33,7 @@ struct ReplayConfig {
                "effect in lockstep, where simulated time follows the log",
                0, 1e6},
               self.pace);
-        visit({"from", "s", "start of the replay, after the log's first stamp", 0, 1e9}, self.from);
+        visit({"from", "s", "start of the replay, after the log's first stamp", 0, 1e10}, self.from);
         visit({"loop", "", "repeats the log from `from` on, with shifted stamps: time never runs backwards"},
               self.loop);
     }
@@ -119,6 +119,7 @@ private:
     types::Time due();
 
     std::unique_ptr<log::Reader> log_;
+    std::string gap_text_;  ///< Warning of a long gap between two samples; empty: there is none.
     Outputs outputs_{this};
     std::vector<Outputs::Output*> by_stream_;  ///< The output of each stream of the log; null without a connection.
     size_t next_ = 0;                          ///< Index into the log's samples.

@@ -32,6 +32,7 @@ void ThreadPool::end() {
 }
 
 void ThreadPool::start(Call call, const void* context) {
+    process_.require("this pool of threads");
     {
         std::lock_guard lock(mutex_);
         call_ = call;

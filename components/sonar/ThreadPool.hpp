@@ -5,9 +5,12 @@
 #include <thread>
 #include <vector>
 
+#include "types/OwnProcess.hpp"
+
 namespace insonify::sonar {
 
-/** A few threads that share the parts of one job. Running a job allocates nothing. */
+/** A few threads that share the parts of one job. Running a job allocates nothing. In a forked child, where the threads
+ *  are missing, it throws std::runtime_error. */
 class ThreadPool {
 public:
     /** `threads` counts the caller; 0: the number of the machine's cores, at most 16. Throws std::runtime_error if the
@@ -57,6 +60,7 @@ private:
     /** Ends the workers, of which there may be fewer than wanted. */
     void end();
 
+    types::OwnProcess process_;
     std::vector<std::thread> workers_;
     std::mutex mutex_;
     std::condition_variable started_, done_;

@@ -134,5 +134,99 @@ TEST_F(TrajectoryTaskTest, AMissingFileIsADiagnosticAndAnErrorOfConfigure) {
     EXPECT_NE(task_.configError(), nullptr);
 }
 
+/** A file of positions x = 0, 1, 2 m at one second's distance; `first` and the second in the unit of its times. */
+void writeLine(const std::filesystem::path& file, double first, double second) {
+    std::ofstream out(file);
+    out.precision(19);
+    out << "time,x,y,z,qw,qx,qy,qz\n";
+    for (int i = 0; i < 3; ++i) out << first + i * second << "," << i << ",0,0,1,0,0,0\n";
+}
+
+TEST_F(TrajectoryTaskTest, TimesSince1970OfAnyUnitBeginWithTheRunWhereAsked) {
+    for (const double unit : {1.0, 1e3, 1e6, 1e9}) {
+        SCOPED_TRACE(unit);
+        writeLine(folder_ / "t.csv", 1403636580.8388 * unit, unit);
+        for (const TrajectoryTimes& times :
+             {TrajectoryTimes{.start = TrajectoryStart::FirstPose}, TrajectoryTimes{.start_s = 1403636580.8388}}) {
+            task_.config.set({.file = "t.csv", .waypoints = {}, .times = times});
+            EXPECT_THAT(test::refusalsOf(task_), testing::IsEmpty());
+            ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
+            for (const double time : {0.0, 0.25, 1.5, 2.0}) EXPECT_NEAR(poseAt(1 + time).position.x, time, 1e-6);
+            EXPECT_NEAR(task_.duration(), 2, 1e-6);
+            ASSERT_TRUE(task_.stop() && task_.cleanup());
+        }
+        task_.config.set({.file = "t.csv", .waypoints = {}});
+        EXPECT_THAT(test::refusalsOf(task_),
+                    testing::ElementsAre(testing::AllOf(testing::HasSubstr("begins 1403636580.8"),
+                                                        testing::HasSubstr("start: first_pose"),
+                                                        testing::HasSubstr("start_s: 1403636580.8"))));
+    }
+    EXPECT_FALSE(task_.configure());
+}
+
+TEST_F(TrajectoryTaskTest, SecondsThatAreNotSince1970HaveTheUnitThatIsGiven) {
+    writeLine(folder_ / "t.csv", 0, 1e9);
+    task_.config.set({.file = "t.csv", .waypoints = {}, .times = {.time_unit = TimeUnit::Nanoseconds}});
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
+    EXPECT_DOUBLE_EQ(poseAt(2.5).position.x, 1.5);
+    ASSERT_TRUE(task_.stop() && task_.cleanup());
+    task_.config.set({.file = "t.csv", .waypoints = {}});
+    EXPECT_THAT(test::refusalsOf(task_), testing::ElementsAre(testing::HasSubstr("Set time_unit if")));
+    for (const double end : {1e30, 1e300, -1e300}) {
+        writeLine(folder_ / "t.csv", std::min(end, 0.0), std::abs(end));
+        EXPECT_THAT(test::refusalsOf(task_), testing::ElementsAre(testing::HasSubstr("may be up to 1e+09 s")));
+    }
+}
+
+TEST_F(TrajectoryTaskTest, WarnsOfATrajectoryThatHasNotBegun) {
+    const std::vector<Waypoint> late{{.time = 100}, {.time = 102, .position = {2, 0, 0}}};
+    for (const bool loop : {false, true}) {
+        task_.config.set({.file = {}, .waypoints = late, .loop = loop});
+        ASSERT_TRUE(task_.configure());
+        EXPECT_THAT(task_.notices(),
+                    testing::ElementsAre(testing::AllOf(
+                        testing::StartsWith("Warning: the trajectory begins 100 s after the start of the run"),
+                        testing::HasSubstr("start: first_pose"))));
+        ASSERT_TRUE(task_.cleanup());
+        task_.config.set({.file = {}, .waypoints = late, .loop = loop, .times = {.start = TrajectoryStart::FirstPose}});
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
+        EXPECT_THAT(task_.notices(), testing::IsEmpty());
+        EXPECT_DOUBLE_EQ(poseAt(2).position.x, 1);
+        ASSERT_TRUE(task_.stop() && task_.cleanup());
+    }
+    task_.config.set({.file = {}, .waypoints = {{.time = 100}}});
+    ASSERT_TRUE(task_.configure());
+    EXPECT_THAT(task_.notices(), testing::IsEmpty()) << "a fixed pose has begun at any time";
+}
+
+TEST_F(TrajectoryTaskTest, TrajectoriesOfOneClockKeepTheirDistanceInTime) {
+    const double clock = 345'678.25;
+    task_.config.set({.file = {},
+                      .waypoints = {{.time = clock + 5}, {.time = clock + 7, .position = {2, 0, 0}}},
+                      .times = {.start_s = clock}});
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
+    EXPECT_DOUBLE_EQ(poseAt(1 + 6).position.x, 1);
+    EXPECT_THAT(task_.notices(), testing::ElementsAre(testing::HasSubstr("begins 5 s after")));
+    ASSERT_TRUE(task_.stop() && task_.cleanup());
+    task_.config.set({.file = {}, .waypoints = {{.time = 1}, {.time = 2}}, .times = {.start_s = 10}});
+    EXPECT_THAT(test::refusalsOf(task_), testing::ElementsAre(testing::HasSubstr("ends at 2 s, before start_s")));
+    task_.config.set({.file = {},
+                      .waypoints = {{.time = 1}, {.time = 2}},
+                      .times = {.start = TrajectoryStart::FirstPose, .start_s = 1}});
+    types::Diagnostics both;
+    task_.config->check(both);
+    EXPECT_EQ(both.size(), 1u);
+}
+
+TEST_F(TrajectoryTaskTest, RefusesTimesThatAreNoNumbersOrOutOfOrder) {
+    const auto refusals = [&](const std::string& second) {
+        std::ofstream(folder_ / "t.csv") << "time,x,y,z,qw,qx,qy,qz\n1,0,0,0,1,0,0,0\n" << second << ",0,0,0,1,0,0,0\n";
+        task_.config.set({.file = "t.csv", .waypoints = {}});
+        return test::refusalsOf(task_);
+    };
+    for (const char* bad : {"nan", "inf", "-inf", "1", "0.5", "-3", ""})
+        EXPECT_THAT(refusals(bad), testing::ElementsAre(testing::HasSubstr("t.csv:3:1"))) << bad;
+}
+
 }  // namespace
 }  // namespace insonify::pose

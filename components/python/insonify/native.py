@@ -81,7 +81,7 @@ class Handle:
         weakref.finalize(self, _library.insonify_free, pointer)
 
     def __reduce_ex__(self, _protocol):
-        raise TypeError("a simulation or ping cannot be copied or sent to another process; send its arrays")
+        raise TypeError("a simulation or ping cannot be copied or sent to another process; make a simulation there, and send arrays of pings")
 
     def facts(self):
         facts = _library.insonify_facts(self.pointer)
