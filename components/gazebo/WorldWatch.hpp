@@ -25,6 +25,7 @@ public:
 
     /** Returns the changes of this message; each name is reported once, as long as it is remembered. */
     Change take(const PoseMessage& message);
+    size_t remembered() const { return reported_.size(); }  ///< Names that are not reported again [1].
 
 private:
     std::set<std::string> known_;
