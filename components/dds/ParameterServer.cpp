@@ -250,7 +250,7 @@ void ParameterServer::work() {
             has_arrived_ = false;
         }
         for (const auto& service : services_)
-            while (service->requests.take(bytes, sender)) try {
+            while (!ends_ && service->requests.take(bytes, sender)) try {
                     if (bytes.size() < encapsulation + identity) continue;
                     const Bytes who(bytes.begin() + encapsulation, bytes.begin() + encapsulation + identity);
                     bytes.erase(bytes.begin() + encapsulation, bytes.begin() + encapsulation + identity);

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -48,7 +49,8 @@ private:
     types::DeploymentControl& deployment_;
     std::mutex mutex_;
     std::condition_variable arrived_;
-    bool has_arrived_ = false, ends_ = false;
+    bool has_arrived_ = false;
+    std::atomic<bool> ends_{false};  ///< Changes under the mutex.
     std::vector<std::unique_ptr<Service>> services_;
     std::thread thread_;
 };

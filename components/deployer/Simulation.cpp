@@ -114,6 +114,8 @@ Simulation::Simulation(const std::string& file, SimulationOptions options) : reg
 }
 
 std::vector<std::string> Simulation::notices() const {
+    const std::unique_lock use(in_use_, std::try_to_lock);
+    if (!use) throw std::runtime_error(busy);
     std::vector<std::string> all;
     const auto add = [&](const framework::TaskContext& task, const std::vector<std::string>& notices) {
         for (const std::string& notice : notices)

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -52,10 +53,11 @@ public:
     std::vector<std::string> pings() const;
     /** Whether the sonar of these pings, by their index in pings(), has range images. */
     bool hasRangeImages(size_t ping) const { return readers_[ping]->range_image.connected(); }
-    /** Returns the notices of all tasks and their plans, "task: notice". Plans have theirs from the first ping on. */
+    /** Returns the notices of all tasks and their plans, "task: notice". Plans have theirs from the first ping on. Throws
+     *  std::runtime_error while another thread steps. */
     std::vector<std::string> notices() const;
     double period() const { return period_; }  ///< [s]
-    double time() const { return time_; }      ///< Default time of the next step [s].
+    double time() const { return time_; }      ///< Default time of the next step; for any thread [s].
 
     /** Gives each scene its pose at a time later than that of the step before [s]. Returns one entry for each of
      *  pings(), with a null ping where the step made none. */
@@ -84,8 +86,8 @@ private:
     std::vector<PoseFeed*> feeds_;
     double period_ = 0.1;
     double start_time_ = 0;
-    double time_ = 0;
-    std::mutex in_use_;
+    std::atomic<double> time_{0};
+    mutable std::mutex in_use_;
     std::optional<types::Time> last_;  ///< Time of the step before.
     std::set<std::string> own_seeds_;  ///< Tasks whose seed has been given by name.
 };

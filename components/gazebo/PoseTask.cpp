@@ -1,11 +1,15 @@
 #include "components/gazebo/PoseTask.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "types/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {
+
+constexpr auto between_reports = std::chrono::minutes(1);  ///< Of changes of the world.
 
 constexpr double patience = 5;  ///< Time until the warning that nobody offers a topic [s].
 
@@ -65,12 +69,15 @@ bool PoseTask::startHook() {
     clocks_.assign(subscriptions_->topics().size(), {});
     started_ = now();
     is_silence_reported_ = false;
+    changed_ = {};
+    next_report_ = {};
     return true;
 }
 
 void PoseTask::updateHook() {
     for (Arrived& message : inbox_->take()) take(message);
     warnOfSilence();
+    reportChanges();
     if (const std::string reported = drops_.takeWarning(); !reported.empty()) warn(reported);
 }
 
@@ -83,7 +90,17 @@ void PoseTask::warnOfSilence() {
                  "; " + subscriptions_->received());
 }
 
-void PoseTask::report(const WorldWatch::Change& change) {
+void PoseTask::gather(WorldWatch::Change& change) {
+    std::ranges::move(change.came, std::back_inserter(changed_.came));
+    std::ranges::move(change.went, std::back_inserter(changed_.went));
+    changed_.came.resize(std::min(changed_.came.size(), WorldWatch::max_reported));
+    changed_.went.resize(std::min(changed_.went.size(), WorldWatch::max_reported));
+}
+
+void PoseTask::reportChanges() {
+    if (changed_.isEmpty() || std::chrono::steady_clock::now() < next_report_) return;
+    next_report_ = std::chrono::steady_clock::now() + between_reports;
+    const WorldWatch::Change change = std::exchange(changed_, {});
     if (!change.came.empty())
         warn("world " + config->world + " has entities that the scene does not have: " + listOf(change.came) +
              "; restart to take the world as it is");
@@ -94,7 +111,7 @@ void PoseTask::report(const WorldWatch::Change& change) {
 void PoseTask::take(Arrived& message) {
     if (!message.diagnostic.empty())
         return drops_.add(subscriptions_->topics()[message.topic] + ": " + message.diagnostic);
-    if (!message.change.isEmpty()) report(message.change);
+    gather(message.change);
     types::Time time = now();
     if (message.stamp) {
         const auto reading = clocks_[message.topic].read(*message.stamp, now());

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,7 +40,9 @@ private:
     void take(Arrived& message);
     /** Warns once when nobody has offered a topic for a while. */
     void warnOfSilence();
-    void report(const WorldWatch::Change& change);
+    void gather(WorldWatch::Change& change);
+    /** Warns of the changes of the world, the first at once, then those of a minute together. */
+    void reportChanges();
     void write(Placed& placed, types::Time time);
 
     std::unique_ptr<Inbox> inbox_;
@@ -48,6 +51,8 @@ private:
     types::ThrottledWarning drops_{"message", "dropped"};
     types::Time started_;
     bool is_silence_reported_ = false;
+    WorldWatch::Change changed_;  ///< Changes that are not reported yet.
+    std::chrono::steady_clock::time_point next_report_;
 };
 
 /** Registers the tasks of this folder. */

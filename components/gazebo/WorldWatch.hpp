@@ -21,8 +21,11 @@ public:
         std::vector<std::string> came, went;
         bool isEmpty() const { return came.empty() && went.empty(); }
     };
-    /** Returns the changes of this message; each name is reported once. */
+    static constexpr size_t max_reported = 1000;  ///< Names that are remembered, apart from those in the world [1].
+
+    /** Returns the changes of this message; each name is reported once, as long as it is remembered. */
     Change take(const PoseMessage& message);
+    size_t remembered() const { return reported_.size(); }  ///< Names that are not reported again [1].
 
 private:
     std::set<std::string> known_;

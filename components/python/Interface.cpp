@@ -39,7 +39,6 @@ public:
         return {{"poses", simulation.poses()},
                 {"pings", simulation.pings()},
                 {"period", simulation.period()},
-                {"time", simulation.time()},
                 {"notices", simulation.notices()}};
     }
     deployer::Simulation simulation;
@@ -246,6 +245,10 @@ int insonify_step(Handle* simulation, const char* const* ports, const double* po
         for (const auto& each : made) *pings++ = each.ping ? pingHandle(each.ping, each.truth).release() : nullptr;
         return 0;
     });
+}
+
+double insonify_time(const Handle* simulation) {
+    return dynamic_cast<const SimulationHandle&>(*simulation).simulation.time();
 }
 
 int insonify_reset(Handle* simulation, const uint64_t* seed) {

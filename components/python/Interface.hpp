@@ -31,6 +31,8 @@ Handle* insonify_simulation(const char* deployment, uint64_t seed, const char* c
  *  @return 0; -1 on errors. */
 int insonify_step(Handle* simulation, const char* const* ports, const double* poses, size_t port_count,
                   const double* time, Handle** pings);
+/** Returns the default time of a simulation's next step [s]. On any thread, also while another one steps. */
+double insonify_time(const Handle* simulation);
 /** Resets a simulation.
  *  @param seed null: the same.
  *  @return 0; -1 on errors. */

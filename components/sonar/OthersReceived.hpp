@@ -16,10 +16,12 @@ public:
     /** Also forgets pulses that are far from it in time: a sonar that does not ping asks for none. */
     void add(types::TransmissionPtr sent) {
         if (!sent || !sent->radiation) return;
-        const types::Time newest = sent->time;
-        std::erase_if(sent_, [&](const auto& other) {
-            return std::abs((newest - other->time).seconds()) > memory + longest_ping;
-        });
+        if (sent_.size() >= look_at_) {
+            std::erase_if(sent_, [newest = sent->time](const auto& other) {
+                return std::abs((newest - other->time).seconds()) > memory + longest_ping;
+            });
+            look_at_ = 2 * sent_.size() + 64;
+        }
         sent_.push_back(std::move(sent));
     }
     size_t size() const { return sent_.size(); }  ///< Pulses that are kept [1].
@@ -43,6 +45,7 @@ public:
 
 private:
     std::vector<types::TransmissionPtr> sent_;
+    size_t look_at_ = 64;  ///< Number of pulses at which add() looks for old ones [1].
 };
 
 }  // namespace insonify::sonar

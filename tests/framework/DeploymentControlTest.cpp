@@ -112,5 +112,36 @@ TEST(DeploymentControlTest, APausedRunCanBeSteppedAndStopped) {
     running.join();
 }
 
+TEST(DeploymentControlTest, TimeContinuesWhileOthersCallWithoutAPause) {
+    Registry registry = test::testRegistry();
+    Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
+    deployment.configure();
+    std::atomic<bool> ended{false};
+    std::atomic<int> calls{0}, until_the_end{0};
+    std::vector<std::thread> callers;
+    for (int i = 0; i < 3; ++i)
+        callers.emplace_back([&] {
+            const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+            while (!ended && std::chrono::steady_clock::now() < patience) {
+                try {
+                    deployment.call("source.setLast", {"3"});
+                } catch (const std::runtime_error&) {  // refused while it runs
+                }
+                ++calls;
+            }
+            until_the_end += ended ? 1 : 0;
+        });
+    ASSERT_TRUE(test::becomesTrue([&] { return calls > 100; }));
+    const std::atomic<bool> never{false};
+    const int before = calls;
+    EXPECT_EQ(deployment.run({.duration_s = 0.5}, never).failures, std::vector<std::string>{});
+    const int meanwhile = calls - before;
+    ended = true;
+    for (std::thread& caller : callers) caller.join();
+    EXPECT_EQ(until_the_end, 3) << "the run of 500 instants has waited until the callers ended";
+    EXPECT_GT(meanwhile, 100) << "callers are served as well";
+    EXPECT_EQ(deployment.task("source")->output("value")->written(), 500u);
+}
+
 }  // namespace
 }  // namespace insonify::framework

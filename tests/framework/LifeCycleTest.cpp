@@ -1,10 +1,12 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <string>
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "tests/framework/Tasks.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/ThreadLimit.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -270,6 +272,53 @@ TEST(LifeCycleTest, ALaterReaderOfTheStateGetsTheLastState) {
         int32_t state = -1;
         EXPECT_TRUE(reader.port.readNew(state));
         EXPECT_EQ(state, static_cast<int32_t>(expected));
+    }
+}
+
+TEST(LifeCycleTest, WithoutAThreadATransitionIsRefusedAndCanBeRepeated) {
+    test::Source task("source");
+    {
+        const test::ThreadLimit limit(0);
+        for (int i = 0; i < 3; ++i) {
+            const Outcome outcome = task.configure();
+            EXPECT_FALSE(outcome);
+            EXPECT_THAT(outcome.reason, testing::HasSubstr("cannot configure: no thread for task source: "));
+            EXPECT_EQ(task.lastError(), outcome.reason);
+            EXPECT_FALSE(task.stop());
+            EXPECT_THROW(task.update(), std::runtime_error);
+        }
+        EXPECT_EQ(task.state(), TaskState::PreOperational);
+    }
+    EXPECT_TRUE(task.configure()) << task.lastError();
+    EXPECT_TRUE(task.start()) << task.lastError();
+    EXPECT_TRUE(task.stop());
+}
+
+/** Returns how a run ends with so many threads. */
+std::string endOf(const std::string& yaml, int threads) try {
+    Registry registry = test::testRegistry();
+    const test::ThreadLimit limit(threads);
+    Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
+    deployment.configure();
+    const std::atomic<bool> never{false};
+    const RunResult result = deployment.run({.duration_s = 0.02}, never);
+    return result.failed() ? "failed: " + result.failures.at(0) : "";
+} catch (const std::exception& error) {
+    return error.what();
+}
+
+TEST(LifeCycleTest, EveryThreadOfARunThatIsRefusedIsAnError) {
+    for (const char* schedule : {"lockstep", "realtime"}) {
+        const std::string yaml = std::string("schedule: ") + schedule + R"(
+tasks:
+  source: {type: test::Source, activity: {period: 0.001}}
+  relay: {type: test::Relay, activity: {trigger: [in]}}
+connections: [{from: source.value, to: relay.in, policy: {type: buffer, size: 4}}]
+)";
+        const int needed = 2 + (std::string(schedule) == "realtime" ? 1 : 0);  // tasks, and the watchdog
+        for (int threads = 0; threads < needed; ++threads)
+            EXPECT_THAT(endOf(yaml, threads), testing::HasSubstr("no thread for ")) << schedule << ' ' << threads;
+        EXPECT_EQ(endOf(yaml, needed), "");
     }
 }
 

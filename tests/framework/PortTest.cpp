@@ -3,6 +3,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Port.hpp"
 #include "tests/support/Ports.hpp"
+#include "types/Pose.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -193,6 +194,38 @@ TEST(PortTest, AHookThatReadsNothingIsNotRepeatedForever) {
     writer.port.write(1);
     task.update();
     EXPECT_EQ(task.cycles_run, 1);
+}
+
+/** Returns the newest of samples with these stamps [s], in the order of their connections. */
+double newestOf(const std::vector<std::vector<double>>& stamps) {
+    std::vector<std::unique_ptr<test::Writer<types::Pose>>> writers;
+    test::Reader<types::Pose> reader;
+    for (const auto& of_one : stamps) {
+        auto& writer = *writers.emplace_back(std::make_unique<test::Writer<types::Pose>>());
+        writer.port.connectTo(reader.port, ConnPolicy::buffer(8));
+        for (const double stamp : of_one) {
+            types::Pose pose;
+            pose.time = types::Time::fromSeconds(stamp);
+            writer.port.write(pose);
+        }
+    }
+    types::Pose newest, again;
+    EXPECT_EQ(reader.port.readNewest(newest), FlowStatus::NewData);
+    EXPECT_EQ(reader.port.read(again), FlowStatus::OldData);
+    EXPECT_EQ(again.time, newest.time);
+    uint64_t passed_over = 0, count = 0;
+    for (const auto& channel : reader.port.channels()) passed_over += channel->passedOver();
+    for (const auto& of_one : stamps) count += of_one.size();
+    EXPECT_EQ(passed_over, count - 1);
+    return newest.time.seconds();
+}
+
+TEST(PortTest, TheNewestOfSeveralConnectionsHasTheLatestStamp) {
+    EXPECT_EQ(newestOf({{2}, {1}}), 2);
+    EXPECT_EQ(newestOf({{1}, {2}}), 2);
+    EXPECT_EQ(newestOf({{1, 3}, {2}, {0.5, 1.5}}), 3);
+    EXPECT_EQ(newestOf({{10, 5, 6}, {4}}), 6) << "the last of one connection, whose clock was set back";
+    EXPECT_EQ(newestOf({{10, 5, 6}, {8}}), 8);
 }
 
 }  // namespace

@@ -3,11 +3,14 @@
 #include <sched.h>
 
 #include <fstream>
+#include <functional>
 #include <thread>
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/RealtimeExecutor.hpp"
 #include "tests/framework/Tasks.hpp"
+#include "tests/support/Ports.hpp"
+#include "tests/support/Priorities.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -127,6 +130,39 @@ TEST(RealtimeThreadTest, LocksMemoryOrReportsWhyNot) {
     else
         EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("memory is not locked")));
     EXPECT_EQ(lockedMemory(), 0);
+}
+
+/** A sample whose copying takes, on one thread, until `may_end`. */
+struct Heavy {
+    static constexpr const char* type_name = "/test/Heavy";
+    static inline thread_local const std::function<void()>* at_copy = nullptr;
+    Heavy() = default;
+    Heavy(const Heavy&) = default;
+    Heavy& operator=(const Heavy&) {
+        if (at_copy) (*at_copy)();
+        return *this;
+    }
+};
+
+/** A reader without a priority that copies a sample, and an urgent writer to the same port. */
+struct Copying {
+    test::Writer<Heavy> writer;
+    test::Reader<Heavy> reader;
+    Copying() { writer.port.connectTo(reader.port, ConnPolicy::buffer(4)), writer.port.write({}); }
+    void work(const std::function<void()>& job) {
+        Heavy sample;
+        Heavy::at_copy = &job;
+        reader.port.read(sample);
+        Heavy::at_copy = nullptr;
+    }
+    void wait(std::thread& /*reader*/) { writer.port.write({}); }
+};
+
+TEST(RealtimeThreadTest, AWriterWaitsForTheCopyOfAReaderAndForNoOtherTask) {
+    Copying copying;
+    const auto first = test::urgentIsFirst(copying);
+    if (!first) GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
+    EXPECT_TRUE(*first);
 }
 
 }  // namespace

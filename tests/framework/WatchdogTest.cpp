@@ -15,9 +15,11 @@ using testing::MatchesRegex;
 struct Reported {
     std::mutex mutex;
     std::vector<std::string> texts;
+    std::function<void()> at_report = [] {};
     void add(const std::string& text) {
         std::lock_guard lock(mutex);
         texts.push_back(text);
+        at_report();
     }
     size_t count() {
         std::lock_guard lock(mutex);
@@ -84,6 +86,21 @@ TEST_F(WatchdogTest, ReportsATaskInErrorOnceAndItsRecovery) {
     EXPECT_THAT(result.warnings, ElementsAre("patient: RunTimeError: has a cold", "patient: has recovered"));
     EXPECT_EQ(deployment_->task("patient")->timing().errors, 1u);
     EXPECT_FALSE(result.failed());
+}
+
+TEST_F(WatchdogTest, ItsPriorityIsAboveThoseOfTheTasks) {
+    int policy = -1, priority = -1;
+    reported_.at_report = [&] {
+        sched_param parameters{};
+        pthread_getschedparam(pthread_self(), &policy, &parameters);
+        priority = parameters.sched_priority;
+    };
+    const RunResult result = run(
+        "tasks: {slug: {type: test::Hanging, activity: {period: 0.01, watchdog: 0.1, scheduler: fifo, priority: 7}}}\n");
+    if (result.warnings.at(0).find("is not permitted") != std::string::npos)
+        GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
+    EXPECT_EQ(policy, SCHED_FIFO);
+    EXPECT_EQ(priority, 8);
 }
 
 }  // namespace

@@ -213,5 +213,14 @@ TEST(WorldWatchTest, ComparesWithTheFirstMessageWithoutASceneOfGazebo) {
     EXPECT_THAT(watch.take(posesOf({"rov", "link", "crate"})).came, ElementsAre("crate"));
 }
 
+TEST(WorldWatchTest, RemembersABoundedNumberOfNames) {
+    WorldWatch watch(std::set<std::string>{"rov"});
+    for (size_t i = 0; i < 10 * WorldWatch::max_reported; ++i) {
+        const std::string bubble = "bubble_" + std::to_string(i);
+        ASSERT_THAT(watch.take(posesOf({"rov", bubble})).came, ElementsAre(bubble));
+        ASSERT_LE(watch.remembered(), WorldWatch::max_reported + 2);
+    }
+}
+
 }  // namespace
 }  // namespace insonify::gazebo

@@ -5,9 +5,11 @@
 #include "components/log/pocolog/Index.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
+#include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Waiting.hpp"
 
 namespace insonify::logger {
 namespace {
@@ -120,6 +122,54 @@ TEST_F(RotationTest, RemovesNothingIfAnotherLoggerWritesOneOfTheFiles) {
     EXPECT_EQ(bytesOf(file(0)).size(), 3u);
     EXPECT_EQ(bytesOf(file(1)).size(), 3u);
     EXPECT_TRUE(std::filesystem::exists(file(2)));
+}
+
+TEST_F(RotationTest, RemovesFilesOfAnEarlierLogAfterAMissingNumber) {
+    LoggerConfig config;
+    config.max_file_size = 1e6;
+    log(config, 45);
+    std::filesystem::remove(file(1));
+    for (const char* other : {"x.7.mcap", "y.8.log", "x.notes.log", "x.log"}) writeBytes(folder / other, {'x'});
+    log(config, 5);
+    EXPECT_THAT(countsOf(1), testing::ElementsAre(5));
+    for (int number = 1; number < 5; ++number) EXPECT_FALSE(std::filesystem::exists(file(number))) << number;
+    for (const char* other : {"x.7.mcap", "y.8.log", "x.notes.log", "x.log"})
+        EXPECT_TRUE(std::filesystem::exists(folder / other)) << other;
+}
+
+/** Pushes texts of 100 kB to a log that heals, with files of a megabyte. */
+void pushTexts(const std::filesystem::path& path, int count, const std::function<void(int)>& at) {
+    LoggerConfig config;
+    config.file = path.filename();
+    config.max_file_size = 1e6;
+    const auto log = log::createLog(path);
+    Rotation rotation(config, *log);
+    LogThread thread(*log, rotation, 1, 0.001, AtFailure::Heal);
+    const types::AnySample text = std::string(100'000, 'x');
+    thread.declare([&](log::Writer& file) { return file.add(text.index(), "texts", {}); });
+    for (int i = 0; i < count; ++i) {
+        at(i);
+        thread.push(0, {}, text);
+    }
+    test::becomesTrue([&] { return !thread.health().fails; });
+    thread.finish();
+    log->close();
+}
+
+TEST_F(RotationTest, AFileThatCannotBeOpenedForAWhileIsTheNextOneStill) {
+    pushTexts(file(0), 30, [&](int i) {
+        if (i == 0) std::filesystem::create_symlink("nowhere/x", file(1));
+        if (i == 15) std::filesystem::remove(file(1));
+    });
+    EXPECT_TRUE(std::filesystem::is_regular_file(file(1)));
+    EXPECT_FALSE(log::check(file(1)).diagnostic);
+}
+
+TEST_F(RotationTest, AFolderWithTheNameOfTheNextFileIsPassedOver) {
+    std::filesystem::create_directory(file(1));
+    pushTexts(file(0), 15, [](int) {});
+    EXPECT_TRUE(std::filesystem::is_regular_file(file(2)));
+    EXPECT_FALSE(log::check(file(2)).diagnostic);
 }
 
 }  // namespace

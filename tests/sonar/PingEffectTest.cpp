@@ -100,5 +100,26 @@ TEST(PingEffectTest, RaysAndCellsAreVisitedOnceInEveryPing) {
     }
 }
 
+/** An effect that does nothing, with its own key. */
+struct NamedEffect : Effect {
+    explicit NamedEffect(std::string name) : name(std::move(name)) {}
+    std::string key() const override { return name; }
+    bool plan(const types::Geometry&, RenderPlan&) const override { return false; }
+    std::string name;
+};
+
+TEST(PingEffectTest, EffectsAreAddedWhileOthersUseTheList) {
+    std::atomic<bool> ended{false};
+    std::thread reader([&] {
+        while (!ended)
+            for (const Effect* effect : effects()) EXPECT_NE(effect, nullptr);
+    });
+    const size_t before = effects().size();
+    for (int i = 0; i < 100; ++i) addEffect(std::make_unique<NamedEffect>("named_" + std::to_string(i % 50)));
+    ended = true;
+    reader.join();
+    EXPECT_EQ(effects().size(), before + 50) << "each key once";
+}
+
 }  // namespace
 }  // namespace insonify::sonar

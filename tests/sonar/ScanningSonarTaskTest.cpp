@@ -117,5 +117,48 @@ TEST_F(ScanningSonarTaskTest, SettingTheRangeDoesNotTurnTheHeadBackButSettingThe
     EXPECT_NEAR(pingAt(1)->bearings[0].deg(), 20, 1e-9);
 }
 
+TEST_F(ScanningSonarTaskTest, StampsThatJitterEndNoScan) {
+    HeadConfig just = sector;
+    just.speed_deg_per_s = 400;  // 0.1 s per step
+    start(just);
+    std::vector<std::string> warnings;
+    task_.environment().warn = [&](const std::string& text) { warnings.push_back(text); };
+    EXPECT_TRUE(pingAt(1));
+    for (int i = 1; i < 40; ++i)
+        EXPECT_TRUE(pingAt(1 + 0.1 * i + (i % 2 == 1 ? -0.02 : 0.02))) << i << ": " << task_.lastError();
+    EXPECT_EQ(task_.state(), TaskState::Running);
+    EXPECT_EQ(warnings, std::vector<std::string>{});
+}
+
+TEST_F(ScanningSonarTaskTest, InRealtimeASlowHeadIsAWarningAfterEightPeriods) {
+    for (const bool is_slow : {false, true}) {
+        HeadConfig just = sector;
+        just.speed_deg_per_s = is_slow ? 200 : 400;  // 0.2 and 0.1 s per step
+        start(just);
+        task_.activity().release(), task_.activity().hold();  // in realtime; pings are not written any more
+        std::vector<std::string> warnings;
+        task_.environment().warn = [&](const std::string& text) { warnings.push_back(text); };
+        for (int i = 0; i < 30; ++i) {
+            pingAt(1 + 0.1 * i - (i == 1 ? 0.03 : 0));
+            ASSERT_EQ(task_.state(), TaskState::Running) << task_.lastError();
+            if (i < 8) EXPECT_EQ(warnings.size(), 0u);
+        }
+        ASSERT_EQ(warnings.size(), is_slow ? 1u : 0u);
+        if (is_slow)
+            EXPECT_EQ(warnings[0],
+                      "task: head.step_deg is 40 deg, which takes 0.2 s at 200 deg/s; the ping period is 0.1 s");
+        ASSERT_TRUE(task_.stop() && task_.cleanup());
+    }
+}
+
+TEST_F(ScanningSonarTaskTest, AHeadThatIsSetAndFarTooSlowIsRefusedAndTheScanContinues) {
+    start(sector);
+    ASSERT_TRUE(pingAt(1.0));
+    ASSERT_TRUE(pingAt(1.1));
+    EXPECT_THROW(task_.operation("setHead")->callText({"{speed_deg_per_s: 100}"}), std::runtime_error);
+    EXPECT_TRUE(pingAt(1.2)) << task_.lastError();
+    EXPECT_FALSE(task_.config->head.speed_deg_per_s.has_value());
+}
+
 }  // namespace
 }  // namespace insonify::sonar

@@ -155,5 +155,53 @@ TEST(SettingsTest, AGridHasTheFieldOfViewOfItsBeams) {
     EXPECT_NEAR(sonar.task.config->horizontal.field_of_view_deg, 40, 1e-9);
 }
 
+TEST(SettingsTest, APoseBeforeTheFirstSceneWaitsForIt) {
+    SonarTask task("sonar");
+    task.config.set(smallSonar());
+    test::Writer<types::SnapshotPtr> scenes("scenes");
+    test::Writer<types::Pose> poses("poses");
+    test::Reader<types::SonarPtr> received("received");
+    scenes.port.connectTo(task.snapshot, {});
+    poses.port.connectTo(task.given_pose, framework::ConnPolicy::buffer(4));
+    task.ping.connectTo(received.port, framework::ConnPolicy::buffer(4));
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
+    types::Pose pose = facingWall(5).sonar;
+    for (int i = 1; i <= 2; ++i) {
+        pose.time = types::Time::fromSeconds(i);
+        poses.port.write(pose);
+        task.update();
+    }
+    scenes.port.write(std::make_shared<types::Snapshot>(facingWall(5)));
+    task.update();
+    for (int i = 1; i <= 2; ++i) {
+        types::SonarPtr ping;
+        ASSERT_TRUE(received.port.readNew(ping)) << i;
+        EXPECT_EQ(ping->time.seconds(), i);
+    }
+}
+
+struct OtherConfig {
+    double weight = 1;
+    static void describe(auto& self, auto& visit) { visit({"weight", "1", "of another block", 0, 9}, self.weight); }
+};
+
+/** Declares another block of properties before those of the sonar. */
+struct TwoBlocksTask : PingTask {
+    using PingTask::PingTask;
+    framework::Properties<OtherConfig> other{this};
+    framework::Properties<SonarConfig> config{this};
+    SonarConfig sonarConfig() const override { return *config; }
+};
+
+TEST(SettingsTest, AreThoseOfTheBlockThatHasThem) {
+    Asked<TwoBlocksTask> sonar(smallSonar());
+    sonar.show(facingWall(5));
+    types::SonarSettings asked;
+    asked.range = 12;
+    const auto ping = sonar.ask(asked);
+    ASSERT_TRUE(ping) << sonar.task.lastError();
+    EXPECT_EQ(sonar.task.config->range, 12);
+}
+
 }  // namespace
 }  // namespace insonify::sonar

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "components/sonar/ThreadPool.hpp"
+#include "tests/support/ThreadLimit.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -49,6 +50,15 @@ TEST(ThreadPoolTest, RethrowsAnExceptionOfAPartAndContinues) {
         sum = std::accumulate(parts.begin(), parts.end(), 0);
         EXPECT_EQ(sum, 3);
     }
+}
+
+TEST(ThreadPoolTest, AWorkerThatIsRefusedIsAnErrorAndEndsTheOthers) {
+    for (int permitted = 0; permitted < 4; ++permitted) {
+        const test::ThreadLimit limit(permitted);
+        EXPECT_THROW(ThreadPool(5), std::runtime_error) << permitted;
+    }
+    const test::ThreadLimit limit(4);
+    EXPECT_EQ(ThreadPool(5).size(), 5);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "components/dataset/commands/MadeScenes.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,12 +17,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/** Makes a folder among the files of all users, unless it exists. Throws types::ConfigError if another user owns it or
+ *  may write to it: that user's scenes would become part of a data set. */
+fs::path ownFolder(const fs::path& path) {
+    mkdir(path.c_str(), S_IRWXU);
+    struct stat status {};
+    const bool is_own = lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == geteuid() &&
+                        (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+    if (is_own) return path;
+    throw types::ConfigError(path.string(), "",
+                             "is not a folder that only this user may write to; HOME or XDG_CACHE_HOME names another "
+                             "cache of made scenes");
+}
+
 /** Returns the folder of made scenes: by the XDG base directory specification, or the folder of temporary files. */
 fs::path cacheFolder() {
     const auto valueOf = [](const char* name) { return fs::path(std::getenv(name) ? std::getenv(name) : ""); };
     fs::path base = valueOf("XDG_CACHE_HOME");
     if (!base.is_absolute() && valueOf("HOME").is_absolute()) base = valueOf("HOME") / ".cache";
-    if (!base.is_absolute()) base = fs::temp_directory_path() / fmt::format("insonify-{}", getuid());
+    if (!base.is_absolute()) base = ownFolder(fs::temp_directory_path() / fmt::format("insonify-{}", geteuid()));
     return base / "insonify" / "scenes";
 }
 

@@ -284,7 +284,7 @@ class Simulation:
     @property
     def time(self) -> float:
         """Default time of the next step [s]."""
-        return self._simulation.facts()["time"]
+        return native.time(self._simulation)
 
     def step(self, pose, time: float | None = None):
         """The ping at a pose: a Pose, or a 4 x 4 transform from the body to the world.

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import json
 import math
 import operator
 import os
 import pathlib
+import threading
 import weakref
 from collections.abc import Sequence
 
@@ -40,6 +42,46 @@ class _Array(ctypes.Structure):
     ]
 
 
+class _Calls:
+    """Calls of C++ that run. At the end of the interpreter it waits for those of other threads, because the end of the
+    process would destroy what they use. Further ones never begin."""
+
+    def __init__(self) -> None:
+        self._changed, self._count, self._is_over = threading.Condition(), 0, False
+
+    def __enter__(self) -> None:
+        with self._changed:
+            while self._is_over and threading.current_thread() is not threading.main_thread():
+                self._changed.wait()
+            self._count += 1
+
+    def __exit__(self, *_error) -> None:
+        with self._changed:
+            self._count -= 1
+            self._changed.notify_all()
+
+    def end(self) -> None:
+        with self._changed:
+            self._is_over = True
+            self._changed.wait_for(lambda: self._count == 0)
+
+
+class _Functions:
+    """The functions of the library, by their names without `insonify_`."""
+
+    def __getattr__(self, name: str):
+        function = getattr(_library, "insonify_" + name)
+
+        def call(*arguments):
+            with _calls:
+                return function(*arguments)
+
+        setattr(self, name, call)
+        return call
+
+
+_calls, _functions = _Calls(), _Functions()
+atexit.register(_calls.end)
 _text, _handle, _size = ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t
 _library = ctypes.CDLL(str(pathlib.Path(__file__).with_name("_insonify.so")))
 for _name, _result, *_arguments in (
@@ -49,6 +91,7 @@ for _name, _result, *_arguments in (
     ("arrays", _size, _handle, ctypes.POINTER(_Array), _size),
     ("simulation", _handle, _text, ctypes.c_uint64, ctypes.POINTER(_text), _size, ctypes.c_int, ctypes.POINTER(ctypes.c_double)),
     ("step", ctypes.c_int, _handle, ctypes.POINTER(_text), _handle, _size, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(_handle)),
+    ("time", ctypes.c_double, _handle),
     ("reset", ctypes.c_int, _handle, ctypes.POINTER(ctypes.c_uint64)),
     ("batch", _handle, _text, ctypes.c_uint64, ctypes.POINTER(_text), _size, ctypes.c_int, ctypes.POINTER(ctypes.c_double), _size),
     ("batch_step", _handle, _handle, _handle),
@@ -78,13 +121,13 @@ class Handle:
         if pointer is None:
             _raise()
         self.pointer = pointer
-        weakref.finalize(self, _library.insonify_free, pointer)
+        weakref.finalize(self, _functions.free, pointer).atexit = False  # at exit, other threads may still use it
 
     def __reduce_ex__(self, _protocol):
         raise TypeError("a simulation or ping cannot be copied or sent to another process; make a simulation there, and send arrays of pings")
 
     def facts(self):
-        facts = _library.insonify_facts(self.pointer)
+        facts = _functions.facts(self.pointer)
         if facts is None:
             _raise()
         return json.loads(facts)
@@ -94,7 +137,7 @@ class Handle:
         room = 16
         while True:
             found = (_Array * room)()
-            count = _library.insonify_arrays(self.pointer, found, room)
+            count = _functions.arrays(self.pointer, found, room)
             if count <= room:
                 return [(each.name.decode(), self._view(each)) for each in found[:count]]
             room = count
@@ -129,7 +172,7 @@ def _optional(name: str, number: float | None):
 def simulation(deployment: str, seed: int, overrides: Sequence[str], truth: bool, period: float | None) -> Handle:
     seed, period = _whole("seed", seed, 2**64), _optional("period", period)
     texts = (_text * len(overrides))(*(each.encode() for each in overrides))
-    return Handle(_library.insonify_simulation(os.fsencode(deployment), seed, texts, len(texts), truth, period))
+    return Handle(_functions.simulation(os.fsencode(deployment), seed, texts, len(texts), truth, period))
 
 
 def step(simulation: Handle, poses: dict[str, NDArray], time: float | None, count: int) -> list[Handle | None]:
@@ -139,14 +182,18 @@ def step(simulation: Handle, poses: dict[str, NDArray], time: float | None, coun
     numbers = np.array([*poses.values()], float).reshape(len(poses), 7)
     made = (_handle * count)()
     at = _optional("time", time)
-    if _library.insonify_step(simulation.pointer, ports, numbers.ctypes.data, len(ports), at, made):
+    if _functions.step(simulation.pointer, ports, numbers.ctypes.data, len(ports), at, made):
         _raise()
     return [each and Handle(each) for each in made]
 
 
+def time(simulation: Handle) -> float:
+    return _functions.time(simulation.pointer)
+
+
 def reset(simulation: Handle, seed: int | None) -> None:
     given = None if seed is None else ctypes.byref(ctypes.c_uint64(_whole("seed", seed, 2**64)))
-    if _library.insonify_reset(simulation.pointer, given):
+    if _functions.reset(simulation.pointer, given):
         _raise()
 
 
@@ -155,13 +202,13 @@ def batch(
 ) -> Handle:
     count, seed, period = _whole("count", count, 2**16, 1), _whole("seed", seed, 2**64), _optional("period", period)
     texts = (_text * len(overrides))(*(each.encode() for each in overrides))
-    return Handle(_library.insonify_batch(os.fsencode(deployment), seed, texts, len(texts), truth, period, count))
+    return Handle(_functions.batch(os.fsencode(deployment), seed, texts, len(texts), truth, period, count))
 
 
 def batch_step(batch: Handle, poses: NDArray[np.float64]) -> Handle:
     """Steps with poses [simulations, 7]: x, y, z [m] and a quaternion w, x, y, z. Returns all
     pings as one sample."""
-    return Handle(_library.insonify_batch_step(batch.pointer, poses.ctypes.data))
+    return Handle(_functions.batch_step(batch.pointer, poses.ctypes.data))
 
 
 def batch_reset(batch: Handle, which: Sequence[int], seeds: Sequence[int] | None) -> None:
@@ -169,7 +216,7 @@ def batch_reset(batch: Handle, which: Sequence[int], seeds: Sequence[int] | None
     given = None if seeds is None else np.array([_whole("seeds", each, 2**64) for each in seeds], np.uint64)
     if given is not None and given.shape != numbers.shape:
         raise ValueError(f"seeds: are {len(given)}; there are {len(numbers)} simulations to reset")
-    if _library.insonify_batch_reset(
+    if _functions.batch_reset(
         batch.pointer, numbers.ctypes.data, None if given is None else given.ctypes.data, len(numbers)
     ):
         _raise()
@@ -181,7 +228,7 @@ def fan(
     """A picture [height, width, 3], red first."""
     width, code_bits = _whole("width", width, 2**32), _whole("code_bits", code_bits, 2**31)
     reference_db = _optional("reference_db", reference_db)
-    painted = _library.insonify_fan(
+    painted = _functions.fan(
         ping.pointer, width, dynamic_range_db, reference_db, colour_map.encode(), scale.encode(), code_bits
     )
     return pixels(Handle(painted))
@@ -192,11 +239,11 @@ def pixels(picture: Handle) -> NDArray[np.uint8]:
 
 
 def log(path: str) -> Handle:
-    return Handle(_library.insonify_log(os.fsencode(path)))
+    return Handle(_functions.log(os.fsencode(path)))
 
 
 def sample(log: Handle, stream: int, index: int) -> Handle:
     whole = operator.index(index)
     if whole < 0:
         raise IndexError("no such sample")
-    return Handle(_library.insonify_sample(log.pointer, stream, whole))
+    return Handle(_functions.sample(log.pointer, stream, whole))

@@ -4,6 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <mutex>
+#include <stdexcept>
 
 #include "components/sonar/echo/EchoRules.hpp"
 #include "types/DidYouMean.hpp"
@@ -35,13 +39,30 @@ const Effect& truth();
 
 namespace {
 
-struct List {
-    std::vector<std::unique_ptr<const Effect>> added;
-    std::vector<const Effect*> all{
+/** All effects. Libraries add some while sonars of other threads use the list: an effect never moves, and counts once it
+ *  is in its place. */
+class List {
+public:
+    std::span<const Effect* const> all() const { return {all_.data(), count_.load(std::memory_order_acquire)}; }
+    void add(std::unique_ptr<const Effect> effect) {
+        const std::lock_guard alone(mutex_);
+        const auto same = [&](const Effect* other) { return !effect->key().empty() && other->key() == effect->key(); };
+        if (std::ranges::any_of(all(), same)) return;
+        if (count_ == all_.size()) throw std::length_error(fmt::format("there are more than {} effects", all_.size()));
+        all_[count_] = effect.get();
+        added_.push_back(std::move(effect));
+        count_.store(count_ + 1, std::memory_order_release);
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<const Effect>> added_;
+    std::array<const Effect*, 256> all_{
         &absorption(),    &backscatter(), &publishedMeans(), &beamPatterns(),    &pulse(),         &ringDown(),
         &volume(),        &speckle(),     &multipath(),      &thinWalls(),       &furtherFrusta(), &refraction(),
         &motionInPing(),  &normalMaps(),  &surfaceMaps(),    &deformingMeshes(), &pointTargets(),  &edgeDiffraction(),
         &imperfections(), &crosstalk(),   &truth()};
+    std::atomic<size_t> count_{static_cast<size_t>(std::ranges::find(all_, nullptr) - all_.begin())};
 };
 
 List& list() {
@@ -51,7 +72,7 @@ List& list() {
 
 std::vector<std::string> keys() {
     std::vector<std::string> keys;
-    for (const Effect* effect : list().all)
+    for (const Effect* effect : effects())
         if (!effect->key().empty()) keys.push_back(effect->key());
     return keys;
 }
@@ -80,19 +101,15 @@ void checkNumbers(const std::string& path, const std::vector<types::Field>& fiel
 
 }  // namespace
 
-std::span<const Effect* const> effects() { return list().all; }
+std::span<const Effect* const> effects() { return list().all(); }
 
-void addEffect(std::unique_ptr<const Effect> effect) {
-    const auto same = [&](const Effect* other) { return !effect->key().empty() && other->key() == effect->key(); };
-    if (std::ranges::any_of(list().all, same)) return;
-    list().all.push_back(effect.get());
-    list().added.push_back(std::move(effect));
-}
+void addEffect(std::unique_ptr<const Effect> effect) { list().add(std::move(effect)); }
 
 void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics) {
     for (const auto& [key, numbers] : config.effects) {
-        const auto found = std::ranges::find(effects(), key, &Effect::key);
-        if (found == effects().end())
+        const auto all = effects();
+        const auto found = std::ranges::find(all, key, &Effect::key);
+        if (found == all.end())
             diagnostics.push_back({"effects." + key, whyUnknown(key, keys(), "is no effect", "effects")});
         else
             checkNumbers("effects." + key + ".", (*found)->numbers(), numbers, diagnostics);

@@ -8,11 +8,13 @@
 
 namespace insonify::sonar {
 
-/** Returns all effects, in the order in which they are planned, reported and run. */
+/** Returns all effects, in the order in which they are planned, reported and run. Stays valid; effects that are added
+ *  later are in later results. */
 std::span<const Effect* const> effects();
 
-/** Adds an effect of a library to the end of the list, until the process ends. Call it before any sonar is configured,
- *  from `insonify_register` or from main. Does nothing where the list has an effect with the same key. */
+/** Adds an effect of a library to the end of the list, until the process ends. Call it before the sonars that use it are
+ *  configured, from `insonify_register` or from main, on any thread. Does nothing where the list has an effect with the
+ *  same key. Throws std::length_error above 256 effects. */
 void addEffect(std::unique_ptr<const Effect> effect);
 
 /** Adds diagnostics of SonarConfig::effects: unknown keys and numbers, numbers out of bounds. Adds those of each

@@ -1,0 +1,68 @@
+#include "components/sonar/places/MeshesAhead.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "components/study/Shapes.hpp"
+#include "tests/support/Priorities.hpp"
+#include "tests/support/Waiting.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** Returns the schedulings of all threads of this process. */
+std::vector<int> policies() {
+    std::vector<int> all;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task"))
+        all.push_back(sched_getscheduler(std::stoi(task.path().filename().string())));
+    return all;
+}
+
+types::MeshPtr meshOf(int rings) { return std::make_shared<const types::Mesh>(study::sphere(5, rings)); }
+
+double seconds(const auto& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+TEST(MeshesAheadTest, ItsThreadHasNoRealtimePriority) {
+    bool permitted = false;
+    std::vector<int> found;
+    std::thread([&] {
+        permitted = test::useFifo(5);
+        MeshesAhead ahead;
+        ahead.take(std::make_shared<const std::vector<types::MeshPtr>>(1, meshOf(10)), {});
+        test::becomesTrue([&] {
+            found = policies();
+            return std::ranges::count(found, SCHED_FIFO) == 1;
+        });
+    }).join();
+    if (!permitted) GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
+    EXPECT_EQ(std::ranges::count(found, SCHED_FIFO), 1) << "only the caller";
+    EXPECT_GE(found.size(), 3u);
+}
+
+TEST(MeshesAheadTest, ItsEndWaitsForOneMeshOnly) {
+    std::vector<types::MeshPtr> meshes;
+    for (int i = 0; i < 40; ++i) meshes.push_back(meshOf(100 + i));
+    double whole = 0;
+    {
+        MeshesAhead ahead;
+        const auto list = std::make_shared<const std::vector<types::MeshPtr>>(meshes);
+        ahead.take(list, {});
+        whole = seconds([&] { test::becomesTrue([&] { return meshes.back().use_count() > 4; }); });
+    }
+    for (types::MeshPtr& mesh : meshes) mesh = std::make_shared<const types::Mesh>(*mesh);
+    const double end = seconds([&] {
+        MeshesAhead ahead;
+        ahead.take(std::make_shared<const std::vector<types::MeshPtr>>(meshes), {});
+    });
+    EXPECT_LT(end, whole / 4) << "of 40 meshes";
+}
+
+}  // namespace
+}  // namespace insonify::sonar

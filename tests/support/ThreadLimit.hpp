@@ -1,0 +1,16 @@
+#pragma once
+// A system that permits only so many threads, as a container does. Needs support/ThreadLimit.cpp among the sources.
+//
+//     const ThreadLimit limit(3);  // the fourth thread from here on is refused
+
+namespace insonify::test {
+
+class ThreadLimit {
+public:
+    explicit ThreadLimit(int permitted);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+};
+
+}  // namespace insonify::test
