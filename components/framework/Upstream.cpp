@@ -96,6 +96,20 @@ std::optional<types::Mount> upstreamMount(const InputPortBase& port) {
     return text && reader.readText(*text, "mount", mount) ? std::optional(mount) : std::nullopt;
 }
 
+std::string whyNoCodes(const InputPortBase& port) {
+    std::string why;
+    forEachUpstream(port, [&](const TaskContext& task) {
+        const types::TaskRecord record = task.record();
+        const auto output = valueAt(record, "output");  // of a receiver
+        const std::string* const name = output ? std::get_if<std::string>(&*output) : nullptr;
+        const bool is_sonar = valueAt(record, "range_rounding").has_value();
+        if (name && *name != "code") why = "the output of " + task.name() + " is " + *name;
+        if (is_sonar) why = task.name() + " sends intensities";
+        return name || is_sonar;
+    });
+    return why;
+}
+
 std::vector<const OutputPortBase*> upstreamPoses(const InputPortBase& port) {
     std::vector<const OutputPortBase*> poses;
     forEachUpstream(port, [&](const TaskContext& task) {

@@ -4,12 +4,16 @@
 #include <map>
 
 #include "components/log/Files.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::logger {
 
-void removeSequels(const std::filesystem::path& log) {
-    if (!sequenceNumber(log)) return;
+namespace {
+
+/** Returns the files that follow `log` from an earlier run by their number, also after missing numbers. */
+std::map<unsigned, std::filesystem::path> sequelsOf(const std::filesystem::path& log) {
     std::map<unsigned, std::filesystem::path> sequels;
+    if (!sequenceNumber(log)) return sequels;
     std::error_code failed;
     const auto nameOf = [](const std::filesystem::path& file) { return file.stem().stem().string(); };
     const auto folder = log.has_parent_path() ? log.parent_path() : std::filesystem::path(".");
@@ -20,7 +24,20 @@ void removeSequels(const std::filesystem::path& log) {
             entry.is_regular_file(failed))
             sequels[*number] = file;
     }
-    for (; !sequels.empty(); sequels.erase(std::prev(sequels.end()))) log::removeLog(sequels.rbegin()->second);
+    return sequels;
+}
+
+}  // namespace
+
+void refuseSequels(const std::filesystem::path& log) {
+    for (const auto& [number, sequel] : sequelsOf(log))
+        if (log::isBeingWritten(sequel))
+            throw types::ConfigError(sequel, "", "the log cannot be removed: another logger writes it");
+}
+
+void removeSequels(const std::filesystem::path& log) {
+    for (auto sequels = sequelsOf(log); !sequels.empty(); sequels.erase(std::prev(sequels.end())))
+        log::removeLog(sequels.rbegin()->second);
 }
 
 Rotation::Rotation(const LoggerConfig& config, log::Writer& log)

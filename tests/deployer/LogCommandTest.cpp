@@ -96,7 +96,13 @@ TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
     EXPECT_THAT(nothing.err, HasSubstr("out/wall.0.log: none of its samples is in the requested part; they are from "
                                        "1.000000 s to 1.200000 s"));
     EXPECT_EQ(nothing.out, "");
-    EXPECT_FALSE(fs::exists(folder / "cut.0.log"));
+    EXPECT_EQ(callInsonify(folder, {"log", "check", "cut.0.log"}).out, "cut.0.log: valid, 3 streams, 4 samples\n")
+        << "the cut before stays";
+    EXPECT_TRUE(fs::exists(folder / "cut.0.idx"));
+    for (const char* fresh : {"none.0.log", "none.mcap"}) {
+        EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", fresh, "--from", "7"}).code, 2);
+        EXPECT_FALSE(fs::exists(folder / fresh)) << fresh;
+    }
     EXPECT_THAT(cut({"--samples", "2:1"}).err, HasSubstr("--samples: is 2:1; FIRST must be less than LAST"));
     EXPECT_THAT(cut({"--from", "0.1", "--until", "0.05"}).err, HasSubstr("--until: is 0.05; must be after --from"));
     EXPECT_THAT(callInsonify(folder, {"log", "cut", log, "--to", "cut.txt"}).err,

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "components/output/FanImage.hpp"
+#include "components/output/Overlay.hpp"
 #include "tests/output/Pixels.hpp"
 
 namespace insonify::output {
@@ -54,6 +55,27 @@ TEST(FanImageTest, ShowsAnEchoAtItsBearingAndRange) {
             const cv::Point2d place = placeOf(fan, empty, beam, bin);
             EXPECT_LT(cv::norm(place - expected), 2.5) << beam << " " << bin;  // a bin is 3.8 pixels long
         }
+}
+
+TEST(FanImageTest, NoLabelTouchesTheColourBarAndTheBarIsNextToTheFan) {
+    const cv::Point at(14, FanLayout::title_height + 18);
+    int bars = 0;
+    for (const int width : {256, 300, 384, 512, 640, 800, 1024, 2048})
+        for (double half_deg = 5; half_deg <= 180; half_deg += 5)
+            for (const double turn_deg : {0.0, 40.0}) {
+                const double half = half_deg * M_PI / 180, turn = turn_deg * M_PI / 180;
+                const FanLayout layout(width, -half + turn, half + turn, 50);
+                const cv::Point bar = placeOfBar(layout, at);
+                if (bar != at) continue;
+                ++bars;
+                Overlay overlay = fanOverlay(layout, {bar, labelled_bar_size});
+                overlay.finish();
+                cv::Mat picture(layout.size(), CV_8UC3, cv::Scalar(0, 0, 0));
+                overlay.blend(picture);
+                const cv::Mat area = picture(cv::Rect(bar, labelled_bar_size)).clone().reshape(1);
+                EXPECT_EQ(cv::countNonZero(area), 0) << width << " " << half_deg << " " << turn_deg;
+            }
+    EXPECT_GT(bars, 200);
 }
 
 TEST(FanImageTest, DrawsRingsAtRoundRanges) {
