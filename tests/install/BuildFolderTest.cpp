@@ -26,7 +26,8 @@ void copyClone(const fs::path& to) {
 Outcome build(const TestFolder& folder, const std::string& clone, const std::string& target = "insonify_version",
               const std::vector<std::string>& before = {}) {
     std::vector<std::string> words = before;
-    for (const std::string& word : {clone + "/scripts/build", std::string("build"), std::string("--"), target}) words.push_back(word);
+    for (const std::string& word : {clone + "/scripts/build", std::string("build"), std::string("--"), target})
+        words.push_back(word);
     return call(folder, words);
 }
 
@@ -74,8 +75,8 @@ TEST(BuildFolderTest, ACopiedCloneCompilesItsOwnSources) {
 TEST(BuildFolderTest, ARenamedCloneBuildsAndKeepsItsOptions) {
     const TestFolder folder;
     copyClone(folder / "a");
-    ASSERT_THAT(call(folder, {INSONIFY_CMAKE, "-S", "a", "-B", "a/build", "-G", "Unix Makefiles", "-DINSONIFY_UNITY=OFF",
-                              "-DCMAKE_BUILD_TYPE=Debug"}),
+    ASSERT_THAT(call(folder, {INSONIFY_CMAKE, "-S", "a", "-B", "a/build", "-G", "Unix Makefiles",
+                              "-DINSONIFY_UNITY=OFF", "-DCMAKE_BUILD_TYPE=Debug"}),
                 succeeds());
     ASSERT_THAT(build(folder, "a"), succeeds());
     const std::string name = "b, c's (d) & e=1";
@@ -125,7 +126,8 @@ TEST(BuildFolderTest, ATargetOfChangedSourcesIsKnown) {
 
 TEST(BuildFolderTest, AnOldCompilerIsRefusedAndAnotherOneIsTaken) {
     const TestFolder folder;
-    if (!call(folder, {"c++", "--version"}).out.starts_with("c++")) GTEST_SKIP() << "NOT TESTED: the compiler is not g++";
+    if (!call(folder, {"c++", "--version"}).out.starts_with("c++"))
+        GTEST_SKIP() << "NOT TESTED: the compiler is not g++";
     copyClone(folder / "a");
     writeOldCompiler(folder / "g++-11");
     const std::string old = "CXX=" + (folder / "g++-11").string();
@@ -141,9 +143,10 @@ TEST(BuildFolderTest, BuildsInOneFolderWaitForEachOther) {
     const TestFolder folder;
     copyClone(folder / "a");
     ASSERT_THAT(build(folder, "a"), succeeds());
-    const Outcome waited = call(folder, {"bash", "-c",
-                                         "exec 9>a/build/.lock; flock 9; a/scripts/build build -- insonify_version 9>&- & "
-                                         "sleep 0.5; echo freed; exec 9>&-; wait $!; echo \"ended with $?\""});
+    const Outcome waited =
+        call(folder, {"bash", "-c",
+                      "exec 9>a/build/.lock; flock 9; a/scripts/build build -- insonify_version 9>&- & "
+                      "sleep 0.5; echo freed; exec 9>&-; wait $!; echo \"ended with $?\""});
     EXPECT_THAT(waited.err, HasSubstr("waits for another build in build"));
     EXPECT_THAT(waited.out, testing::StartsWith("freed\n"));
     EXPECT_THAT(waited.out, HasSubstr("ended with 0"));
@@ -164,18 +167,22 @@ TEST(BuildFolderTest, ThePartsThatAreBuiltAreInstalled) {
     copyClone(folder / "a");
     ASSERT_THAT(build(folder, "a"), succeeds());
     // As after `scripts/run`: the command and its core.
-    for (const char* name : {"bin/insonify", "lib/libinsonify.so", "lib/libinsonify.so.0.1", "lib/libinsonify.so.0.1.0"})
-        fs::copy(fs::path(insonify::test::build_dir) / name, folder / "a/build" / name, fs::copy_options::copy_symlinks);
+    for (const char* name :
+         {"bin/insonify", "lib/libinsonify.so", "lib/libinsonify.so.0.1", "lib/libinsonify.so.0.1.0"})
+        fs::copy(fs::path(insonify::test::build_dir) / name, folder / "a/build" / name,
+                 fs::copy_options::copy_symlinks);
     fs::copy(insonify::test::sourceFile("deploy"), folder / "a/deploy");  // without its folders
     const Outcome installed = call(folder, {INSONIFY_CMAKE, "--install", "a/build", "--prefix", folder / "prefix"});
     ASSERT_THAT(installed, succeeds());
-    EXPECT_THAT(installed.out, AllOf(HasSubstr("Not built and omitted: "), HasSubstr("libraries for find_package(Insonify)"),
-                                     HasSubstr("nav"), HasSubstr("the manual page")));
+    EXPECT_THAT(installed.out,
+                AllOf(HasSubstr("Not built and omitted: "), HasSubstr("libraries for find_package(Insonify)"),
+                      HasSubstr("nav"), HasSubstr("the manual page")));
     EXPECT_THAT(call(folder, {folder / "prefix/bin/insonify", "--version"}), succeeds());
     fs::create_directories(folder / "use");
     writeFile(folder / "use/CMakeLists.txt",
               "cmake_minimum_required(VERSION 3.22)\nproject(Outside CXX)\nfind_package(Insonify REQUIRED)\n");
-    const Outcome used = call(folder, {INSONIFY_CMAKE, "-S", "use", "-B", "use/build", "-DCMAKE_PREFIX_PATH=" + (folder / "prefix").string()});
+    const Outcome used = call(folder, {INSONIFY_CMAKE, "-S", "use", "-B", "use/build",
+                                       "-DCMAKE_PREFIX_PATH=" + (folder / "prefix").string()});
     EXPECT_EQ(used.code, 1);
     EXPECT_THAT(used.err, HasSubstr("was installed before all of it was"));
 }

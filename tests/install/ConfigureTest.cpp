@@ -14,7 +14,8 @@ using testing::Not;
 
 namespace {
 
-/** An optional package: its name in CMAKE_DISABLE_FIND_PACKAGE_, what messages call it, and the targets that need it. */
+/** An optional package: its name in CMAKE_DISABLE_FIND_PACKAGE_, what messages call it, and the targets that need it.
+ */
 struct Package {
     std::string name, word;
     std::vector<std::string> targets;
@@ -46,8 +47,15 @@ class BuildFolder {
 public:
     /** Configures with these options and none of those before. */
     Outcome configure(const std::vector<std::string>& options) const {
-        std::vector<std::string> words{INSONIFY_CMAKE, "-S", insonify::test::source_dir,        "-B", "build", "-G",
-                                       "Ninja",        "-U", "CMAKE_DISABLE_FIND_PACKAGE_*",
+        std::vector<std::string> words{INSONIFY_CMAKE,
+                                       "-S",
+                                       insonify::test::source_dir,
+                                       "-B",
+                                       "build",
+                                       "-G",
+                                       "Ninja",
+                                       "-U",
+                                       "CMAKE_DISABLE_FIND_PACKAGE_*",
                                        "--no-warn-unused-cli"};
         words.insert(words.end(), options.begin(), options.end());
         return call(folder_, words);
@@ -90,7 +98,8 @@ void expectWhole(const BuildFolder& build, const std::vector<const Package*>& ab
             for (const std::string& target : targets) EXPECT_FALSE(target.ends_with("_test")) << target;
         }
         // A target that is absent would be linked by its name.
-        for (const char* plain : {"-linsonify_", "-lopencv_", "-lfastrtps"}) EXPECT_THAT(build.rules(), Not(HasSubstr(plain)));
+        for (const char* plain : {"-linsonify_", "-lopencv_", "-lfastrtps"})
+            EXPECT_THAT(build.rules(), Not(HasSubstr(plain)));
         if (tests && absent.size() == 1) {
             EXPECT_THAT(outcome.out, HasSubstr(absent[0]->word));
         }
@@ -152,8 +161,10 @@ TEST(ConfigureTest, OfSeveralPackagesTheMissingOneIsNamed) {
 TEST(ConfigureTest, AnOmittedComponentSaysWhyWhenItIsBuilt) {
     const BuildFolder build;
     ASSERT_EQ(build.configure({hidden("GDAL")}).code, 0);
-    EXPECT_THAT(call(build.folder(), {INSONIFY_CMAKE, "--build", "build", "--target", "insonify_component_survey"}),
-                prints(HasSubstr("survey cannot be built on this system and is omitted. No GDAL (libgdal-dev): surveys are not read")));
+    EXPECT_THAT(
+        call(build.folder(), {INSONIFY_CMAKE, "--build", "build", "--target", "insonify_component_survey"}),
+        prints(HasSubstr(
+            "survey cannot be built on this system and is omitted. No GDAL (libgdal-dev): surveys are not read")));
 }
 
 TEST(ConfigureTest, HeadersAndLibrariesAreOfOnePrefix) {
@@ -218,6 +229,7 @@ TEST(ConfigureTest, ThePresetIsTheBuildOfTheScripts) {
     EXPECT_EQ(preset["binaryDir"], "${sourceDir}/build");
     EXPECT_EQ(preset["cacheVariables"]["CMAKE_BUILD_TYPE"], "Release");
     const TestFolder folder;
-    EXPECT_THAT(call(folder, {INSONIFY_CMAKE, "-S", insonify::test::source_dir, "--preset", "default", "-B", "build", "-N"}),
-                succeeds());
+    EXPECT_THAT(
+        call(folder, {INSONIFY_CMAKE, "-S", insonify::test::source_dir, "--preset", "default", "-B", "build", "-N"}),
+        succeeds());
 }

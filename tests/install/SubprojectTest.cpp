@@ -14,7 +14,8 @@ namespace {
 void writeProject(const TestFolder& folder) {
     writeFile(folder / "CMakeLists.txt", R"(cmake_minimum_required(VERSION 3.22)
 project(Vehicle CXX)
-add_subdirectory()" + std::string(insonify::test::source_dir) + R"( insonify EXCLUDE_FROM_ALL)
+add_subdirectory()" + std::string(insonify::test::source_dir) +
+                                             R"( insonify EXCLUDE_FROM_ALL)
 get_property(installed GLOBAL PROPERTY insonify_installed)
 foreach(target insonify insonify_core ${installed})
   get_target_property(name ${target} EXPORT_NAME)
@@ -51,9 +52,11 @@ int main() {
 TEST(SubprojectTest, ABiggerProjectBuildsWithOurLibrariesAndNothingElseOfOurs) {
     const TestFolder folder;
     writeProject(folder);
-    const Outcome configured = call(folder, {INSONIFY_CMAKE, "-S", ".", "-B", "b,1", "-G", "Ninja", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"});
+    const Outcome configured =
+        call(folder, {INSONIFY_CMAKE, "-S", ".", "-B", "b,1", "-G", "Ninja", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"});
     ASSERT_EQ(configured.code, 0) << configured.err;
-    EXPECT_THAT(readFile(folder / "b,1/build.ninja"), testing::AllOf(Not(HasSubstr("-Werror")), Not(HasSubstr("_test"))));
+    EXPECT_THAT(readFile(folder / "b,1/build.ninja"),
+                testing::AllOf(Not(HasSubstr("-Werror")), Not(HasSubstr("_test"))));
     const std::string cache = readFile(folder / "b,1/CMakeCache.txt");
     for (const char* ours : {"BUILD_TESTING", "\nCPACK_", "INSONIFY_TESTS:BOOL=ON", "INSONIFY_INSTALL:BOOL=ON"})
         EXPECT_EQ(cache.find(ours), std::string::npos) << ours;
@@ -62,6 +65,7 @@ TEST(SubprojectTest, ABiggerProjectBuildsWithOurLibrariesAndNothingElseOfOurs) {
     EXPECT_EQ(call(folder, {folder / "b,1/vehicle"}).out, "linked\n");
     ASSERT_THAT(call(folder, {INSONIFY_CMAKE, "--install", "b,1", "--prefix", folder / "prefix"}), succeeds());
     size_t files = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(folder / "prefix")) files += entry.is_regular_file() ? 1 : 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "prefix"))
+        files += entry.is_regular_file() ? 1 : 0;
     EXPECT_EQ(files, 1u) << "only the project's own program";
 }

@@ -41,11 +41,27 @@ std::set<std::string> filesNamedIn(const std::string& text) {
 }  // namespace
 
 TEST(LayoutTest, TheTopLevelHoldsOnlyWhatTheDesignNames) {
-    const std::set<std::string> expected = {
-        "CMakeLists.txt", "README.md",  "LICENSE", "CHANGELOG.md",   "types",        "components",     "shaders",
-        "deploy",         "tests",      "scripts", "ros2",           ".ci",          ".git",           ".clang-format",
-        ".clang-tidy",    ".gitignore", "out",     "pyproject.toml", "CITATION.cff", "CONTRIBUTING.md",
-        "CMakePresets.json"};
+    const std::set<std::string> expected = {"CMakeLists.txt",
+                                            "CMakePresets.json",
+                                            "README.md",
+                                            "LICENSE",
+                                            "CHANGELOG.md",
+                                            "types",
+                                            "components",
+                                            "shaders",
+                                            "deploy",
+                                            "tests",
+                                            "scripts",
+                                            "ros2",
+                                            ".ci",
+                                            ".git",
+                                            ".clang-format",
+                                            ".clang-tidy",
+                                            ".gitignore",
+                                            "out",
+                                            "pyproject.toml",
+                                            "CITATION.cff",
+                                            "CONTRIBUTING.md"};
     for (const auto& entry : std::filesystem::directory_iterator(insonify::test::source_dir)) {
         const std::string name = entry.path().filename();
         EXPECT_TRUE(expected.contains(name) || name.starts_with("build")) << name;

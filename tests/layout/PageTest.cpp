@@ -108,7 +108,8 @@ std::string printingCode() {
     std::string code;
     std::vector<Source> sources{readSource(root / "CMakeLists.txt")};
     for (const char* folder : {"components", "types", "scripts"})
-        for (const Source& source : sourcesIn(folder, {".cpp", ".hpp", ".js", ".cmake", ".in", ""})) sources.push_back(source);
+        for (const Source& source : sourcesIn(folder, {".cpp", ".hpp", ".js", ".cmake", ".in", ""}))
+            sources.push_back(source);
     for (const Source& source : sources)
         for (const std::string& line : source.lines) code += line + "\n";
     static const std::regex between(R"("\s*\n\s*")");

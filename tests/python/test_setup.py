@@ -54,13 +54,13 @@ def stand_in(file, line):
     file.chmod(0o755)
 
 
-def asked(system, script, *arguments):
+def asked(system, script, *arguments, path=None):
     """Returns the commands that the script ran, and its output."""
     (system / "asked").write_text("")
     done = subprocess.run(
         [f"scripts/{script}", *arguments],
         cwd=system,
-        env=os.environ | {"PATH": f"{system}/commands:{os.environ['PATH']}"},
+        env=os.environ | {"PATH": path or f"{system}/commands:{os.environ['PATH']}"},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -178,3 +178,13 @@ def test_two_at_once_wait_for_each_other(system):
     assert [each.returncode for each in both] == [0, 0]
     assert said == "scripts/setup: waits for another set-up of this clone\n"
     assert (system / "asked").read_text() == 2 * "build build -- insonify\n"
+
+
+def test_a_system_without_debian_packages_is_built_with_what_it_has(system):
+    for name in ("bash", "env", "sed", "cat", "basename", "dirname", "mkdir", "flock", "sleep"):
+        (system / "few" / name).parent.mkdir(exist_ok=True)
+        (system / "few" / name).symlink_to(shutil.which(name))
+    (system / "installed").write_text("")
+    code, lines, said = asked(system, "setup", "insonify", path=str(system / "few"))
+    assert (code, lines) == (0, ["build build -- insonify"])
+    assert said == "scripts/setup: this system has no Debian packages, so none are installed; CMake names what is missing\n"

@@ -153,9 +153,10 @@ INSONIFY_DEFAULT_CLONE int keepHeld(int count, LatticeScatterers& scatterers) {
 }
 
 #ifdef INSONIFY_HAS_CLONES
-/** Does the same 16 at a time: compilers do not generate this instruction for loops. The extensions are named one by one:
- *  with "arch=x86-64-v4" the intrinsics cannot be inlined if -march names a processor. */
-__attribute__((target("avx512f,avx512bw,avx512cd,avx512dq,avx512vl"))) int keepHeld(int count, LatticeScatterers& scatterers) {
+/** Does the same 16 at a time: compilers do not generate this instruction for loops. The extensions are named one by
+ * one: with "arch=x86-64-v4" the intrinsics cannot be inlined if -march names a processor. */
+__attribute__((target("avx512f,avx512bw,avx512cd,avx512dq,avx512vl"))) int keepHeld(int count,
+                                                                                    LatticeScatterers& scatterers) {
     void* const arrays[] = {scatterers.bits, scatterers.size, scatterers.turns, scatterers.sum};
     int held = 0;
     for (int i = 0; i < count; i += LatticeSquares::at_once) {
