@@ -86,7 +86,7 @@ TEST(DetectionTest, SpreadingAndAbsorptionAreRemovedFirst) {
     DetectionConfig config;
     config.threshold_db = -20;
     EXPECT_LT(Found(config, ping).first(0)->range, 1) << "the near water is louder";
-    const DetectionRules rules{{.spreads = true, .absorption_db_per_m = 0.25}, {}};
+    const DetectionRules rules{{.spreads = true, .loss_db_per_m = 0.25}, {}};
     EXPECT_NEAR(Found(config, ping, rules).first(0)->range, 15.05, 1e-9);
     EXPECT_NEAR(Found(config, ping, rules).strongest(0)->range, 15.05, 1e-9);
 }
