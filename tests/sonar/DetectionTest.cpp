@@ -97,8 +97,9 @@ TEST(DetectionTest, RingDownBlankedBinsAndWaterAreNoReturns) {
                                std::vector<float>(100, 1e-3f)};
     const double decay = 2 * std::numbers::ln10;  // of intensity [1/m]
     for (size_t k = 0; k < 100; ++k) {
-        const double from = 0.1 * static_cast<double>(k), mean = 10 * (std::exp(-decay * from) - std::exp(-decay * (from + 0.1))) / decay * 100;
-        ping.bins[k] = static_cast<float>(mean + 0.9e-3);
+        const double from = 0.1 * static_cast<double>(k), to = from + 0.1;
+        const double rung = 100 * (std::exp(-decay * from) - std::exp(-decay * to)) / (decay * 0.1);
+        ping.bins[k] = static_cast<float>(rung + 0.9e-3);
     }
     EXPECT_FALSE(Found({}, ping, rules).first(0));
     EXPECT_FALSE(Found({}, ping, rules).strongest(0));
