@@ -29,7 +29,7 @@ void ReturnLevels::take(const RangeBins& bins, uint32_t count, const ReturnRules
     while (first_ < count && bins.binStart(static_cast<double>(first_) + 1) <= rules.range_min * (1 + 1e-9)) ++first_;
     for (size_t k = 0; rules.spreads && k < count; ++k) {
         const double range = bins.binStart(static_cast<double>(k) + 0.5);
-        gain_[k] = range * range * std::exp(std::min(2 * per_db * rules.absorption_db_per_m * range, 600.0));
+        gain_[k] = range * range * std::exp(std::min(2 * per_db * rules.loss_db_per_m * range, 600.0));
     }
     for (size_t k = 0; k < count && width > 0; ++k) {
         const double from = bins.binStart(static_cast<double>(k)), received = ringDown(rules, from, from + width);

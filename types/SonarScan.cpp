@@ -10,7 +10,6 @@ namespace {
 /** Sets the bins from the two-way time between their samples [s]. Without a speed of sound, ranges are unknown. */
 void setBins(double sampling_interval, float speed_of_sound, Sonar& ping) {
     ping.speed_of_sound = speed_of_sound;
-    if (ping.bin_count == 0) return;
     if (!(sampling_interval > 0 && sampling_interval < 1e6))
         throw std::logic_error("has a sampling interval that is no time");
     const double seconds = sampling_interval / 2, speed = static_cast<double>(speed_of_sound);

@@ -21,7 +21,7 @@ bool AltimeterTask::isTooNear() {
     if (!near_ || near_scene_ != scene.geometry) {
         SonarConfig near;
         near.bearings_deg = {0};
-        near.beam_width_deg = config->sonar.beamWidthDeg();
+        near.beam_width_deg = config->beam().beamWidthDeg();
         near.beam_height_deg = config->sonar.beam_height_deg;
         near.beam_geometry = config->sonar.beam_geometry;
         near.range = config->sonar.range_min;

@@ -51,6 +51,16 @@ TEST(OculusPingTest, AMissingSpeedOfSoundIs1500) {
     EXPECT_EQ(sonar.bin_duration.microseconds, 167) << "0.25 m";
 }
 
+TEST(OculusPingTest, RangesAreThoseOfTheRangeResolution) {
+    OculusPing ping = oculusPings(Sent{}.bytes()).at(0);
+    for (const double resolution : {0.0015, 0.002, 0.0025, 0.01}) {
+        ping.range_resolution = resolution;
+        const types::Sonar sonar = sonarOf(ping, {});
+        EXPECT_NEAR(sonar.binStart(1600), 1600 * resolution, 2e-6 * 1600 * resolution);
+        EXPECT_EQ(sonar.speed_of_sound, 1490.5f) << "of the water";
+    }
+}
+
 TEST(OculusPingTest, FindsPingsAmongOtherMessages) {
     Bytes all = {'S', 'O', 0, 0, 'S'};
     for (int i = 0; i < 3; ++i) {

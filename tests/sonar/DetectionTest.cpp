@@ -86,7 +86,7 @@ TEST(DetectionTest, SpreadingAndAbsorptionAreRemovedFirst) {
     DetectionConfig config;
     config.threshold_db = -20;
     EXPECT_LT(Found(config, ping).first(0)->range, 1) << "the near water is louder";
-    const DetectionRules rules{{.spreads = true, .absorption_db_per_m = 0.25}, {}};
+    const DetectionRules rules{{.spreads = true, .loss_db_per_m = 0.25}, {}};
     EXPECT_NEAR(Found(config, ping, rules).first(0)->range, 15.05, 1e-9);
     EXPECT_NEAR(Found(config, ping, rules).strongest(0)->range, 15.05, 1e-9);
 }
@@ -97,8 +97,9 @@ TEST(DetectionTest, RingDownBlankedBinsAndWaterAreNoReturns) {
                                std::vector<float>(100, 1e-3f)};
     const double decay = 2 * std::numbers::ln10;  // of intensity [1/m]
     for (size_t k = 0; k < 100; ++k) {
-        const double from = 0.1 * static_cast<double>(k), mean = 10 * (std::exp(-decay * from) - std::exp(-decay * (from + 0.1))) / decay * 100;
-        ping.bins[k] = static_cast<float>(mean + 0.9e-3);
+        const double from = 0.1 * static_cast<double>(k), to = from + 0.1;
+        const double rung = 100 * (std::exp(-decay * from) - std::exp(-decay * to)) / (decay * 0.1);
+        ping.bins[k] = static_cast<float>(rung + 0.9e-3);
     }
     EXPECT_FALSE(Found({}, ping, rules).first(0));
     EXPECT_FALSE(Found({}, ping, rules).strongest(0));

@@ -8,9 +8,9 @@
 namespace insonify::sonar {
 namespace {
 
-/** Min ratio of a return to the water's mean echo: with speckle, whose bins exceed their mean by so much once in 5e8 bins,
- *  and without [1]. */
-constexpr double above_speckle = 20, above_water = 2;
+/** Min ratio of a return to the water's mean echo: of fields, whose squares exceed their mean by so much once in 5e8
+ *  bins, and of energies [1]. */
+constexpr double above_fields = 20, above_water = 2;
 
 double shareOf(double level_db) { return std::pow(10, level_db / 10); }
 
@@ -18,7 +18,7 @@ double shareOf(double level_db) { return std::pow(10, level_db / 10); }
 
 DetectionRules DetectionRules::of(const RenderPlan& plan) {
     DetectionRules rules{returnRulesOf(plan.config), {}};
-    const double margin = plan.features.has(Feature::Speckle) ? above_speckle : above_water;
+    const double margin = plan.sumsFields() ? above_fields : above_water;
     for (const Effect* effect : plan.effects) {
         const std::vector<float> water = effect->withoutSurfaces(plan);
         rules.water.resize(std::max(rules.water.size(), water.size()));

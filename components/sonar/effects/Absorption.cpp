@@ -42,6 +42,9 @@ public:
                             "middle; it is taken in the middle",
                             decibels(inside->value)));
     }
+    void addTo(types::ReturnRules& rules, const SonarConfig& config) const override {
+        rules.loss_db_per_m = makeAbsorption(config).db_per_m;
+    }
     std::string takeOut(SonarConfig& config) const override { return takenOut(config.absorption, "absorption"); }
 };
 

@@ -129,6 +129,8 @@ public:
     /** Adds the notices about the effect in this plan. */
     virtual void note(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/,
                       std::vector<std::string>& /*notices*/) const {}
+    /** Adds to what is known of the bins of a configured sonar. */
+    virtual void addTo(types::ReturnRules& /*rules*/, const SonarConfig& /*config*/) const {}
     /** Returns the greatest mean intensity that each bin of a ping receives of it without any surface, in the ping's
      *  order; empty: none. */
     virtual std::vector<float> withoutSurfaces(const RenderPlan& /*plan*/) const { return {}; }

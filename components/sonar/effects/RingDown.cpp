@@ -34,6 +34,11 @@ public:
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& /*geometry*/) const override {
         return std::make_unique<RingDownInPings>(plan);
     }
+    void addTo(types::ReturnRules& rules, const SonarConfig& config) const override {
+        if (!config.pulse || !config.pulse->ring_down) return;
+        rules.ring_down_db = *config.pulse->ring_down->level_db;
+        rules.ring_down_db_per_m = *config.pulse->ring_down->decay_db_per_m;
+    }
     std::string takeOut(SonarConfig& config) const override {
         if (!config.pulse || !config.pulse->ring_down) return {};
         config.pulse->ring_down.reset();

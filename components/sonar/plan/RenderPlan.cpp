@@ -77,11 +77,8 @@ types::ReturnRules returnRulesOf(const SonarConfig& config) {
     types::ReturnRules rules;
     rules.spreads = config.model == Model::Physical;
     rules.range_min = config.range_min;
-    if (rules.spreads) rules.absorption_db_per_m = makeAbsorption(config).db_per_m;
-    if (config.pulse && config.pulse->ring_down) {
-        rules.ring_down_db = *config.pulse->ring_down->level_db;
-        rules.ring_down_db_per_m = *config.pulse->ring_down->decay_db_per_m;
-    }
+    if (rules.spreads)
+        for (const Effect* effect : effects()) effect->addTo(rules, config);
     return rules;
 }
 

@@ -117,6 +117,8 @@ struct RenderPlan {
     /** Inserts a pass at its place in the order. */
     void add(Pass pass) { passes.insert(std::ranges::upper_bound(passes, pass), pass); }
     bool hasFeature(std::string_view name) const;
+    /** Whether the bins are squares of fields, which fluctuate about their mean, not energies. */
+    bool sumsFields() const { return features.has(Feature::Speckle); }
     /** Returns "physical", "normal_map"..., then the names that effects add. */
     std::vector<std::string> featureNames() const;
     /** "HAVE_PHYSICAL", "HAVE_NORMAL_MAP"..., for the shaders. */
