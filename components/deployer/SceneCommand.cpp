@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <memory>
 
@@ -14,6 +15,7 @@
 #include "components/deployer/Json.hpp"
 #include "components/deployer/RunCommand.hpp"
 #include "components/loader/ComponentLibrary.hpp"
+#include "components/scene/Drawings.hpp"
 #include "components/scene/MaterialNames.hpp"
 #include "components/scene/Placement.hpp"
 #include "components/scene/Scene.hpp"
@@ -148,9 +150,10 @@ Json animationsOf(const scene::Scene& scene) {
  *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, shell as above,
  *  mirror, triangles, area_m2}], objects: [{name, materials: [names], triangles, bounds}], nodes: [names that a
  *  connection may move], animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets,
- *  not_understood: [], warnings: []}. Throws types::ConfigError for a file that cannot be read. */
-Json sceneReport(const std::string& file) {
-    const scene::Scene scene = scene::readScene(file);
+ *  omitted: [{name, reason}] of what is not heard, not_understood: [], warnings: []}. Throws types::ConfigError for a
+ * file that cannot be read. */
+Json sceneReport(const std::string& file, const scene::Unheard& unheard) {
+    const scene::Scene scene = scene::withoutUnheard(scene::readScene(file), unheard);
     const types::GeometryPtr named = scene::takeNames(scene.geometry);
     const types::Geometry& geometry = *named;
     const types::Extent extent = types::extentOf(geometry);
@@ -160,6 +163,10 @@ Json sceneReport(const std::string& file) {
         if (surfaces.triangles[i] > 0)
             materials.push_back(jsonOf(geometry.materials[i], surfaces.triangles[i], surfaces.areas[i]));
     for (const scene::Node& node : scene.nodes) nodes.push_back(node.name);
+    Json omitted = Json::array(), warnings = warningsOf(file, geometry, extent, materials);
+    for (const types::Omission& omission : scene.omitted)
+        omitted.push_back({{"name", omission.name}, {"reason", omission.reason}});
+    for (const std::string& warning : scene.warnings) warnings.push_back(warning);
     return {{"file", file},
             {"axes", axesOf(file)},
             {"bounds", jsonOf(extent)},
@@ -169,13 +176,19 @@ Json sceneReport(const std::string& file) {
             {"nodes", nodes},
             {"animations", animationsOf(scene)},
             {"deforming", scene.animations ? scene.animations->objects.size() : 0},
+            {"omitted", omitted},
             {"not_understood", geometry.notices},
-            {"warnings", warningsOf(file, geometry, extent, materials)}};
+            {"warnings", warnings}};
 }
 
+/** Returns three lengths [m], to six digits and at least to the millimetre. */
 std::string text(const Json& vector) {
-    return fmt::format("{:.6g}, {:.6g}, {:.6g}", vector[0].get<double>(), vector[1].get<double>(),
-                       vector[2].get<double>());
+    const auto number = [&](size_t i) {
+        const double value = vector[i].get<double>();
+        return std::abs(value) < 1000 ? fmt::format("{:.6g}", value)
+                                      : fmt::format("{:.12g}", std::round(value * 1e3) / 1e3);
+    };
+    return fmt::format("{}, {}, {}", number(0), number(1), number(2));
 }
 
 void printExtent(const Json& bounds) {
@@ -254,6 +267,8 @@ void printScene(const Json& scene) {
     for (const Json& material : scene["materials"]) printMaterial(material);
     printObjects(scene["objects"]);
     printAnimations(scene);
+    for (const Json& each : scene["omitted"])
+        command::printResult("not heard: {}: {}\n", each["name"].get<std::string>(), each["reason"].get<std::string>());
     for (const Json& line : scene["not_understood"])
         command::printResult("omitted or repaired: {}\n", line.get<std::string>());
     for (const Json& line : scene["warnings"]) command::printResult("warning: {}\n", line.get<std::string>());
@@ -266,8 +281,8 @@ bool isSceneName(const std::string& name) {
     return scene::isGltf(name) || extension == ".world" || extension == ".sdf" || extension == ".urdf";
 }
 
-int showScene(const std::string& file, bool json) {
-    const Json scene = sceneReport(file);
+int showScene(const std::string& file, bool json, const scene::Unheard& unheard) {
+    const Json scene = sceneReport(file, unheard);
     json ? print(scene) : printScene(scene);
     return 0;
 }
@@ -332,17 +347,25 @@ void addSceneCommand(CLI::App& app, Action& action) {
     struct Options {
         std::string file;
         bool json = false;
+        scene::Unheard unheard;
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command =
         app.add_subcommand("scene", "Prints what a scene contains: its box, axes, materials, objects; or makes one");
     command->add_option("FILE", options->file, "a .gltf, .glb, .world, .sdf or .urdf file");
     command->add_flag("--json", options->json, "for machines");
+    command
+        ->add_option("--omit", options->unheard.names,
+                     "as `omit` of scene::SceneTask: a name that is not heard, * is any text; may be repeated")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    command->add_option("--water-surface", options->unheard.water_surface, "as `water_surface` of scene::SceneTask [m]")
+        ->type_name("Z");
     addMakeCommand(*command, action);
     command->callback([options, command, &action] {
         if (!command->get_subcommands().empty()) return;
         if (options->file.empty()) throw CLI::RequiredError("FILE");
-        action = [options] { return showScene(exampleAt(options->file), options->json); };
+        action = [options] { return showScene(exampleAt(options->file), options->json, options->unheard); };
     });
 }
 

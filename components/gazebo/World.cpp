@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gazebo_messages.pb.h>  // made by the build, of messages.proto
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -51,12 +52,21 @@ std::string reasonAgainst(const meshes::Shape& shape) {
     return "";
 }
 
+/** Whether a visual of a model casts a shadow. */
+bool castsShadows(const wire::Model& model) {
+    const auto has = [](const auto& holder) {
+        return std::ranges::any_of(holder.visual(), &wire::Visual::cast_shadows);
+    };
+    return has(model) || std::ranges::any_of(model.link(), has) || std::ranges::any_of(model.model(), castsShadows);
+}
+
 class SceneReader {
 public:
     explicit SceneReader(const std::filesystem::path& folder) : builder_(folder / "world") {}
 
     World read(const wire::Scene& message) {
         for (const wire::Light& light : message.light()) names_.insert(light.name());
+        sends_shadows_ = std::ranges::any_of(message.model(), castsShadows);
         for (const wire::Model& model : message.model()) addModel(model, "", -1, glm::dmat4(1));
         return {builder_.take(), std::move(names_)};
     }
@@ -111,7 +121,9 @@ private:
                                       ? reasonAgainst(shape)
                                       : "its pose is not finite, or its orientation has no length";
         if (!fault.empty()) return builder_.leaveOut(name, fault);
-        builder_.addVisual(name, node, node_from_visual, shape, {materialOf(visual, holders), {}});
+        builder_.addVisual(
+            name, node, node_from_visual, shape, {materialOf(visual, holders), {}},
+            {.transparency = visual.transparency(), .casts_shadow = visual.cast_shadows() || !sends_shadows_});
     }
 
     /** Returns the name of a material. Gazebo sends colours, but no names of materials; the name is that of the visual,
@@ -179,6 +191,7 @@ private:
 
     meshes::WorldBuilder builder_;
     std::set<std::string> names_;
+    bool sends_shadows_ = false;  ///< Whether any visual has cast_shadows, which is absent where it is false.
     size_t parts_ = 0;
 };
 

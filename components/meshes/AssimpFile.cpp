@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "components/scene/Gltf.hpp"
+
 namespace insonify::meshes {
 
 using namespace scene;
@@ -86,9 +88,10 @@ std::string shortened(const std::string& text) {
 
 }  // namespace
 
-FileMeshes readByAssimp(const std::filesystem::path& file, const glm::dmat4& world_from_file) {
+FileMeshes readByAssimp(const std::filesystem::path& file, MeshAxes axes) {
     Assimp::Importer importer;
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not ids
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, axes == MeshAxes::AsStored);  // else y-up
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);                          // not ids
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                                             aiComponent_COLORS | aiComponent_TEXCOORDS |
                                                             aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
@@ -104,7 +107,7 @@ FileMeshes readByAssimp(const std::filesystem::path& file, const glm::dmat4& wor
         const aiMesh& mesh = *from->mMeshes[i];
         meshes.parts.push_back({mesh.mName.C_Str(), mesh.mMaterialIndex, surfaceOf(mesh)});
     }
-    meshes.placings = placingsOf(*from, world_from_file);
+    meshes.placings = placingsOf(*from, axes == MeshAxes::ZUp ? z_up_from_y_up : glm::dmat4(1));
     return meshes;
 }
 

@@ -10,6 +10,12 @@
 
 namespace insonify::meshes {
 
+/** The axes in which a mesh is placed. */
+enum class MeshAxes {
+    AsStored,  ///< Those of the file's numbers, whatever it declares as up: Gazebo and RViz read meshes this way.
+    ZUp        ///< The file's up axis turned to z: that of .dae as it declares it, y of .gltf and .glb.
+};
+
 /** The triangles of a mesh file as stored, before any is dropped or grouped into clusters. */
 struct FileMeshes {
     struct Part {

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <glm/matrix.hpp>
 
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Clusters.hpp"
@@ -148,12 +149,23 @@ std::vector<types::Mesh> meshesOf(FileMeshes& from, std::vector<std::string>& no
     return meshes;
 }
 
-types::GeometryPtr readApart(const std::filesystem::path& file, bool is_y_up) {
+types::GeometryPtr readGltfMesh(const std::filesystem::path& file, MeshAxes axes) {
+    const Scene scene = readGltf(file);
+    types::Geometry geometry = *scene.geometry;
+    for (const types::Omission& omission : scene.omitted)
+        geometry.notices.push_back(fmt::format("not heard: {}: {}", omission.name, omission.reason));
+    if (axes == MeshAxes::AsStored)
+        for (types::Object& object : geometry.objects)
+            object.world_from_object = glm::transpose(z_up_from_y_up) * object.world_from_object;
+    return std::make_shared<const types::Geometry>(std::move(geometry));
+}
+
+types::GeometryPtr readApart(const std::filesystem::path& file, MeshAxes axes) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error))
         throw types::ConfigError(file.string(), "", "is not a file; give the path of a .dae, .obj or .stl file");
     const ReadLimits limits = ReadLimits::forFile(std::filesystem::file_size(file, error));
-    FileMeshes from = readMeshesApart(file, is_y_up, limits);
+    FileMeshes from = readMeshesApart(file, axes, limits);
     auto geometry = std::make_shared<types::Geometry>();
     for (const std::string& name : from.materials) geometry->materials.emplace_back().name = name;
     geometry->meshes = meshesOf(from, geometry->notices);
@@ -175,13 +187,13 @@ ReadLimits ReadLimits::forFile(uintmax_t bytes) {
     return limits;
 }
 
-FileMeshes readMeshesApart(const std::filesystem::path& file, bool is_y_up, const ReadLimits& limits) {
+FileMeshes readMeshesApart(const std::filesystem::path& file, MeshAxes axes, const ReadLimits& limits) {
     MemoryFile memory(file);
     const SpawnSettings settings(memory.descriptor());
     pid_t process = -1;
     const std::filesystem::path reader = findReader(file);
     const int error = settings.start(
-        {reader, std::filesystem::absolute(file), is_y_up ? "y" : "z", std::to_string(limits.processor_s),
+        {reader, std::filesystem::absolute(file), axes == MeshAxes::ZUp ? "z" : "s", std::to_string(limits.processor_s),
          std::to_string(limits.wall_s), std::to_string(limits.memory)},
         process);
     if (error != 0) refuseForSystem(file, reader.c_str(), error);
@@ -196,11 +208,11 @@ FileMeshes readMeshesApart(const std::filesystem::path& file, bool is_y_up, cons
     return std::move(reply.meshes);
 }
 
-types::GeometryPtr readMeshFile(const std::filesystem::path& file) {
+types::GeometryPtr readMeshFile(const std::filesystem::path& file, MeshAxes axes) {
     const std::string extension = extensionOf(file);
-    if (extension == ".gltf" || extension == ".glb") return readGltf(file).geometry;
-    if (extension == ".dae") return readApart(file, true);  // turned to y-up and metres by its importer
-    if (extension == ".obj" || extension == ".stl") return readApart(file, false);
+    if (isGltf(file)) return readGltfMesh(file, axes);
+    if (extension == ".dae") return readApart(file, axes);
+    if (extension == ".obj" || extension == ".stl") return readApart(file, MeshAxes::AsStored);
     throw types::ConfigError(file.string(), "",
                              fmt::format("has extension \"{}\"; may be .dae, .obj, .stl, .gltf or .glb", extension));
 }

@@ -21,18 +21,18 @@ struct ReadLimits {
     static ReadLimits forFile(uintmax_t bytes);
 };
 
-/** Reads a mesh file in a separate process, within limits, and turns it to z-up if `is_y_up`.
+/** Reads a mesh file in a separate process, within limits.
  *
  *  The process is the program insonify-read-mesh in the folder of the component libraries; the environment variable
  *  INSONIFY_MESH_READER names another. However that process ends, this process continues: a types::ConfigError names
  *  the file, the failure and the remedy. Safe to call from any thread. */
-FileMeshes readMeshesApart(const std::filesystem::path& file, bool is_y_up, const ReadLimits& limits);
+FileMeshes readMeshesApart(const std::filesystem::path& file, MeshAxes axes, const ReadLimits& limits);
 
 /** Reads a mesh that a scene refers to: .dae, .obj, .stl, .gltf or .glb.
  *
- *  Objects are placed as in the file, in metres and z-up. The unit and up axis of .dae are applied; .gltf and .glb are
- *  y-up; .obj and .stl specify neither and are taken as they are. Geometry::notices lists what was omitted. Throws
+ *  Objects are placed as in the file, in metres: the unit of .dae is applied; .gltf and .glb are in metres; .obj and
+ *  .stl specify neither unit nor up axis and are taken as they are. Geometry::notices lists what was omitted. Throws
  *  types::ConfigError for a file of another kind, a damaged file, or a file without triangles. */
-types::GeometryPtr readMeshFile(const std::filesystem::path& file);
+types::GeometryPtr readMeshFile(const std::filesystem::path& file, MeshAxes axes);
 
 }  // namespace insonify::meshes

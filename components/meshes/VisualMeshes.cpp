@@ -45,7 +45,7 @@ const types::GeometryPtr& VisualMeshes::readOnce(const std::filesystem::path& pa
     const auto [known, is_new] = files_.try_emplace(path.string());
     FileRead& read = known->second;
     if (is_new) try {
-            read.geometry = readMeshFile(path);
+            read.geometry = readMeshFile(path, MeshAxes::AsStored);
             for (const std::string& notice : read.geometry->notices)
                 geometry_.notices.push_back(fmt::format("{}: {}", path.string(), notice));
         } catch (const types::ConfigError& failure) {

@@ -81,7 +81,7 @@ int WorldBuilder::addNode(const std::string& name, int parent, const glm::dmat4&
 }
 
 void WorldBuilder::addVisual(const std::string& name, int node, const glm::dmat4& node_from_visual, const Shape& shape,
-                             const Look& look) {
+                             const Look& look, const Drawing& drawing) {
     for (const Placing& placing : placingsOf(name, shape, look)) {
         const glm::dmat4 node_from_object = node_from_visual * placing.visual_from_object;
         const glm::dmat4 world_from_object = worldFromNode(node) * node_from_object;
@@ -92,6 +92,7 @@ void WorldBuilder::addVisual(const std::string& name, int node, const glm::dmat4
         geometry_.objects.push_back({object_names_.add(name), placing.mesh, world_from_object});
         scene_.object_nodes.push_back(node);
         scene_.node_from_object.push_back(node_from_object);
+        scene_.drawings.push_back(drawing);
     }
 }
 

@@ -71,7 +71,7 @@ public:
 
     /** Adds a visual. `name` starts with the names of its model and link. */
     void addVisual(const std::string& name, int node, const glm::dmat4& node_from_visual, const Shape& shape,
-                   const Look& look);
+                   const Look& look, const scene::Drawing& drawing);
     /** Adds a notice with the reason why a visual is omitted. */
     void leaveOut(const std::string& visual, const std::string& why);
     void notice(std::string text) { geometry_.notices.push_back(std::move(text)); }

@@ -11,10 +11,8 @@
 #include <new>
 
 #include "components/meshes/AssimpFile.hpp"
-#include "components/scene/Gltf.hpp"
 
 using namespace insonify::meshes;
-using insonify::scene::z_up_from_y_up;
 
 #ifdef __SANITIZE_ADDRESS__
 /** The address sanitizer reserves unlimited address space, so it has to limit memory itself. */
@@ -47,8 +45,8 @@ void limitAll(unsigned processor_s, unsigned wall_s, rlim_t memory) {
     alarm(wall_s);
 }
 
-MeshReply read(const char* file, bool is_y_up) try {
-    return {"", readByAssimp(file, is_y_up ? z_up_from_y_up : glm::dmat4(1))};
+MeshReply read(const char* file, MeshAxes axes) try {
+    return {"", readByAssimp(file, axes)};
 } catch (const std::bad_alloc&) {
     return {"needs more memory than a file of its size may take", {}};
 } catch (const std::exception& failure) {
@@ -65,6 +63,6 @@ int main(int argc, char** argv) {
     }
     limitAll(static_cast<unsigned>(std::atoi(argv[3])), static_cast<unsigned>(std::atoi(argv[4])),
              std::strtoull(argv[5], nullptr, 10));
-    const bool is_y_up = *argv[2] == 'y';
-    _exit(writeReply(read(argv[1], is_y_up), reply) ? 0 : 3);  // skips cleanup, which could crash as well
+    const MeshAxes axes = *argv[2] == 'z' ? MeshAxes::ZUp : MeshAxes::AsStored;
+    _exit(writeReply(read(argv[1], axes), reply) ? 0 : 3);  // skips cleanup, which could crash as well
 }

@@ -78,11 +78,11 @@ void SoundingMap::drawLabels(cv::Mat& canvas, const Bounds& bounds) const {
     Chart::labelBar(overlay, bounds.high.z, bounds.low.z);
     const double step = roundStep(90 / pixels_per_m_);
     for (double y = step * std::ceil(bounds.low.y / step); y <= bounds.high.y; y += step)
-        overlay.text(fmt::format("y {:g}", y + 0.0), {static_cast<double>(pixel(0, y).x), chart_.area().br().y + 16.0},
-                     Anchor::Centre);
+        overlay.text(fmt::format("y {:.12g}", y + 0.0),
+                     {static_cast<double>(pixel(0, y).x), chart_.area().br().y + 16.0}, Anchor::Centre);
     for (double x = step * std::ceil(bounds.low.x / step); x <= bounds.high.x; x += step)
         if (const double row = pixel(x, 0).y; row > Chart::colour_bar.y + colour_bar_size.height + 20)
-            overlay.text(fmt::format("x {:g}", x + 0.0), {Chart::left_margin - 8.0, row}, Anchor::Right);
+            overlay.text(fmt::format("x {:.12g}", x + 0.0), {Chart::left_margin - 8.0, row}, Anchor::Right);
     Chart::addTitle(overlay, fmt::format("{} soundings, x north, y west [m], colour: height", bounds.points));
     overlay.finish();
     overlay.blend(canvas);

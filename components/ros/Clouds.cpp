@@ -9,6 +9,7 @@
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/RequireSound.hpp"
+#include "types/WorldPlaces.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -46,6 +47,12 @@ private:
     uint32_t offset_ = 0;
     bool double_ = false;
 };
+
+template <class Number>
+void append(Number number, std::vector<uint8_t>& bytes) {
+    const auto* const begin = reinterpret_cast<const uint8_t*>(&number);
+    bytes.insert(bytes.end(), begin, begin + sizeof number);
+}
 
 bool hasField(const PointCloud2& cloud, const char* name) {
     return std::ranges::any_of(cloud.fields, [&](const PointField& field) { return field.name == name; });
@@ -87,10 +94,20 @@ void convert(const types::PointCloud& cloud, WorldFrame frame, PointCloud2& mess
     types::requireSound(cloud, "the cloud");
     message.header.stamp = toRos(cloud.time);
     message.header.frame_id = "map";
-    beginCloud({"x", "y", "z", "intensity"}, message);
+    const bool is_far = std::ranges::any_of(cloud.points, types::isFarOut);
+    const uint32_t size = is_far ? sizeof(double) : sizeof(float);
+    beginCloud({}, message);
+    for (const char* name : {"x", "y", "z"}) {
+        message.fields.push_back({name, message.point_step, is_far ? PointField::float64 : PointField::float32, 1});
+        message.point_step += size;
+    }
+    message.fields.push_back({"intensity", message.point_step, PointField::float32, 1});
+    message.point_step += sizeof(float);
     for (size_t k = 0; k < cloud.points.size(); ++k) {
-        const glm::vec3 p(worldFromRock(frame, cloud.points[k]));
-        addPoint({p.x, p.y, p.z, static_cast<float>(cloud.intensity(k))}, message);
+        const glm::dvec3 p = worldFromRock(frame, cloud.points[k]);
+        for (int axis = 0; axis < 3; ++axis)
+            is_far ? append(p[axis], message.data) : append(static_cast<float>(p[axis]), message.data);
+        append(static_cast<float>(cloud.intensity(k)), message.data);
     }
     endCloud(1, message);
 }

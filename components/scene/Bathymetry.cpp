@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <set>
 #include <utility>
 
 #include "components/scene/Clusters.hpp"
 #include "components/scene/SurfaceMaps.hpp"
 #include "types/ConfigError.hpp"
+#include "types/WorldPlaces.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -166,18 +168,29 @@ void Bathymetry::addMap(const PostWindow& posts, const std::vector<int>& materia
         }
 }
 
+glm::dvec3 Bathymetry::inWorld(int column, int row) const {
+    const glm::dvec2 at = survey_->place(column, row);
+    return {at.y - zero_.y, zero_.x - at.x, 0};
+}
+
+glm::dvec3 Bathymetry::originOf(const Tile& tile) const {
+    const glm::dvec3 first = inWorld(tile.first * config_.tile, tile.second * config_.tile);
+    return types::isFarOut(first) ? first : glm::dvec3(0);
+}
+
 types::MeshPtr Bathymetry::meshOf(const Tile& tile, const std::vector<int>& materials) const {
     const PostWindow posts =
         clipped({tile.first * config_.tile, tile.second * config_.tile, config_.tile + 1, config_.tile + 1}, *survey_);
     if (posts.isEmpty()) return nullptr;
     const std::vector<float> values = survey_->read(posts);
     Surface surface;
+    const glm::dvec3 origin = originOf(tile);
     surface.positions.reserve(values.size());
     for (int row = 0, i = 0; row < posts.rows; ++row)
         for (int column = 0; column < posts.columns; ++column, ++i) {
-            const glm::dvec2 at = survey_->place(posts.column + column, posts.row + row);
+            const glm::dvec3 at = inWorld(posts.column + column, posts.row + row) - origin;
             const double up = double(values[static_cast<size_t>(i)]) * (config_.positive_down ? -1 : 1);
-            surface.positions.emplace_back(at.y - zero_.y, zero_.x - at.x, up);
+            surface.positions.emplace_back(at.x, at.y, up);
         }
     addTriangles(values, posts, survey_->spacing().x * survey_->spacing().y > 0, surface);
     types::Mesh mesh;
@@ -284,7 +297,8 @@ types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::Geome
     for (const Tile& tile : tiles) {
         types::MeshPtr mesh = wait(tile);
         if (!mesh) continue;
-        geometry->objects.push_back({floor_name, static_cast<int>(geometry->meshes.size()), glm::dmat4(1), true});
+        const glm::dmat4 world_from_tile = glm::translate(glm::dmat4(1), originOf(tile));
+        geometry->objects.push_back({floor_name, static_cast<int>(geometry->meshes.size()), world_from_tile, true});
         geometry->meshes.push_back(std::move(mesh));
     }
     tiles.insert(tiles.end(), around_.begin(), around_.end());

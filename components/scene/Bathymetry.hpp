@@ -61,6 +61,11 @@ private:
     PostWindow postsAbout(const glm::dvec3& place) const;
     PostWindow wholeTiles(const PostWindow& posts) const;
     std::vector<Tile> tilesOf(const PostWindow& posts) const;
+    /** Returns the place of a post in the world, at height 0. */
+    glm::dvec3 inWorld(int column, int row) const;
+    /** Returns the origin of a tile's mesh in the world: its first post if that is far from the world's, else the
+     * world's. */
+    glm::dvec3 originOf(const Tile& tile) const;
     types::MeshPtr meshOf(const Tile& tile, const std::vector<int>& materials) const;
     /** Maps the mosaic onto a tile, whose positions are those of posts. */
     void addMap(const PostWindow& posts, const std::vector<int>& materials, Surface& surface, types::Mesh& mesh) const;

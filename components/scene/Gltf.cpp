@@ -173,6 +173,7 @@ private:
         const bool deforms = node.skin != -1 || targetCount(gltf_, static_cast<size_t>(node.mesh)) > 0;
         const int mesh = deforms ? deformingIndex(number, path) : meshIndex(static_cast<size_t>(node.mesh));
         if (mesh == no_mesh) return;
+        drawn_.transparency = 1 - meshes_.opacityOfMesh(static_cast<size_t>(node.mesh));
         const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
         if (instancing == node.extensions.end()) return addObject(name, mesh, world_from_node, glm::dmat4(1), path);
         const std::vector<glm::dmat4> instances =
@@ -194,6 +195,7 @@ private:
         geometry_.objects.push_back({name, mesh, world_from_object});
         scene_.object_nodes.push_back(static_cast<int>(scene_.nodes.size()) - 1);
         scene_.node_from_object.push_back(node_from_object);
+        scene_.drawings.push_back(drawn_);
     }
 
     std::vector<glm::dmat4> readInstances(const tinygltf::Value& extension, const std::string& path) const {
@@ -340,6 +342,9 @@ private:
         count(not_animated_[0], "channels of animations omitted, they animate what is not read");
         count(not_animated_[1], "channels of animations omitted, their nodes are not in the scene");
         count(not_animated_[2], "channels of animations omitted, an earlier one animates the same");
+        for (const int material : omissions.invisible)
+            scene_.omitted.push_back({geometry_.materials[static_cast<size_t>(material)].name,
+                                      "the material is wholly transparent (alpha) and has no acoustics"});
         if (geometry_.objects.empty()) notices.push_back("the scene has no triangles: an empty sea");
     }
 
@@ -355,6 +360,7 @@ private:
     std::vector<std::pair<size_t, std::future<types::Mesh>>> building_;
     std::map<size_t, int> mesh_indices_;
     UniqueNames names_;
+    Drawing drawn_;  ///< Of the objects of the present node.
     size_t flat_objects_ = 0;
     std::array<size_t, 3> not_animated_{};     ///< Channels of other paths, outside of the scene, doubled.
     std::vector<int> node_in_scene_;           ///< One per node of the file, -1 if it is not in the scene.

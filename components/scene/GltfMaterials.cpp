@@ -304,6 +304,14 @@ private:
     std::string path_;  ///< Path of the current map.
 };
 
+/** Returns the alpha of a material's base colour as far as it is drawn: a texture can only lower it. */
+float opacityOf(const tinygltf::Material& from) {
+    const std::vector<double>& colour = from.pbrMetallicRoughness.baseColorFactor;
+    const double alpha = colour.size() == 4 ? colour[3] : 1;
+    if (from.alphaMode == "BLEND") return static_cast<float>(std::clamp(alpha, 0.0, 1.0));
+    return from.alphaMode == "MASK" && alpha < from.alphaCutoff ? 0.0f : 1.0f;
+}
+
 }  // namespace
 
 std::vector<MaterialMaps> readMaterials(const GltfFile& gltf, const GltfAccessors& accessors,
@@ -329,6 +337,7 @@ std::vector<MaterialMaps> readMaterials(const GltfFile& gltf, const GltfAccessor
             material.normal_scale = std::isfinite(scale) ? scale : 1;
         }
         MaterialMaps& own = all.emplace_back();
+        own.opacity = opacityOf(from);
         if (material.normal_map >= 0) own.normals = mapping(from.normalTexture);
         geometry.materials.push_back(std::move(material));
     }

@@ -16,8 +16,9 @@ struct NormalMapping {
     glm::mat3x2 transform{1, 0, 0, 1, 0, 0};  ///< map uv = transform * (u, v, 1)
 };
 
-/** The maps of a material, and how they are placed on meshes. */
+/** The maps of a material, how they are placed on meshes, and how the material is drawn. */
 struct MaterialMaps {
+    float opacity = 1;                     ///< Of its drawing: 0 is invisible [1].
     std::optional<NormalMapping> normals;  ///< None: no normal map.
     NormalMapping on_surface;
     std::shared_ptr<const types::SurfaceMap> surface;  ///< Null: no surface map.

@@ -80,6 +80,13 @@ int GltfMeshes::material(const tinygltf::Primitive& primitive, const std::string
     return default_material_;
 }
 
+float GltfMeshes::opacityOfMesh(size_t mesh) const {
+    const auto& primitives = gltf_.model.meshes[mesh].primitives;
+    float opacity = primitives.empty() ? 1 : 0;
+    for (const tinygltf::Primitive& primitive : primitives) opacity = std::max(opacity, opacityOf(primitive.material));
+    return opacity;
+}
+
 int GltfMeshes::withoutMap(int material, bool of_surface) {
     ++omissions_.unmapped_primitives;
     const auto [known, is_new] =
@@ -133,6 +140,9 @@ void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string&
     const int mode = modeOf(primitive);
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN) fail(path + ".mode", fmt::format("is {}; may be 0 to 6", mode));
     if (mode < TINYGLTF_MODE_TRIANGLES) return void(++omissions_.other_primitives);
+    const int drawn = material(primitive, path);
+    if (opacityOf(drawn) == 0 && !geometry_.materials[static_cast<size_t>(drawn)].has_acoustics)
+        return void(omissions_.invisible.insert(drawn));
 
     Surface surface = surfaceOf(primitive, positions->second, path);
     if (surface.indices.empty()) return;

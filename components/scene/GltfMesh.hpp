@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct Omissions {
     DroppedTriangles dropped;
     size_t other_primitives = 0;     ///< Points and lines.
     size_t unmapped_primitives = 0;  ///< Primitives with a map but without texture coordinates for it.
+    std::set<int> invisible;         ///< Materials whose triangles are wholly transparent and have no acoustic values.
     size_t unweighted_vertices = 0;  ///< Vertices of skins without weights; they follow the first joint.
 };
 
@@ -34,6 +36,8 @@ public:
      *  @param joints  of its skin; 0: it has none */
     types::Mesh readDeforming(size_t mesh, size_t joints);
     const Omissions& omissions() const { return omissions_; }
+    /** Returns the opacity of the most opaque material of a mesh of the file [1]. */
+    float opacityOfMesh(size_t mesh) const;
 
 private:
     void append(const tinygltf::Primitive& primitive, const std::string& path, types::Mesh& mesh);
@@ -46,6 +50,7 @@ private:
     const MaterialMaps* mapsOf(int material) const {
         return static_cast<size_t>(material) < maps_.size() ? &maps_[static_cast<size_t>(material)] : nullptr;
     }
+    float opacityOf(int material) const { return mapsOf(material) ? mapsOf(material)->opacity : 1; }
     void charge(size_t vertices, const std::string& path);
     struct Attributes;
     [[noreturn]] void fail(const std::string& path, const std::string& message) const;

@@ -6,6 +6,7 @@
 
 #include "components/scene/Animation.hpp"
 #include "types/Geometry.hpp"
+#include "types/Plan.hpp"
 
 namespace insonify::scene {
 
@@ -17,6 +18,14 @@ struct Node {
     glm::dvec3 scale{1};             ///< The scale given with translation and rotation; 1 for a matrix.
 };
 
+/** How an object is drawn by the program for which its file was made. It distinguishes drawings from bodies. */
+struct Drawing {
+    double transparency = 0;  ///< 0 is opaque, 1 invisible [1].
+    bool casts_shadow = true;
+    bool is_for_some = false;  ///< Only some cameras see it.
+    bool is_for_none = false;  ///< No camera sees it.
+};
+
 /** A scene file: immutable geometry, and the tree of nodes that defines which objects move together. */
 struct Scene {
     types::GeometryPtr geometry;
@@ -25,6 +34,9 @@ struct Scene {
     std::vector<glm::dmat4> node_from_object;           ///< For each object; 1 except for instances and visuals.
     glm::dmat4 z_up_from_file{1};                       ///< The turn of the file's axes to the world's.
     std::shared_ptr<const Animations> animations = {};  ///< Null: nothing moves by itself, nor is deformed.
+    std::vector<Drawing> drawings = {};                 ///< Empty, or one for each object.
+    std::vector<types::Omission> omitted = {};  ///< Objects and materials of the file that are not heard, and why.
+    std::vector<std::string> warnings = {};     ///< Of what is omitted or may have to be, a sentence each.
 };
 
 /** An object that moves with a node. */

@@ -86,6 +86,8 @@ struct SceneConfig {
     std::map<std::string, double> scale;
     Mount mount;
     std::optional<double> water_surface, pose_timeout, extrapolate;
+    std::vector<std::string> omit = {};
+    bool omit_drawings = true;
     std::map<std::string, Acoustics> materials;
     bool materials_by_name = true;
     std::vector<TargetConfig> targets;
@@ -109,6 +111,15 @@ struct SceneConfig {
             self.scale);
         visit({"mount", "", "the sonar in the body"}, self.mount);
         visit({"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
+        visit({"omit", "",
+               "names of nodes, models, links and visuals that are not heard, with all below them; * is any text; "
+               "absent: "
+               "none"},
+              self.omit);
+        visit({"omit_drawings", "",
+               "whether drawn water and invisible visuals are not heard, unless they have acoustics; false: all is "
+               "heard"},
+              self.omit_drawings);
         visit({"pose_timeout", "s",
                "max age of the newest pose, of the body and of each connected node; absent: 1 in realtime, else "
                "no limit",

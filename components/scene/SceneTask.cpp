@@ -12,6 +12,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/Drawings.hpp"
 #include "components/scene/MaterialNames.hpp"
 #include "types/Quaternion.hpp"
 
@@ -63,11 +64,17 @@ std::shared_ptr<const Scene> SceneTask::loadModels() const {
         }
     }
     if (models && config->placement) models = std::make_shared<const Scene>(placed(*models, *config->placement));
-    if (!models || config->scale.empty()) return models;
+    if (!models) return models;
     types::Diagnostics diagnostics;
-    models = std::make_shared<const Scene>(scaled(*models, config->scale, diagnostics));
+    if (!config->scale.empty()) models = std::make_shared<const Scene>(scaled(*models, config->scale, diagnostics));
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
-    return models;
+    return std::make_shared<const Scene>(withoutUnheard(*models, unheard()));
+}
+
+Unheard SceneTask::unheard() const {
+    Unheard unheard{config->omit, config->omit_drawings, config->water_surface, {}};
+    for (const auto& [name, acoustics] : config->materials) unheard.solid.insert(name);
+    return unheard;
 }
 
 std::shared_ptr<const Scene> SceneTask::load() const {
@@ -75,7 +82,8 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     const bool has_survey = config->bathymetry.has_value();
     const std::optional<MosaicConfig> map = has_survey ? config->bathymetry->map : std::nullopt;
     if (scene_ && scene_file_ == file && scene_gazebo_ == config->gazebo && scene_has_survey_ == has_survey &&
-        scene_map_ == map && scene_placement_ == config->placement && scene_scale_ == config->scale)
+        scene_map_ == map && scene_placement_ == config->placement && scene_scale_ == config->scale &&
+        scene_unheard_ == unheard())
         return scene_;
     if (config->file.empty() && !config->gazebo && !has_survey)
         throw types::ConfigError(
@@ -95,6 +103,7 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     scene_map_ = map;
     scene_placement_ = config->placement;
     scene_scale_ = config->scale;
+    scene_unheard_ = unheard();
     return scene_;
 }
 
@@ -174,6 +183,7 @@ std::string SceneTask::indivisible() const {
 
 std::vector<std::string> SceneTask::notices() const {
     std::vector<std::string> all = geometry_ ? geometry_->notices : std::vector<std::string>{};
+    if (scene_) addOmissions(*scene_, all);
     if (!lay_.empty()) all.push_back(lay_);
     if (!side_.empty()) all.push_back("Warning: " + side_);
     if (animator_) all.insert(all.end(), animator_->notices().begin(), animator_->notices().end());

@@ -14,6 +14,7 @@
 #include "components/framework/TaskContext.hpp"
 #include "components/scene/Animator.hpp"
 #include "components/scene/Bathymetry.hpp"
+#include "components/scene/Drawings.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "components/scene/Targets.hpp"
@@ -95,6 +96,8 @@ private:
     std::shared_ptr<const Scene> load() const;
     /** Returns the models of the file or of Gazebo, placed and scaled; null if neither is configured. */
     std::shared_ptr<const Scene> loadModels() const;
+    /** Returns what of the models is not heard. */
+    Unheard unheard() const;
     /** Loads the scene again if Gazebo has not answered before. */
     std::shared_ptr<const Scene> loadToRun();
     std::string layText(const Scene& scene) const;
@@ -119,6 +122,7 @@ private:
         gazebo_failure_;  ///< Why scene_gazebo_ could not be loaded. It is kept because asking again would wait again.
     mutable std::optional<Placement> scene_placement_;
     mutable std::map<std::string, double> scene_scale_;
+    mutable Unheard scene_unheard_;
     std::string lay_;                                ///< How the scene is oriented; empty if it need not be reported.
     std::string side_;                               ///< Warning of a scene on its side; empty: it is not.
     mutable bool scene_has_survey_ = false;          ///< Whether scene_ has the floor's material.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
@@ -104,6 +105,14 @@ meshes::Shape shapeOf(const ::sdf::Geometry& geometry) {
     }
 }
 
+/** @param is_urdf whether the alpha of the colour is the visual's transparency, which SDF gives apart */
+Drawing drawingOf(const ::sdf::Visual& visual, bool is_urdf) {
+    constexpr uint32_t for_all = 0xffffffff;  // every camera's mask
+    const double alpha = is_urdf && visual.Material() ? static_cast<double>(visual.Material()->Diffuse().A()) : 1;
+    return {std::max<double>(visual.Transparency(), 1 - alpha), visual.CastShadows(),
+            visual.VisibilityFlags() != for_all && visual.VisibilityFlags() != 0, visual.VisibilityFlags() == 0};
+}
+
 class SdfReader {
 public:
     explicit SdfReader(const std::filesystem::path& file) : file_(std::filesystem::absolute(file)), builder_(file_) {}
@@ -170,7 +179,8 @@ private:
                 mesh->named_in = file_;
             if (const types::Diagnostic fault = meshes::faultOf(shape); !fault.message.empty())
                 fail(*visual.Element(), fmt::format("{}.{}", visual_name, fault.path), fault.message);
-            builder_.addVisual(visual_name, node, link_from_visual, shape, look);
+            builder_.addVisual(visual_name, node, link_from_visual, shape, look,
+                               drawingOf(visual, !urdf_.text.empty()));
         }
     }
 

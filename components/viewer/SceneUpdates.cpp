@@ -10,6 +10,7 @@
 #include "components/viewer/FoxgloveMessages.hpp"
 #include "types/Ascii.hpp"
 #include "types/PosedMesh.hpp"
+#include "types/WorldPlaces.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -33,15 +34,19 @@ foxglove::Color colourOf(const types::Geometry& geometry, int material) {
     return found == tints.end() ? foxglove::Color{0.55, 0.58, 0.6, 1} : found->colour;
 }
 
-/** Returns the triangles of an object, with points in the axes of a frame. */
+/** Returns the triangles of an object, with points in the axes of a frame. Programs draw points in 32 bits: those of an
+ *  object far from the frame's origin are relative to the pose of the triangles. */
 foxglove::TriangleListPrimitive trianglesOf(const Part& part, const glm::dmat4& world_from_object,
                                             ros::WorldFrame axes) {
     foxglove::TriangleListPrimitive triangles;
     triangles.indices = part.indices;
+    const glm::dvec3 place = ros::worldFromRock(axes, glm::dvec3(world_from_object[3]));
+    const glm::dvec3 origin = types::isFarOut(place) ? place : glm::dvec3(0);
+    triangles.pose.position = {origin.x, origin.y, origin.z};
     for (size_t i = 0; i + 2 < part.positions.size(); i += 3) {
         const glm::dvec4 point(part.positions[i], part.positions[i + 1], part.positions[i + 2], 1);
         const glm::dvec3 world = ros::worldFromRock(axes, glm::dvec3(world_from_object * point));
-        triangles.points.push_back({world.x, world.y, world.z});
+        triangles.points.push_back({world.x - origin.x, world.y - origin.y, world.z - origin.z});
     }
     return triangles;
 }

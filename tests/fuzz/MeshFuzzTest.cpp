@@ -7,7 +7,7 @@ namespace insonify::fuzz {
 namespace {
 
 void readMesh(const Input& input) try {
-    const types::GeometryPtr geometry = meshes::readMeshFile(input.file());
+    const types::GeometryPtr geometry = meshes::readMeshFile(input.file(), meshes::MeshAxes::ZUp);
     for (const types::Mesh& mesh : geometry->meshes) scene::expectSoundMesh(mesh, geometry->materials.size());
 } catch (const types::ConfigError& error) {
     expectOurWords(error.what());

@@ -6,6 +6,7 @@
 
 #include "components/gazebo/World.hpp"
 #include "components/gazebo/WorldWatch.hpp"
+#include "components/scene/Drawings.hpp"
 #include "components/scene/MaterialNames.hpp"
 #include "tests/gazebo/Recordings.hpp"
 #include "tests/sdf/SdfFiles.hpp"
@@ -96,6 +97,24 @@ TEST_F(WorldTest, WithoutScriptsTheMatterIsInTheNamesOfVisualsLinksAndModels) {
     for (const types::Material& material : world.scene.geometry->materials) materials.push_back(material.name);
     EXPECT_THAT(materials, ElementsAre("concrete_pier", "steel_ladder", "wood", "default"));
     EXPECT_EQ(world.scene.geometry->meshes.size(), 4u);
+}
+
+TEST_F(WorldTest, TransparencyAndShadowsAreRead) {
+    wire::Scene message;
+    wire::Model& model = addModel(message, "m");
+    addBox(model, "a").set_transparency(1);
+    addBox(model, "b").set_transparency(0.25);
+    EXPECT_TRUE(worldOf(message).scene.drawings.at(1).casts_shadow) << "nobody sends shadows";
+    addBox(model, "c").set_cast_shadows(true);
+    const World world = worldOf(message);
+    ASSERT_EQ(world.scene.drawings.size(), 3u);
+    EXPECT_EQ(world.scene.drawings[0].transparency, 1);
+    EXPECT_EQ(world.scene.drawings[1].transparency, 0.25);
+    EXPECT_FALSE(world.scene.drawings[1].casts_shadow);
+    EXPECT_TRUE(world.scene.drawings[2].casts_shadow);
+    const scene::Scene heard = scene::withoutUnheard(world.scene, {{"m::c"}, true, {}, {}});
+    ASSERT_EQ(heard.geometry->objects.size(), 1u);
+    EXPECT_EQ(heard.geometry->objects[0].name, "m::b::visual");
 }
 
 TEST_F(WorldTest, FindsAMeshOfAnotherMachineByTheEndOfItsPath) {

@@ -6,7 +6,7 @@ namespace insonify::meshes {
 
 /** A rectangle from (0, 0, 0) to (1, 2, 3) in node "near". */
 struct Dae {
-    std::string unit = "1", up_axis = "Z_UP";
+    std::string unit = "1", up_axis = "Z_UP";  // empty: no element
     std::string floats = "0 0 0 1 0 0 1 2 3 0 2 3", float_count = "12";
     std::string accessor = R"(count="4" stride="3")";
     std::string triangles = trianglesOf("0 1 2 0 2 3");
@@ -24,7 +24,7 @@ struct Dae {
         return R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="u" meter=")" +
-               unit + R"("/><up_axis>)" + up_axis + R"(</up_axis></asset>
+               unit + "\"/>" + (up_axis.empty() ? "" : "<up_axis>" + up_axis + "</up_axis>") + R"(</asset>
 <library_geometries><geometry id="g" name="plate"><mesh>
 <source id="p"><float_array id="pa" count=")" +
                float_count + "\">" + floats + R"(</float_array><technique_common>

@@ -26,7 +26,7 @@ struct MeshProcessTest : SdfFiles {
     /** Returns the error of a mesh file; empty if it was read, and then it must be sound. */
     std::string diagnosticOfMesh(const std::filesystem::path& file) const {
         try {
-            const types::GeometryPtr geometry = readMeshFile(file);
+            const types::GeometryPtr geometry = readMeshFile(file, MeshAxes::AsStored);
             for (const types::Mesh& mesh : geometry->meshes) expectSoundMesh(mesh, geometry->materials.size());
             return "";
         } catch (const types::ConfigError& error) {
@@ -127,7 +127,7 @@ TEST_F(MeshProcessTest, AFileThatTakesTooLongIsRefused) {
     }
     const auto file = write("star.obj", obj + face + "\n");
     ReadLimits limits = ReadLimits::forFile(std::filesystem::file_size(file));
-    const auto read = [&] { readMeshesApart(file, false, limits); };
+    const auto read = [&] { readMeshesApart(file, MeshAxes::AsStored, limits); };
     limits.processor_s = 1;
     expectPart(test::errorOf<types::ConfigError>(read), "star.obj: takes more than 1 s to compute; open the model");
     limits.processor_s = 100;
@@ -162,7 +162,8 @@ TEST_F(MeshProcessTest, ReadsFromManyThreadsAndWithIgnoredChildren) {
     const auto before = signal(SIGCHLD, SIG_IGN);
     std::vector<std::thread> threads;
     std::atomic<size_t> triangles = 0;
-    for (int i = 0; i < 8; ++i) threads.emplace_back([&] { triangles += readMeshFile(file)->triangleCount(); });
+    for (int i = 0; i < 8; ++i)
+        threads.emplace_back([&] { triangles += readMeshFile(file, MeshAxes::AsStored)->triangleCount(); });
     for (std::thread& thread : threads) thread.join();
     signal(SIGCHLD, before);
     EXPECT_EQ(triangles, 16u);
@@ -243,10 +244,9 @@ TEST_F(MeshProcessTest, ForeignFilesAreReadBitForBitAsWithoutAProcess) {
         const std::string extension = extensionOf(entry.path());
         if (extension != ".dae" && extension != ".obj" && extension != ".stl") continue;
         SCOPED_TRACE(entry.path());
-        const bool is_y_up = extension == ".dae";
+        const MeshAxes axes = extension == ".dae" ? MeshAxes::ZUp : MeshAxes::AsStored;
         const ReadLimits limits = ReadLimits::forFile(std::filesystem::file_size(entry.path()));
-        expectSame(readMeshesApart(entry.path(), is_y_up, limits),
-                   readByAssimp(entry.path(), is_y_up ? z_up_from_y_up : glm::dmat4(1)));
+        expectSame(readMeshesApart(entry.path(), axes, limits), readByAssimp(entry.path(), axes));
         ++files;
     }
     EXPECT_GE(files, 12u);

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "components/ros/Clouds.hpp"
@@ -54,6 +55,40 @@ TEST(CloudsTest, RestoresPointsFromEveryFrame) {
         EXPECT_EQ(back.points, twoPoints().points);
         EXPECT_EQ(back.colors, twoPoints().colors);
     }
+}
+
+TEST(CloudsTest, PointsFarFromTheOriginHave64Bits) {
+    const auto datatypes = [](const PointCloud2& message) {
+        std::vector<int> all;
+        for (const PointField& field : message.fields) all.push_back(field.datatype);
+        return all;
+    };
+    const int single = PointField::float32, twice = PointField::float64;
+    types::PointCloud cloud = twoPoints();
+    cloud.points[0] = {500'000.123456, -6'500'000.654321, -12.25};
+    for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
+        PointCloud2 message;
+        convert(cloud, frame, message);
+        EXPECT_THAT(datatypes(message), testing::ElementsAre(twice, twice, twice, single));
+        EXPECT_EQ(message.point_step, 28u);
+        EXPECT_EQ(message.width, 2u);
+        EXPECT_EQ(message.row_step, 56u);
+        types::PointCloud back;
+        convert(message, frame, back);
+        EXPECT_EQ(back.points, cloud.points);
+        EXPECT_EQ(back.colors, cloud.colors);
+    }
+    // up to 8192 m, and for points that are no numbers, 32 bits resolve half a millimetre
+    PointCloud2 message;
+    cloud.points[0] = {8192, -8191.9, std::nan("")};
+    convert(cloud, WorldFrame::AsIs, message);
+    EXPECT_THAT(datatypes(message), testing::ElementsAre(single, single, single, single));
+    types::PointCloud back;
+    convert(message, WorldFrame::AsIs, back);
+    EXPECT_NEAR(back.points[0].y, cloud.points[0].y, 5e-4);
+    cloud.points[0] = {0, 0, 8192.1};
+    convert(cloud, WorldFrame::AsIs, message);
+    EXPECT_EQ(message.fields[2].datatype, twice);
 }
 
 TEST(CloudsTest, ReadsCloudsWithDoublesAndWithoutIntensity) {

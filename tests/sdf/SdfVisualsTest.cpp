@@ -3,6 +3,7 @@
 
 #include "components/meshes/VisualMeshes.hpp"
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/Drawings.hpp"
 #include "components/scene/MaterialNames.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 
@@ -184,6 +185,43 @@ TEST_F(SdfVisualsTest, AnUnsupportedVisualIsANotice) {
                              "visuals omitted, their size is zero in some direction or not finite: 1",
                              "visual m::l::e is omitted: its geometry is not supported", "an empty sea"})
         EXPECT_TRUE(hasNotice(*scene.geometry, part)) << part;
+}
+
+TEST_F(SdfVisualsTest, MarksOfDrawingsAreRead) {
+    const Scene scene = world("<model name='m'><link name='l'>" + visual("plain", box_) +
+                              visual("clear", box_, "<transparency>0.5</transparency>") +
+                              visual("ghost", box_, "<transparency>1</transparency>") +
+                              visual("some", box_, "<visibility_flags>2</visibility_flags>") +
+                              visual("none", box_, "<visibility_flags>0</visibility_flags>") +
+                              visual("light", box_, "<cast_shadows>false</cast_shadows>") + "</link></model>");
+    ASSERT_EQ(scene.drawings.size(), 6u);
+    EXPECT_EQ(scene.drawings[0].transparency, 0);
+    EXPECT_TRUE(scene.drawings[0].casts_shadow);
+    EXPECT_FALSE(scene.drawings[0].is_for_some || scene.drawings[0].is_for_none);
+    EXPECT_EQ(scene.drawings[1].transparency, 0.5);
+    EXPECT_TRUE(scene.drawings[3].is_for_some && !scene.drawings[3].is_for_none);
+    EXPECT_TRUE(scene.drawings[4].is_for_none);
+    EXPECT_FALSE(scene.drawings[5].casts_shadow);
+    const Scene heard = withoutUnheard(scene, {});
+    EXPECT_EQ(heard.geometry->objects.size(), 4u);
+    ASSERT_EQ(heard.omitted.size(), 2u);
+    EXPECT_EQ(heard.omitted[0].name, "m::l::ghost");
+    EXPECT_EQ(heard.omitted[1].name, "m::l::none");
+}
+
+TEST_F(SdfVisualsTest, ADrawnSeaIsNotHeardAndItsFloorIs) {
+    const std::string plain = "<box><size>200 200 0.01</size></box>";
+    const Scene scene = world("<model name='ocean'><link name='link'>" +
+                              visual("water_surface", plain,
+                                     "<cast_shadows>false</cast_shadows><transparency>0.6</"
+                                     "transparency><visibility_flags>2</visibility_flags>") +
+                              visual("floor", plain, pose("0 0 -20 0 0 0")) + "</link></model>");
+    for (const Unheard& unheard : {Unheard{{}, true, 0.0, {}}, Unheard{}}) {
+        const Scene heard = withoutUnheard(scene, unheard);
+        ASSERT_EQ(heard.geometry->objects.size(), 1u);
+        EXPECT_EQ(heard.geometry->objects[0].name, "ocean::link::floor");
+    }
+    EXPECT_EQ(withoutUnheard(scene, {{"ocean"}, true, {}, {}}).geometry->objects.size(), 0u);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <glm/gtc/constants.hpp>
+#include <map>
 
 #include "tests/sdf/SdfFiles.hpp"
 
@@ -98,6 +99,22 @@ TEST_F(UrdfTest, RefusesOtherXmlAtItsLine) {
     EXPECT_THAT(diagnosticOf(robot(link("a", small_) + joint("j", "fixed", "a", "b", "xyz='0 0 0'"))),
                 HasSubstr("arm.urdf"));
     EXPECT_THAT(diagnosticOf(folder_ / "none.urdf"), HasSubstr("does not exist"));
+}
+
+TEST_F(UrdfTest, AVisualOfAnInvisibleColourIsAnInvisibleDrawing) {
+    const auto coloured = [](const char* alpha) {
+        return std::string("<material name='m") + alpha + "'><color rgba='0 0 1 " + alpha + "'/></material>";
+    };
+    const Scene scene = readScene(robot(
+        link("base", small_) + link("ghost", small_, "", coloured("0")) + link("window", small_, "", coloured("0.25")) +
+        joint("a", "fixed", "base", "ghost", "xyz='0 0 0'") + joint("b", "fixed", "base", "window", "xyz='0 0 0'")));
+    ASSERT_EQ(scene.drawings.size(), 3u);
+    std::map<std::string, double> transparency;
+    for (size_t i = 0; i < 3; ++i)
+        transparency[scene.nodes[static_cast<size_t>(scene.object_nodes[i])].name] = scene.drawings[i].transparency;
+    EXPECT_EQ(transparency.at("rov::base"), 0);
+    EXPECT_EQ(transparency.at("rov::ghost"), 1);
+    EXPECT_NEAR(transparency.at("rov::window"), 0.75, 1e-6);
 }
 
 }  // namespace

@@ -120,6 +120,29 @@ std::vector<glm::vec3> positionsOf(const types::Geometry& geometry) {
     return positions;
 }
 
+TEST_F(BathymetryTest, AFloorFarFromTheOriginHasTheShapeOfOneNearIt) {
+    const std::string file = grid("floor", 60, 40);
+    const glm::dvec3 place(30, -50, -40), far(6'500'000.0625, 500'000.125, 0);
+    Bathymetry near_by(config_, file);
+    const types::GeometryPtr here = about(near_by, place);
+    config_.northing = *config_.northing - far.x, config_.easting = *config_.easting + far.y;
+    Bathymetry far_off(config_, file);
+    const types::GeometryPtr there = about(far_off, place + far);
+    ASSERT_EQ(here->objects.size(), there->objects.size());
+    for (size_t i = 0; i < here->objects.size(); ++i) {
+        const auto worldOf = [i](const types::Geometry& geometry, size_t vertex) {
+            const types::Object& object = geometry.objects[i];
+            const glm::vec3 position = geometry.meshes.at(static_cast<size_t>(object.mesh)).positions.at(vertex);
+            EXPECT_LT(glm::length(glm::dvec2(position)), 8192) << "32 bits resolve it";
+            return glm::dvec3(object.world_from_object * glm::dvec4(position, 1));
+        };
+        const size_t count = here->meshes.at(static_cast<size_t>(here->objects[i].mesh)).positions.size();
+        ASSERT_EQ(count, there->meshes.at(static_cast<size_t>(there->objects[i].mesh)).positions.size());
+        for (size_t vertex = 0; vertex < count; ++vertex)
+            ASSERT_LT(glm::distance(worldOf(*there, vertex) - far, worldOf(*here, vertex)), 1e-3);
+    }
+}
+
 TEST_F(BathymetryTest, PostsAreNorthAndWestOfTheOriginAndFaceUp) {
     Bathymetry floor(config_, grid("floor", 60, 40));
     const types::GeometryPtr geometry = about(floor, {30, -50, -40});

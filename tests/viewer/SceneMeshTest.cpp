@@ -4,6 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
+#include "components/ros/Cdr.hpp"
+#include "components/viewer/FoxgloveMessages.hpp"
 #include "components/viewer/PingPicture.hpp"
 #include "components/viewer/SceneMesh.hpp"
 #include "components/viewer/SceneUpdates.hpp"
@@ -144,6 +146,36 @@ TEST(SceneMeshTest, FoxgloveShowsMeshesThatDeformLikeRigidMeshesOfThatShape) {
     types::Snapshot rest = second;
     rest.deformed.clear();
     EXPECT_NE(deforming.moved(rest), nullptr) << "is at rest again";
+}
+
+TEST(SceneMeshTest, FoxglovesMeshesFarFromTheOriginAreRelativeToTheirObject) {
+    const glm::dvec3 far(500'000.25, 6'500'000.5, 0.125);
+    types::Snapshot near_by = posedScene(7);
+    near_by.deformed.clear();
+    const auto updateAt = [&](const glm::dvec3& place) {
+        auto geometry = std::make_shared<types::Geometry>(*near_by.geometry);
+        for (types::Object& object : geometry->objects) object.world_from_object[3] += glm::dvec4(place, 0);
+        types::Snapshot snapshot = near_by;
+        snapshot.geometry = geometry;
+        const Bytes bytes = SceneUpdates(ros::WorldFrame::AsIs, 1000).whole(snapshot);
+        foxglove::SceneUpdate update;
+        ros::decode({bytes->begin(), bytes->end()}, update);
+        return update;
+    };
+    const foxglove::SceneUpdate here = updateAt({0, 0, 0}), there = updateAt(far);
+    ASSERT_EQ(here.entities.size(), there.entities.size());
+    for (size_t i = 0; i < here.entities.size(); ++i) {
+        const foxglove::TriangleListPrimitive &a = here.entities[i].triangles.at(0),
+                                              &b = there.entities[i].triangles.at(0);
+        EXPECT_EQ(a.pose.position.x, 0);
+        ASSERT_EQ(a.points.size(), b.points.size());
+        for (size_t k = 0; k < a.points.size(); ++k) {
+            EXPECT_LT(std::abs(b.points[k].y), 1000) << "a number of 32 bits resolves it";
+            EXPECT_NEAR(b.pose.position.x + b.points[k].x, a.points[k].x + far.x, 1e-6);
+            EXPECT_NEAR(b.pose.position.y + b.points[k].y, a.points[k].y + far.y, 1e-6);
+            EXPECT_NEAR(b.pose.position.z + b.points[k].z, a.points[k].z + far.z, 1e-6);
+        }
+    }
 }
 
 }  // namespace
