@@ -131,7 +131,7 @@ TEST(RunFailureTest, EveryThreadThatIsRefusedIsAnErrorOfTheRun) {
     const WallFolder folder;
     std::string more = replaced(wall_deployment, "connections:\n", R"(  fan:
     type: output::FanImageTask
-    properties: {file: fan_%02d.png, width: 100}
+    properties: {file: fan_%02d.png, width: 256}
 connections:
   - {from: noise.noisy, to: fan.ping, policy: {type: buffer, size: 8}}
 )");
