@@ -23,8 +23,8 @@ std::thread startThread(const std::string& what, Work&& work) {
     }
 }
 
-/** Gives this thread the default scheduling of the system. A thread that a realtime task starts would otherwise have the
- *  task's priority, and delay it on its own processor. The permitted processors stay. */
+/** Gives this thread the default scheduling of the system. A thread that a realtime task starts has the task's priority
+ *  otherwise, and delays it on its own processor. The permitted processors stay. */
 void useDefaultScheduling();
 
 /** Lends the scheduling of this thread to another one, for which it waits; then the other has the default scheduling.

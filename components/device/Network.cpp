@@ -68,7 +68,8 @@ void keepAlive(int socket) {
 /** Its events and counters may be used on any thread, the rest on the network's. */
 class Network::Core {
 public:
-    explicit Core(std::function<void()> wake) : wake_(std::move(wake)), thread_(types::startThread("the network of a device", [this] { run(); })) {}
+    explicit Core(std::function<void()> wake)
+        : wake_(std::move(wake)), thread_(types::startThread("the network of a device", [this] { run(); })) {}
     ~Core() {
         asio::post(io, [this] { shut(); });
         thread_.join();

@@ -17,7 +17,8 @@ WorldWatch::Change WorldWatch::take(const PoseMessage& message) {
         if (!known_.contains(name) && reported_.insert(name).second) change.came.push_back(name);
     for (const std::string& name : present_)
         if (!now.contains(name) && known_.contains(name) && reported_.insert(name).second) change.went.push_back(name);
-    if (reported_.size() > max_reported) std::erase_if(reported_, [&](const auto& name) { return !now.contains(name); });
+    if (reported_.size() > max_reported)
+        std::erase_if(reported_, [&](const std::string& name) { return !now.contains(name); });
     present_ = std::move(now);
     return change;
 }

@@ -33,9 +33,10 @@ using Declare = std::function<size_t(log::Writer&)>;
 /** Writes samples to a log on its own thread, in the order of push(), and flushes in between.
  *
  *  A ring of fixed size is between push() and the file, with at most max_bytes of samples. If the file is slower than
- *  the samples for long, push() waits for space. An error of the file is thrown once, by the next push() or by finish(), with the number of pushed samples
- *  that are not in the file. With AtFailure::Heal, samples are dropped instead until the log can continue in its next
- *  file, x.1.log after x.0.log, which is tried each second. finish() throws if this does not succeed until the end. */
+ *  the samples for long, push() waits for space. An error of the file is thrown once, by the next push() or by
+ *  finish(), with the number of pushed samples that are not in the file. With AtFailure::Heal, samples are dropped
+ *  instead until the log can continue in its next file, x.1.log after x.0.log, which is tried each second. finish()
+ *  throws if this does not succeed until the end. */
 class LogThread {
 public:
     static constexpr size_t max_bytes = size_t{256} << 20;  ///< Of waiting samples, apart from one of any size [B].

@@ -10,7 +10,9 @@ std::vector<std::string> PictureHealth::notices() const {
 }
 
 PictureWriter::PictureWriter(PictureFiles files, AtPictureFailure at_failure)
-    : files_(std::move(files)), at_failure_(at_failure), thread_(types::startThread("the files of pictures", [this] { loop(); })) {}
+    : files_(std::move(files)),
+      at_failure_(at_failure),
+      thread_(types::startThread("the files of pictures", [this] { loop(); })) {}
 
 PictureWriter::~PictureWriter() { end(); }
 

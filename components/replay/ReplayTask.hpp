@@ -129,7 +129,7 @@ private:
     types::Time pause_;                        ///< In addition to `gap_`, before the next instant, after a late jump.
     std::atomic<double> pace_{1};              ///< Other threads read the clock, too.
     std::function<types::Time()> wall_;        ///< In realtime.
-    mutable types::PriorityMutex clock_mutex_;           ///< For the next two, which other threads read through the clock.
+    mutable types::PriorityMutex clock_mutex_;  ///< For the next two, which other threads read through the clock.
     int64_t started_us_ = 0;                   ///< On the wall clock, without pauses; 0: not yet.
     int64_t paused_us_ = 0;                    ///< Start of the pause; 0: not paused.
     std::atomic<int64_t> first_us_{0};         ///< The instant at which the replay starts, on the log's clock.

@@ -76,8 +76,9 @@ bool ScanningSonarTask::isFarTooSlow(double period) const {
 void ScanningSonarTask::checkStep(double seconds) {
     constexpr int enough = 8;  // stamps of a network jitter, their mean does not
     if (periods_ == enough) return;
-    mean_period_ += (seconds - (periods_ > 0 ? mean_period_ : 0)) / (periods_ + 1);
+    if (periods_ == 0) mean_period_ = 0;
     ++periods_;
+    mean_period_ += (seconds - mean_period_) / periods_;
     if (periods_ == 1 && isFarTooSlow(mean_period_))
         throw types::ConfigError("", name() + ".head.step_deg", stepText(mean_period_));
     if (periods_ == enough && stepDuration(config->head) > 1.01 * mean_period_)

@@ -115,3 +115,39 @@ TEST(RunFailureTest, AJumpOfThePoseDoesNotEndTheRun) {
             EXPECT_THAT(outcome.err, HasSubstr(warning)) << more << ", " << far;
         }
 }
+
+/** Runs a deployment with so many threads besides the first. */
+Outcome runWithThreads(const WallFolder& folder, int threads, const std::string& deployment) {
+    const std::string limited = "INSONIFY_THREADS=" + std::to_string(threads) + " LD_PRELOAD=" +
+                                insonify::test::program("libinsonify_thread_limit.so") + " ";
+    const std::string run = insonify::test::program("insonify") + " run " + deployment + " --out out --pings 2";
+    return Process({"bash", "-c", limited + run}, folder.path()).wait();
+}
+
+TEST(RunFailureTest, EveryThreadThatIsRefusedIsAnErrorOfTheRun) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer must be the first library";
+#endif
+    const WallFolder folder;
+    std::string more = replaced(wall_deployment, "connections:\n", R"(  fan:
+    type: output::FanImageTask
+    properties: {file: fan_%02d.png, width: 256}
+connections:
+  - {from: noise.noisy, to: fan.ping, policy: {type: buffer, size: 8}}
+)");
+    writeFile(folder / "lockstep.yml", more);
+    writeFile(folder / "realtime.yml", replaced(more, "schedule: lockstep", "schedule: realtime"));
+    for (const std::string deployment : {"lockstep.yml", "realtime.yml"}) {
+        constexpr int most = 60;
+        int threads = 0;
+        for (; threads < most; ++threads) {
+            fs::remove_all(folder / "out");
+            const Outcome outcome = runWithThreads(folder, threads, deployment);
+            if (outcome.code == 0) break;
+            EXPECT_THAT(outcome.code, testing::AnyOf(1, 2)) << deployment << " with " << threads << ": " << outcome;
+            EXPECT_THAT(outcome.err + outcome.out, HasSubstr("no thread for ")) << deployment << " with " << threads;
+        }
+        EXPECT_GE(threads, 6) << "the tasks have a thread each";
+        EXPECT_LT(threads, most);
+    }
+}

@@ -129,7 +129,8 @@ TEST_F(WatchdogTest, ItsPriorityIsAboveThoseOfTheTasks) {
         priority = parameters.sched_priority;
     };
     const RunResult result = run(
-        "tasks: {slug: {type: test::Hanging, activity: {period: 0.01, watchdog: 0.1, scheduler: fifo, priority: 7}}}\n");
+        "tasks: {slug: {type: test::Hanging, "
+        "activity: {period: 0.01, watchdog: 0.1, scheduler: fifo, priority: 7}}}\n");
     if (result.warnings.at(0).find("is not permitted") != std::string::npos)
         GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
     EXPECT_EQ(policy, SCHED_FIFO);

@@ -3,6 +3,7 @@
 import copy
 import pickle
 import subprocess
+import sys
 import threading
 import time
 import warnings
@@ -353,3 +354,49 @@ def test_a_file_that_is_not_a_log_is_an_error(tmp_path):
     (tmp_path / "x.log").write_bytes(b"not a log")
     with pytest.raises(insonify.ConfigError):
         insonify.read_log(tmp_path / "x.log")
+
+
+def test_the_time_can_be_read_while_another_thread_steps(minimal):
+    """Notices cannot: they are those of tasks at work."""
+    times, refused, ended = set(), [], threading.Event()
+
+    def watch():
+        while not ended.is_set():
+            times.add(minimal.time)
+            try:
+                minimal._simulation.facts()
+            except RuntimeError as error:
+                refused.append(str(error))
+
+    thread = threading.Thread(target=watch)
+    thread.start()
+    before = minimal.time
+    made = 0
+    for _ in range(200):
+        try:
+            minimal.step(HERE)
+            made += 1
+        except RuntimeError as error:
+            assert "another thread uses this simulation" in str(error)
+    ended.set()
+    thread.join()
+    assert minimal.time == pytest.approx(before + made * minimal.period) and len(times) > 1
+    assert all("another thread uses this simulation" in text for text in refused)
+
+
+def test_the_interpreter_ends_while_a_daemon_thread_steps(deploy):
+    program = f"""
+import threading, time, insonify
+simulation = insonify.Simulation({str(deploy / "minimal.yml")!r})
+started = threading.Event()
+def run():
+    while True:
+        simulation.step(insonify.Pose([0, 0, 0]))
+        started.set()
+threading.Thread(target=run, daemon=True).start()
+started.wait()
+time.sleep(0.01)
+"""
+    for _ in range(5):
+        ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=100, check=False)
+        assert ended.returncode == 0 and ended.stderr == ""

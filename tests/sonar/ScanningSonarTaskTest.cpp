@@ -141,11 +141,11 @@ TEST_F(ScanningSonarTaskTest, InRealtimeASlowHeadIsAWarningAfterEightPeriods) {
         for (int i = 0; i < 30; ++i) {
             pingAt(1 + 0.1 * i - (i == 1 ? 0.03 : 0));
             ASSERT_EQ(task_.state(), TaskState::Running) << task_.lastError();
-            if (i < 8) EXPECT_EQ(warnings.size(), 0u);
+            EXPECT_TRUE(i >= 8 || warnings.empty());
         }
         ASSERT_EQ(warnings.size(), is_slow ? 1u : 0u);
-        if (is_slow)
-            EXPECT_EQ(warnings[0],
+        for (const std::string& warning : warnings)
+            EXPECT_EQ(warning,
                       "task: head.step_deg is 40 deg, which takes 0.2 s at 200 deg/s; the ping period is 0.1 s");
         ASSERT_TRUE(task_.stop() && task_.cleanup());
     }

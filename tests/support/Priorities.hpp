@@ -34,8 +34,8 @@ inline void spin(std::chrono::milliseconds time) {
     }
 }
 
-/** Runs on one processor a thread with the default scheduling that works until the third waits for it, one of priority 2
- *  that spins for 400 ms, and one of priority 3 that waits for the first. Returns whether the wait ended before the
+/** Runs on one processor a thread with the default scheduling that works until the third waits for it, one of priority
+ *  2 that spins for 400 ms, and one of priority 3 that waits for the first. Returns whether the wait ended before the
  *  spinning; none: SCHED_FIFO is not permitted. */
 template <class Guarded>
 std::optional<bool> urgentIsFirst(Guarded& guarded) {

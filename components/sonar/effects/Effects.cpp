@@ -39,8 +39,8 @@ const Effect& truth();
 
 namespace {
 
-/** All effects. Libraries add some while sonars of other threads use the list: an effect never moves, and counts once it
- *  is in its place. */
+/** All effects. Libraries add some while sonars of other threads use the list: an effect never moves, and counts once
+ *  it is in its place. */
 class List {
 public:
     std::span<const Effect* const> all() const { return {all_.data(), count_.load(std::memory_order_acquire)}; }

@@ -12,9 +12,9 @@ namespace insonify::sonar {
  *  later are in later results. */
 std::span<const Effect* const> effects();
 
-/** Adds an effect of a library to the end of the list, until the process ends. Call it before the sonars that use it are
- *  configured, from `insonify_register` or from main, on any thread. Does nothing where the list has an effect with the
- *  same key. Throws std::length_error above 256 effects. */
+/** Adds an effect of a library to the end of the list, until the process ends. Call it before the sonars that use it
+ *  are configured, from `insonify_register` or from main, on any thread. Does nothing where the list has an effect
+ *  with the same key. Throws std::length_error above 256 effects. */
 void addEffect(std::unique_ptr<const Effect> effect);
 
 /** Adds diagnostics of SonarConfig::effects: unknown keys and numbers, numbers out of bounds. Adds those of each

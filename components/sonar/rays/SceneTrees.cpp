@@ -7,13 +7,15 @@
 namespace insonify::sonar {
 namespace {
 
-std::shared_ptr<RTCDeviceTy> sharedDevice() {
-    static SharedValues<int, RTCDeviceTy> devices;
-    return devices.of(0, [] {
-        RTCDevice device = rtcNewDevice("threads=1");
-        if (!device) throw std::runtime_error("Embree has no device on this processor");
-        return std::shared_ptr<RTCDeviceTy>(device, rtcReleaseDevice);
-    });
+/** Returns the device of the process. It is never released: Embree would start a thread then, and the process would end
+ *  if the system refused it. */
+RTCDevice sharedDevice() {
+    static const RTCDevice device = [] {
+        const RTCDevice made = rtcNewDevice("threads=1");
+        if (!made) throw std::runtime_error("Embree has no device on this processor");
+        return made;
+    }();
+    return device;
 }
 
 /** Returns numbers that are equal for equal objects. */
@@ -41,7 +43,7 @@ std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
     return ranges;
 }
 
-EmbreeScene::EmbreeScene(Kind kind) : device_(sharedDevice()), kind_(kind), scene_(rtcNewScene(device_.get())) {
+EmbreeScene::EmbreeScene(Kind kind) : device_(sharedDevice()), kind_(kind), scene_(rtcNewScene(device_)) {
     if (kind == Kind::Built) {
         rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
         return;
@@ -53,7 +55,7 @@ EmbreeScene::EmbreeScene(Kind kind) : device_(sharedDevice()), kind_(kind), scen
 EmbreeScene::~EmbreeScene() { rtcReleaseScene(scene_); }
 
 void EmbreeScene::add(const types::Mesh& mesh, const MaterialRun& run, const std::vector<glm::vec3>& at) {
-    RTCGeometry triangles = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    RTCGeometry triangles = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, at.data(), 0, sizeof(glm::vec3),
                                at.size() - 1);
     rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(),
@@ -64,7 +66,7 @@ void EmbreeScene::add(const types::Mesh& mesh, const MaterialRun& run, const std
 
 void EmbreeScene::add(const EmbreeScene& other, const glm::dmat4& place) {
     const glm::mat4 matrix(place);
-    RTCGeometry instance = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, other.scene());
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix);
     attach(instance, false);
@@ -79,7 +81,7 @@ void EmbreeScene::attach(RTCGeometry geometry, bool has_vertices) {
 
 void EmbreeScene::commit() {
     rtcCommitScene(scene_);
-    if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
+    if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
         throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
 }
 

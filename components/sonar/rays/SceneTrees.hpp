@@ -49,7 +49,7 @@ public:
 private:
     void attach(RTCGeometry geometry, bool has_vertices);
 
-    std::shared_ptr<RTCDeviceTy> device_;
+    RTCDevice device_;
     Kind kind_;
     RTCScene scene_;
     std::vector<bool> has_vertices_;  ///< Whether each part has vertices; else it is another scene.
