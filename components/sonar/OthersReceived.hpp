@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
 
@@ -11,8 +12,11 @@ class OthersReceived {
 public:
     static constexpr double memory = 10;  ///< Time for which a pulse is kept: sound travels 15 km [s].
 
+    /** Keeps a pulse, and forgets those that are older, or of before the clock was set back. */
     void add(types::TransmissionPtr sent) {
-        if (sent && sent->radiation) sent_.push_back(std::move(sent));
+        if (!sent || !sent->radiation) return;
+        forget(sent->time);
+        sent_.push_back(std::move(sent));
     }
     void clear() { sent_.clear(); }
 
@@ -20,7 +24,7 @@ public:
      *  @param range  of the sonar [m]
      *  @param speed_of_sound  [m/s] */
     void give(types::Snapshot& scene, double range, double speed_of_sound) {
-        std::erase_if(sent_, [&](const auto& sent) { return (scene.time - sent->time).seconds() > memory; });
+        forget(scene.time);
         scene.transmissions.clear();
         for (const auto& sent : sent_) {
             const double half = glm::distance(sent->sonar.position, scene.sonar.position) / 2,
@@ -30,6 +34,10 @@ public:
     }
 
 private:
+    void forget(types::Time now) {
+        std::erase_if(sent_, [&](const auto& sent) { return std::abs((now - sent->time).seconds()) > memory; });
+    }
+
     std::vector<types::TransmissionPtr> sent_;
 };
 

@@ -117,5 +117,11 @@ TEST_F(ScanningSonarTaskTest, SettingTheRangeDoesNotTurnTheHeadBackButSettingThe
     EXPECT_NEAR(pingAt(1)->bearings[0].deg(), 20, 1e-9);
 }
 
+TEST_F(ScanningSonarTaskTest, ScansOnAfterTheClockIsSetBackOrARecordingRepeats) {
+    start(sector);
+    for (const double time : {1000.0, 1001.0, 400.0, 401.0, 1.8e9, 2.0, 2.5, 1.0, 1.5})
+        EXPECT_TRUE(pingAt(time)) << time << " s: " << task_.lastError();
+}
+
 }  // namespace
 }  // namespace insonify::sonar
