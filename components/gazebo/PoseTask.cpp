@@ -1,13 +1,15 @@
 #include "components/gazebo/PoseTask.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "types/ConfigError.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::gazebo {
 namespace {
 
-constexpr double patience = 5;  ///< Time until the warning that nobody offers a topic [s].
+constexpr types::Time patience{5'000'000};  ///< Time until the warning that nobody offers a topic.
 
 /** Returns a text such as "crate, lid and 3 more". */
 std::string listOf(const std::vector<std::string>& names) {
@@ -65,17 +67,20 @@ bool PoseTask::startHook() {
     clocks_.assign(subscriptions_->topics().size(), {});
     started_ = now();
     is_silence_reported_ = false;
+    unreported_ = {};
+    reported_at_.reset();
     return true;
 }
 
 void PoseTask::updateHook() {
     for (Arrived& message : inbox_->take()) take(message);
+    report();
     warnOfSilence();
     if (const std::string reported = drops_.takeWarning(); !reported.empty()) warn(reported);
 }
 
 void PoseTask::warnOfSilence() {
-    if (is_silence_reported_ || (now() - started_).seconds() < patience) return;
+    if (is_silence_reported_ || !types::due(started_, patience, now())) return;
     is_silence_reported_ = true;
     for (size_t i = 0; i < subscriptions_->topics().size(); ++i)
         if (!subscriptions_->hasPublisher(i))
@@ -83,7 +88,16 @@ void PoseTask::warnOfSilence() {
                  "; " + subscriptions_->received());
 }
 
-void PoseTask::report(const WorldWatch::Change& change) {
+void PoseTask::note(const WorldWatch::Change& change) {
+    unreported_.came.insert(unreported_.came.end(), change.came.begin(), change.came.end());
+    unreported_.went.insert(unreported_.went.end(), change.went.begin(), change.went.end());
+}
+
+void PoseTask::report() {
+    const auto clock = types::ThrottledWarning::Clock::now();
+    if (unreported_.isEmpty() || (reported_at_ && clock < *reported_at_ + types::ThrottledWarning::interval)) return;
+    reported_at_ = clock;
+    const WorldWatch::Change change = std::exchange(unreported_, {});
     if (!change.came.empty())
         warn("world " + config->world + " has entities that the scene does not have: " + listOf(change.came) +
              "; restart to take the world as it is");
@@ -94,7 +108,7 @@ void PoseTask::report(const WorldWatch::Change& change) {
 void PoseTask::take(Arrived& message) {
     if (!message.diagnostic.empty())
         return drops_.add(subscriptions_->topics()[message.topic] + ": " + message.diagnostic);
-    if (!message.change.isEmpty()) report(message.change);
+    note(message.change);
     types::Time time = now();
     if (message.stamp) {
         const auto reading = clocks_[message.topic].read(*message.stamp, now());

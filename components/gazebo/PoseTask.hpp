@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,13 +40,16 @@ private:
     void take(Arrived& message);
     /** Warns once when nobody has offered a topic for a while. */
     void warnOfSilence();
-    void report(const WorldWatch::Change& change);
+    void note(const WorldWatch::Change& change);
+    void report();  ///< Reports changes of the world, at most once per interval of ThrottledWarning.
     void write(Placed& placed, types::Time time);
 
     std::unique_ptr<Inbox> inbox_;
     std::unique_ptr<Subscriptions> subscriptions_;  ///< Fills the inbox, so it must be destroyed first.
     std::vector<types::SenderClock> clocks_;        ///< By topic.
     types::ThrottledWarning drops_{"message", "dropped"};
+    WorldWatch::Change unreported_;
+    std::optional<types::ThrottledWarning::Clock::time_point> reported_at_;
     types::Time started_;
     bool is_silence_reported_ = false;
 };

@@ -13,10 +13,13 @@ WorldWatch::Change WorldWatch::take(const PoseMessage& message) {
     std::set<std::string> now(last_names_.begin(), last_names_.end());
     if (!std::exchange(is_taken_, true)) known_ = now;
     Change change;
+    const auto isNews = [&](const std::string& name) {
+        return reported_.size() < max_reported && reported_.insert(name).second;
+    };
     for (const std::string& name : now)
-        if (!known_.contains(name) && reported_.insert(name).second) change.came.push_back(name);
+        if (!known_.contains(name) && isNews(name)) change.came.push_back(name);
     for (const std::string& name : present_)
-        if (!now.contains(name) && known_.contains(name) && reported_.insert(name).second) change.went.push_back(name);
+        if (!now.contains(name) && known_.contains(name) && isNews(name)) change.went.push_back(name);
     present_ = std::move(now);
     return change;
 }

@@ -21,6 +21,7 @@ public:
         std::vector<std::string> came, went;
         bool isEmpty() const { return came.empty() && went.empty(); }
     };
+    static constexpr size_t max_reported = 1000;  ///< Names that are reported at most, however long a run is.
     /** Returns the changes of this message; each name is reported once. */
     Change take(const PoseMessage& message);
 

@@ -213,5 +213,13 @@ TEST(WorldWatchTest, ComparesWithTheFirstMessageWithoutASceneOfGazebo) {
     EXPECT_THAT(watch.take(posesOf({"rov", "link", "crate"})).came, ElementsAre("crate"));
 }
 
+TEST(WorldWatchTest, KeepsAndReportsALimitedNumberOfNames) {
+    WorldWatch watch(std::set<std::string>{"rov"});
+    size_t reported = 0;
+    for (int i = 0; i < 5000; ++i)
+        reported += watch.take(posesOf({"rov", "bubble" + std::to_string(i)})).came.size();
+    EXPECT_EQ(reported, WorldWatch::max_reported);
+}
+
 }  // namespace
 }  // namespace insonify::gazebo
