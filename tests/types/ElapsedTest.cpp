@@ -19,7 +19,8 @@ TEST(ElapsedTest, WhatIsDueWaitsForItsPeriodAndNotForAClockThatWasSetBack) {
 
 TEST(ElapsedTest, SteadyTimeIsTheClocksUntilItIsSetBack) {
     SteadyTime steady;
-    for (const int64_t time : {5, 5, 1000, 1'800'000'000'000'000}) EXPECT_EQ(steady.read({time}), Time{time});
+    for (const int64_t time : {int64_t{5}, int64_t{5}, int64_t{1000}, int64_t{1'800'000'000'000'000}})
+        EXPECT_EQ(steady.read({time}), Time{time});
     EXPECT_FALSE(steady.jumpedBack());
 }
 
