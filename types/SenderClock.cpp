@@ -5,7 +5,7 @@ namespace insonify::types {
 SenderClock::Order SenderClock::orderOf(Time stamp, Time arrival) const {
     if (!newest_ || stamp > *newest_) return Order::Next;
     if (stamp == *newest_) return Order::Repeated;
-    const bool begins_anew = *newest_ - stamp > max_lateness || arrival - newest_came_ > max_silence;
+    const bool begins_anew = *newest_ - stamp > max_lateness || elapsed(newest_came_, arrival) > max_silence;
     return begins_anew ? Order::Restarted : Order::Late;
 }
 
@@ -30,7 +30,7 @@ SenderClock::Reading SenderClock::read(Time stamp, Time arrival) {
     if (order == Order::Repeated || order == Order::Late) return {order, time_};
     const bool ours_went_back = newest_ && arrival < newest_came_;
     const Time delay = arrival - stamp;
-    if (!newest_ || order == Order::Restarted || ours_went_back || arrival - newest_came_ > max_silence) {
+    if (!newest_ || order == Order::Restarted || elapsed(newest_came_, arrival) > max_silence) {
         offset_ = delay;
         doubted_since_.reset();
     } else {

@@ -1,16 +1,9 @@
 #pragma once
-#include <cstdint>
-#include <limits>
 #include <optional>
 
-#include "types/Time.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::types {
-
-/** Returns the time since an event on our clock; infinitely long when the clock has been set back since. */
-constexpr Time elapsed(Time since, Time now) {
-    return now < since ? Time{std::numeric_limits<int64_t>::max()} : now - since;
-}
 
 /** Converts the stamps of a sender's clock, which counts since its boot or in its simulation, to our clock.
  *
@@ -22,8 +15,7 @@ class SenderClock {
 public:
     static constexpr Time max_lag{100'000};
     static constexpr Time max_doubt{500'000};
-    static constexpr Time max_lateness{1'000'000};  ///< A stamp further before the newest is a restart.
-    static constexpr Time max_silence{1'000'000};   ///< After this silence any stamp before the newest is a restart.
+    static constexpr Time max_silence{1'000'000};  ///< After this silence any stamp before the newest is a restart.
 
     /** The relation of a stamp to the newest stamp. */
     enum class Order {

@@ -17,7 +17,7 @@ struct SonarSettings {
     Time time;
     double range = unset;
     double frequency_khz = unset;
-    double speed_of_sound = unset;
+    double speed_of_sound = unset;  ///< 0: the sonar's own again, as before a driver set it.
     double gain_db = unset;
     Angle bearing;
     Angle field_of_view;
@@ -29,7 +29,8 @@ struct SonarSettings {
         visit({"time", "us", "when the ping was asked for"}, self.time);
         visit({"range", "m", "slant range at which the last bin ends"}, self.range);
         visit({"frequency_khz", "kHz", "of the sonar"}, self.frequency_khz);
-        visit({"speed_of_sound", "m/s", "by which the sonar turns time into range"}, self.speed_of_sound);
+        visit({"speed_of_sound", "m/s", "by which the sonar turns time into range; 0: its own again"},
+              self.speed_of_sound);
         visit({"gain_db", "dB", "of the receiver, after its TVG"}, self.gain_db);
         visit({"bearing", "rad", "of a scanning sonar's head, 0 ahead, positive to port"}, self.bearing);
         visit({"field_of_view", "rad", "from the first beam to the last"}, self.field_of_view);

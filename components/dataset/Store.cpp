@@ -11,6 +11,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "components/command/Json.hpp"
 #include "components/command/Sha256.hpp"
 #include "types/ConfigError.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr const char* leftover = ".part_";
 constexpr size_t hash_digits = 12;
+constexpr int deepest_record = 64;  ///< Nesting of a sample's record, at most.
 
 /** Returns a temporary name that is unique to this process on any machine that shares the folder. It keeps the
  *  extension, which determines the format. */
@@ -116,7 +118,7 @@ void Store::putRecord(uint64_t index, Json record) {
 std::optional<Json> Store::record(uint64_t index) const {
     const fs::path file = folder_ / (stemOf(index) + ".json");
     if (!fs::exists(file)) return std::nullopt;
-    Json record = Json::parse(bytesOf(file), nullptr, false);
+    Json record = command::readJson(bytesOf(file), deepest_record);
     if (!record.is_object() || record.value("sum", Json()) != sumOf(record)) return std::nullopt;
     return record;
 }

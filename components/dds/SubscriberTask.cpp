@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "types/Elapsed.hpp"
+
 namespace insonify::dds {
 namespace {
 
@@ -62,7 +64,7 @@ void SubscriberTask::updateHook() {
 }
 
 void SubscriberTask::reportAbsence() {
-    if (now() - started_ < patience) return;
+    if (!types::due(started_, patience, now())) return;
     outputs_.forEach([&](auto& output) {
         auto& kept = output.kept;
         if (kept.came || std::exchange(kept.absence_reported, true)) return;

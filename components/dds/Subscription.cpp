@@ -10,6 +10,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
+#include "types/Elapsed.hpp"
 #include "types/Quaternion.hpp"
 
 namespace insonify::dds {
@@ -81,7 +82,7 @@ void Subscription::decode(types::Pose& pose) {
 std::string Subscription::diagnosticOf(types::Time now, const types::Pose& pose) {
     if (!types::isUsable(pose)) return "position and orientation are not finite, or the orientation has no length";
     if (pose.time - now > max_ahead) return "the stamp is more than a second ahead of the clock";
-    if (pose.time >= newest_ || now - newest_came_ > max_silence) return "";
+    if (pose.time >= newest_ || types::elapsed(newest_came_, now) > max_silence) return "";
     const bool sender_lives = sender_ == newest_sender_ || reader_.receives(newest_sender_);
     return sender_lives ? "the stamp is before that of the previous pose" : "";
 }

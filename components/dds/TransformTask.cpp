@@ -131,7 +131,7 @@ void TransformTask::report(auto& output) {
         kept.lacking.reset();
     else if (!kept.lacking)
         kept.lacking = now();
-    if (kept.lacking && !diagnostic.empty() && now() - *kept.lacking >= chain_patience)
+    if (kept.lacking && !diagnostic.empty() && types::due(*kept.lacking, chain_patience, now()))
         gaps_.add(output.port.name() + ": " + diagnostic);
     if (!placed) return;
     const bool is_fixed = placed->time.isNull();

@@ -9,7 +9,7 @@
 #include "components/dds/TransformConfig.hpp"
 #include "components/pose/ListenerTask.hpp"
 #include "components/ros/TransformTree.hpp"
-#include "types/SenderClock.hpp"
+#include "types/Elapsed.hpp"
 #include "types/ThrottledWarning.hpp"
 
 namespace insonify::dds {

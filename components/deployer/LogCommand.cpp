@@ -34,7 +34,8 @@ Json infoJson(const log::Reader& log) {
                            {"count", stream.count},
                            {"first_s", stream.first.seconds()},
                            {"last_s", stream.last.seconds()},
-                           {"rate_hz", stream.rate()}});
+                           {"rate_hz", stream.rate()},
+                           {"set_backs", stream.set_backs}});
     return {{"bytes", log.bytes()}, {"complete", log.complete()}, {"streams", streams}};
 }
 
@@ -46,6 +47,10 @@ void printTable(const log::Reader& log) {
     for (const log::Stream& s : log.streams())
         command::printResult("  {:24} {:32} {:>8} {:>26} {:>26} {:>9.2f}\n", s.name, s.type, s.count,
                              log::readable(s.first), log::readable(s.last), s.rate());
+    for (const log::Stream& s : log.streams())
+        if (s.set_backs > 0)
+            command::printResult("  {}: times go back {} times, by {:.6g} s in all: the clock was set back\n", s.name,
+                                 s.set_backs, s.set_back.seconds());
 }
 
 /** Opens a log, and prints a notice where it cannot be read to its end. */
@@ -306,6 +311,7 @@ Json verdictJson(const log::Verdict& verdict) {
     return {{"valid", !verdict.diagnostic},
             {"streams", verdict.streams},
             {"samples", verdict.samples},
+            {"set_backs", verdict.set_backs},
             {"wrong", diagnostic}};
 }
 
@@ -315,7 +321,11 @@ int logCheck(const Options& options) {
     if (const auto& found = verdict.diagnostic)
         throw types::ConfigError(found->file, fmt::format("byte {}", found->byte), found->message);
     if (!options.json)
-        command::printResult("{}: valid, {} streams, {} samples\n", options.file, verdict.streams, verdict.samples);
+        command::printResult(
+            "{}: valid, {} streams, {} samples{}\n", options.file, verdict.streams, verdict.samples,
+            verdict.set_backs > 0
+                ? fmt::format("; times go back {} times, which Rock's readers may refuse", verdict.set_backs)
+                : "");
     return 0;
 }
 

@@ -27,7 +27,7 @@ constexpr const char* manifest_name = "manifest.json";
 /** Returns the manifest; none: there is no file, or it is not a manifest in JSON. */
 std::optional<Json> manifestIn(const fs::path& folder) {
     std::ifstream file(folder / manifest_name);
-    Json manifest = Json::parse(file, nullptr, false);
+    Json manifest = command::readJson(std::string(std::istreambuf_iterator<char>(file), {}));
     if (!manifest.is_object() || !manifest.contains("files") || !manifest["files"].is_array()) return std::nullopt;
     return manifest;
 }

@@ -11,7 +11,7 @@
 namespace insonify::device {
 
 /** The pings that were requested from a sonar and have not arrived, the newest last, each with data kept for its
- *  answer. */
+ *  answer. All times are of one clock that is never set back, such as types::SteadyTime. */
 template <class Kept = std::monostate>
 class AskedPings {
 public:

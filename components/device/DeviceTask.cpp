@@ -13,6 +13,11 @@
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
+namespace {
+
+constexpr double longest_wait = 0.1;  ///< Between two readings of the clock, so that a step back is noticed [s].
+
+}  // namespace
 
 void DeviceTask::check(types::Diagnostics& diagnostics) const {
     if (environment().lockstep)
@@ -50,9 +55,11 @@ void DeviceTask::updateHook() {
             case NetworkEvent::Kind::Closed: closed(event.client); break;
         }
     warnOfDisplaced();
+    follow(now());
     takePings();
-    if (const auto next = tick(now())) {
-        const double wait = std::max(0.0, (*next - now()).seconds());
+    const types::Time clock = now();
+    if (const auto next = tick(clock)) {
+        const double wait = std::clamp((*next - clock).seconds(), 0.0, longest_wait);
         network_->wakeAt(std::chrono::steady_clock::now() +
                          std::chrono::microseconds(static_cast<int64_t>(1e6 * wait)));
     }

@@ -49,6 +49,8 @@ protected:
     virtual void opened(Client /*client*/) {}
     virtual void received(Client client, std::span<const uint8_t> bytes) = 0;
     virtual void closed(Client /*client*/) {}
+    /** Reads the clock, which may have been set since the last cycle. */
+    virtual void follow(types::Time /*clock*/) {}
     /** Reads the task's own input ports. */
     virtual void takePings() = 0;
     /** Does the due work. Returns the latest time of the next cycle; none: when something arrives. */

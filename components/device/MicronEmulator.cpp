@@ -42,7 +42,14 @@ void MicronEmulator::closed(Client client) {
     if (line_) std::erase(line_->clients, client);
 }
 
-void MicronEmulator::received(Client client, std::span<const uint8_t> bytes, types::Time now) {
+types::Time MicronEmulator::follow(types::Time clock) {
+    const types::Time now = steady_.read(clock);
+    if (steady_.jumpedBack() && line_ && !line_->asked.empty()) askForPing(now);
+    return now;
+}
+
+void MicronEmulator::received(Client client, std::span<const uint8_t> bytes, types::Time clock) {
+    const types::Time now = follow(clock);
     SeaNetReader& reader = clients_[client];
     reader.add(bytes);
     while (const auto message = reader.next()) take(client, *message, now);
@@ -117,7 +124,7 @@ double MicronEmulator::listening() const { return command_.bins * command_.ad_in
 void MicronEmulator::askForPing(types::Time now) {
     line_->whole = now + seconds(listening());
     types::SonarSettings settings;
-    settings.time = now;
+    settings.time = steady_.clock(now);
     settings.range = listening() * device_.speed_of_sound / 2;
     settings.speed_of_sound = device_.speed_of_sound;
     settings.bin_count = command_.bins;
@@ -156,7 +163,7 @@ Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
 }
 
 void MicronEmulator::takePing(const types::Sonar& ping) {
-    if (!line_ || !line_->asked.take(ping.time)) return;
+    if (!line_ || !line_->asked.take(steady_.steady(ping.time))) return;
     warned_ = false;
     types::Sonar scaled = ping;
     const bool is_other = ping.bin_count == command_.bins &&
@@ -220,7 +227,9 @@ void MicronEmulator::sendAlive(types::Time now) {
     for (const auto& [client, reader] : clients_) outlet_.send(client, packet);
 }
 
-std::optional<types::Time> MicronEmulator::tick(types::Time now) {
+std::optional<types::Time> MicronEmulator::tick(types::Time clock) { return steady_.clock(workAt(follow(clock))); }
+
+types::Time MicronEmulator::workAt(types::Time now) {
     if (state_ == State::Off) reboot(now);
     if (line_ && line_->asked.empty() && !line_->data && now >= line_->ready) askForPing(now);
     if (line_ && line_->data && now >= line_->whole) finishLine();

@@ -8,6 +8,7 @@
 #include "components/device/AskedPings.hpp"
 #include "components/device/Network.hpp"
 #include "components/device/SeaNet.hpp"
+#include "types/Elapsed.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"
 
@@ -49,13 +50,16 @@ public:
     MicronEmulator(MicronDevice device, Outlet outlet) : device_(device), outlet_(std::move(outlet)) {}
 
     void opened(Client client);
-    void received(Client client, std::span<const uint8_t> bytes, types::Time now);
+    void received(Client client, std::span<const uint8_t> bytes, types::Time clock);
     void closed(Client client);
+    /** Reads the clock, which may be set, before a ping is taken; returns the steady time. A ping that was requested
+     *  before it was set back by more than a second is requested again. */
+    types::Time follow(types::Time clock);
     /** Takes a requested ping, in codes on a scale of 80 dB from the smallest to the max code. Ignores pings of earlier
      *  requests. */
     void takePing(const types::Sonar& ping);
     /** Does the due work; returns when the next is due. */
-    std::optional<types::Time> tick(types::Time now);
+    std::optional<types::Time> tick(types::Time clock);
 
     int bearing() const { return bearing_; }  ///< Bearing of the head [1/16 gradian].
 
@@ -72,6 +76,7 @@ private:
         std::vector<Client> clients;
     };
 
+    types::Time workAt(types::Time now);  ///< As tick.
     void take(Client client, const SeaNetMessage& message, types::Time now);
     void reboot(types::Time now);
     void reverse();
@@ -90,6 +95,7 @@ private:
 
     MicronDevice device_;
     Outlet outlet_;
+    types::SteadyTime steady_;
     std::map<Client, SeaNetReader> clients_;
     State state_ = State::Off;
     types::Time begun_, next_alive_;

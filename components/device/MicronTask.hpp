@@ -48,6 +48,7 @@ private:
     void opened(Client client) override { emulator_->opened(client); }
     void received(Client client, std::span<const uint8_t> bytes) override { emulator_->received(client, bytes, now()); }
     void closed(Client client) override { emulator_->closed(client); }
+    void follow(types::Time clock) override { emulator_->follow(clock); }
     void takePings() override {
         for (types::SonarPtr sample; ping.readNew(sample);) emulator_->takePing(*sample);
     }

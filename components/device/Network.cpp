@@ -478,6 +478,12 @@ Terminal openTerminal() {
     return made;
 }
 
+/** Whether a path is a link to a pseudo terminal, as a line that ended without removing its link leaves. */
+bool leadsToTerminal(const std::filesystem::path& link) {
+    std::error_code none;
+    return std::filesystem::read_symlink(link, none).string().starts_with("/dev/pts/");
+}
+
 /** A single permanent client, since a line does not show who is at its other side. An open slave side keeps the line up
  *  while no driver has opened it. */
 class SerialEnd final : public Network::Core::EndBase {
@@ -485,9 +491,7 @@ public:
     SerialEnd(Network::Core& core, End end, std::filesystem::path link)
         : client_{end, 1}, link_(std::move(link)), terminal_(openTerminal()) {
         std::error_code error;
-        // Of an emulator that was killed: any other link is the user's, as in /dev/serial/by-id.
-        if (std::filesystem::read_symlink(link_, error).string().starts_with("/dev/pts/"))
-            std::filesystem::remove(link_, error);
+        if (leadsToTerminal(link_)) std::filesystem::remove(link_, error);
         std::filesystem::create_symlink(terminal_.name, link_, error);
         if (error) {
             shut();

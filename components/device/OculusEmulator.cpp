@@ -34,7 +34,10 @@ std::optional<OculusModel> oculusModelOf(uint16_t part) {
 }
 
 OculusEmulator::OculusEmulator(const OculusConfig& config, Time started)
-    : config_(config), capabilities_(capabilitiesOf(config.model)), encoder_(config.code_bits), started_(started) {
+    : config_(config),
+      capabilities_(capabilitiesOf(config.model)),
+      encoder_(config.code_bits),
+      started_(steady_.read(started)) {
     fire_.rate = OculusFire::standby;
 }
 
@@ -54,10 +57,9 @@ void OculusEmulator::take(std::span<const uint8_t> message) {
     if (oculusUserConfig(message)) return;  // the network settings are not changed
     const auto asked = oculusFire(message);
     const auto settings = asked ? possible(*asked) : std::nullopt;
-    if (settings)
-        fire_ = *settings;
-    else
-        ++refused_;
+    if (!settings) return void(++refused_);
+    fire_ = *settings;
+    speed_was_set_ = speed_was_set_ || fire_.speed_of_sound != 0;
 }
 
 std::optional<OculusFire> OculusEmulator::possible(OculusFire fire) const {
@@ -83,7 +85,7 @@ types::SonarSettings OculusEmulator::settingsOf(const OculusFire& fire, Time now
     settings.time = now;
     settings.range = rangeOf(fire);
     settings.frequency_khz = mode(fire).frequency_khz;
-    settings.speed_of_sound = fire.speed_of_sound != 0 ? fire.speed_of_sound : own_speed_;
+    settings.speed_of_sound = fire.speed_of_sound != 0 || speed_was_set_ ? fire.speed_of_sound : settings.unset;
     settings.gain_db = std::lerp(config_.gain_min_db, config_.gain_max_db, usedGain(fire) / 100);
     settings.field_of_view = types::Angle::fromDeg(mode(fire).field_of_view_deg);
     settings.beam_height = types::Angle::fromDeg(mode(fire).beam_height_deg);
@@ -95,13 +97,27 @@ types::SonarSettings OculusEmulator::settingsOf(const OculusFire& fire, Time now
 
 bool OculusEmulator::isDue(Time now) {
     if (!asked_.empty()) {
+        if (was_set_back_) return true;
         if (now < asked_.deadline(2.0 * static_cast<double>(asked_.size()))) return false;
         ++lost_;
     }
     return now >= last_ping_ + periodOf(fire_);
 }
 
-OculusEmulator::Due OculusEmulator::tick(Time now) {
+Time OculusEmulator::follow(Time clock) {
+    const Time now = steady_.read(clock);
+    was_set_back_ = was_set_back_ || steady_.jumpedBack();
+    return now;
+}
+
+OculusEmulator::Due OculusEmulator::tick(Time clock) {
+    Due due = workAt(follow(clock), clock);
+    was_set_back_ = false;
+    due.next = steady_.clock(due.next);
+    return due;
+}
+
+OculusEmulator::Due OculusEmulator::workAt(Time now, Time clock) {
     Due due;
     if (now >= last_status_ + second) {
         due.status = statusBytes();
@@ -118,8 +134,8 @@ OculusEmulator::Due OculusEmulator::tick(Time now) {
         return due;
     }
     if (isDue(now)) {
-        due.ask = settingsOf(fire_, now);
-        asked_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {*due.ask, fire_});
+        due.ask = settingsOf(fire_, clock);
+        asked_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {now, *due.ask, fire_});
         const Time planned = last_ping_ + periodOf(fire_);  // keeps the rate even if a cycle is late
         last_ping_ = now - planned < periodOf(fire_) ? planned : now;
     }
@@ -130,9 +146,8 @@ OculusEmulator::Due OculusEmulator::tick(Time now) {
 Bytes OculusEmulator::ping(const types::Sonar& codes) {
     const bool fits = codes.bin_count > 0 && codes.beam_count > 0 && codes.bin_count <= 65535 &&
                       codes.beam_count <= 65535 && codes.wellShaped();
-    const auto asked = fits ? asked_.take(codes.time) : std::nullopt;
+    const auto asked = fits ? asked_.take(steady_.steady(codes.time)) : std::nullopt;
     if (!asked) return {};
-    if (std::isnan(asked->settings.speed_of_sound)) own_speed_ = static_cast<double>(codes.speed_of_sound);
     if (inStandby()) return {};
     return bytesOf(resultOf(*asked, codes));
 }
@@ -150,7 +165,7 @@ OculusResult OculusEmulator::resultOf(const Asked& asked, const types::Sonar& co
     result.temperature_celsius = config_.temperature_celsius;
     result.pressure_bar = config_.pressure_bar;
     result.speed_of_sound = static_cast<double>(codes.speed_of_sound);
-    result.start_s = (asked.settings.time - started_).seconds();
+    result.start_s = (asked.asked - started_).seconds();
     result.start_ticks = static_cast<uint32_t>(static_cast<uint64_t>(result.start_s * oculus_ticks_per_second));
     result.range_resolution = codes.binWidth();
     if (!(result.range_resolution > 0)) result.range_resolution = asked.settings.range / codes.bin_count;

@@ -11,6 +11,7 @@
 #include "components/device/OculusMessages.hpp"
 #include "components/device/OculusPing.hpp"
 #include "types/Describe.hpp"
+#include "types/Elapsed.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"
 #include "types/Time.hpp"
@@ -94,8 +95,12 @@ public:
 
     /** Returns the due work. One ping is in progress at a time. A ping that does not arrive within two seconds and the
      *  travel time of its sound is requested again, the next after four seconds, and so on. A late ping is still sent
-     *  when it arrives. */
-    Due tick(types::Time now);
+     *  when it arrives. The clock may be set; a ping that was requested before it was set back by more than a
+     *  second is requested again at once. */
+    Due tick(types::Time clock);
+    /** Reads the clock before a ping is taken, which may be stamped after the clock was set; returns the steady time.
+     */
+    types::Time follow(types::Time clock);
     /** Returns the message of a ping, for all clients; empty if no request waits for it. The ping's bins are a
      *  receiver's codes. */
     Bytes ping(const types::Sonar& codes);
@@ -110,6 +115,7 @@ private:
     static constexpr size_t max_message = 4096;
 
     struct Asked {
+        types::Time asked;  ///< Steady time.
         types::SonarSettings settings;
         OculusFire fire;
     };
@@ -119,6 +125,7 @@ private:
     std::optional<OculusFire> possible(OculusFire fire) const;
     double rangeOf(const OculusFire& fire) const;
     types::SonarSettings settingsOf(const OculusFire& fire, types::Time now) const;
+    Due workAt(types::Time now, types::Time clock);
     bool isDue(types::Time now);
     OculusResult resultOf(const Asked& asked, const types::Sonar& codes);
     Bytes statusBytes() const;
@@ -127,13 +134,14 @@ private:
     OculusConfig config_;
     const OculusCapabilities& capabilities_;
     OculusEncoder encoder_;
+    types::SteadyTime steady_;
+    bool was_set_back_ = false;  ///< By more than a second since the last tick.
     types::Time started_;
     std::map<ClientId, OculusFramer> clients_;
     OculusFire fire_;
     AskedPings<Asked> asked_{4};  ///< With more than one, all but the newest have not arrived in time.
     types::Time last_ping_, last_dummy_, last_status_;
-    double own_speed_ =
-        types::SonarSettings::unset;  ///< Speed of sound of the sonar, if no driver sets a speed of sound [m/s].
+    bool speed_was_set_ = false;  ///< By a driver; 0 then requests the sonar's own speed of sound.
     uint32_t number_ = 0;
     std::atomic<uint64_t> lost_{0}, refused_{0};  ///< Other threads than the task's may read them.
 };

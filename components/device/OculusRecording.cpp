@@ -116,25 +116,29 @@ std::optional<OculusItem> OculusRecording::next() {
     return std::nullopt;
 }
 
+Bytes bytesOf(const OculusFileHeader& header) {
+    NumberWriter writer{marked(file_mark, OculusFileHeader::size)};
+    visitFileHeader(header, writer);
+    return std::move(writer.bytes);
+}
+
+Bytes bytesOf(const OculusItem& item) {
+    NumberWriter writer{marked(item_mark, OculusItem::header_size)};
+    visitItem(item, static_cast<uint32_t>(item.payload.size()), writer);
+    writer.bytes.insert(writer.bytes.end(), item.payload.begin(), item.payload.end());
+    return std::move(writer.bytes);
+}
+
+OculusItem itemOf(double time, std::span<const uint8_t> message) {
+    return {.time = time,
+            .original_size = static_cast<uint32_t>(message.size()),
+            .payload = {message.begin(), message.end()}};
+}
+
 OculusRecorder::OculusRecorder(const std::filesystem::path& file, const OculusFileHeader& header)
     : path_(file), file_(file, std::ios::binary) {
     if (!file_) throw types::ConfigError(file.string(), "", "cannot be written");
-    NumberWriter writer{marked(file_mark, OculusFileHeader::size)};
-    visitFileHeader(header, writer);
-    put(writer.bytes);
-}
-
-void OculusRecorder::write(const OculusItem& item) {
-    NumberWriter writer{marked(item_mark, OculusItem::header_size)};
-    visitItem(item, static_cast<uint32_t>(item.payload.size()), writer);
-    put(writer.bytes);
-    put(item.payload);
-}
-
-void OculusRecorder::write(double time, std::span<const uint8_t> message) {
-    write({.time = time,
-           .original_size = static_cast<uint32_t>(message.size()),
-           .payload = {message.begin(), message.end()}});
+    put(bytesOf(header));
 }
 
 void OculusRecorder::put(const Bytes& bytes) {

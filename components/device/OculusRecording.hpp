@@ -40,6 +40,11 @@ struct OculusItem {
     std::optional<Bytes> content() const;
 };
 
+Bytes bytesOf(const OculusFileHeader& header);
+Bytes bytesOf(const OculusItem& item);
+/** Returns the item of a message of the device, at a time since the epoch [s]. */
+OculusItem itemOf(double time, std::span<const uint8_t> message);
+
 /** Reads a *.oculus file item by item; skips damaged parts to the next item. */
 class OculusRecording {
 public:
@@ -72,9 +77,9 @@ public:
     OculusRecorder(const std::filesystem::path& file, const OculusFileHeader& header);
 
     /** Adds an item unchanged. Throws std::runtime_error when the system cannot write it. */
-    void write(const OculusItem& item);
+    void write(const OculusItem& item) { put(bytesOf(item)); }
     /** Adds a message of the device, at a time since the epoch [s]. */
-    void write(double time, std::span<const uint8_t> message);
+    void write(double time, std::span<const uint8_t> message) { write(itemOf(time, message)); }
 
 private:
     void put(const Bytes& bytes);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/framework/MayLose.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -26,6 +27,9 @@ std::vector<std::string> OculusTask::notices() const {
         all.push_back(std::to_string(emulator_->lost()) + " pings of the sonar did not arrive in time");
     if (emulator_ && emulator_->refused() > 0)
         all.push_back(std::to_string(emulator_->refused()) + " messages of drivers were not valid settings");
+    if (unrecorded_ > 0)
+        all.push_back("Warning: at least " + std::to_string(unrecorded_) + " pings are not in " + *config->record +
+                      ": " + record_failure_);
     return all;
 }
 
@@ -45,14 +49,52 @@ void OculusTask::listen(Network& network) {
 }
 
 void OculusTask::openRecord() {
-    recorder_.reset();
+    recorded_.reset();
+    unrecorded_ = 0;
     if (!config->record) return;
     const std::filesystem::path file = outputPath(*config->record);
     try {
-        recorder_.emplace(file, OculusFileHeader{.time = now().seconds()});
+        if (!std::filesystem::is_directory(file.parent_path())) throw types::ConfigError("", "", "no folder");
+        recorded_ = std::make_unique<output::ByteFile>(file);
     } catch (const types::ConfigError&) {
         throw NetworkError("record", "is " + file.string() + ", which cannot be written");
     }
+    const Bytes header = bytesOf(OculusFileHeader{.time = now().seconds()});
+    recorded_->append({header.begin(), header.end()});
+}
+
+bool OculusTask::startHook() {
+    if (!recorded_) openRecord();
+    return true;
+}
+
+void OculusTask::stopHook() {
+    if (!recorded_) return;
+    try {
+        recorded_->close();
+    } catch (const std::exception& failure) {
+        endRecord(failure);
+    }
+    recorded_.reset();
+}
+
+void OculusTask::record(const Bytes& message) {
+    if (!config->record || message.empty()) return;
+    if (!recorded_) return void(++unrecorded_);
+    try {
+        const Bytes item = bytesOf(itemOf(now().seconds(), message));
+        recorded_->append({item.begin(), item.end()});
+    } catch (const std::exception& failure) {
+        endRecord(failure);
+    }
+}
+
+void OculusTask::endRecord(const std::exception& failure) {
+    if (!framework::mayLose(environment())) throw;
+    record_failure_ = failure.what();
+    recorded_.reset();
+    ++unrecorded_;
+    error(record_failure_ + "; the recording ends here, and further pings are not in it");
 }
 
 void OculusTask::sendStatus(const Bytes& status, Network& network) const {
@@ -77,7 +119,7 @@ void OculusTask::takePings() {
         checkCodes(*sample);
         const Bytes message = emulator_->ping(*sample);
         sendToAll(message);
-        if (recorder_ && !message.empty()) recorder_->write(now().seconds(), message);
+        record(message);
     }
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <atomic>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -7,6 +9,7 @@
 #include "components/device/OculusEmulator.hpp"
 #include "components/device/OculusRecording.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/output/ByteFile.hpp"
 #include "types/RecurringDiagnostic.hpp"
 #include "types/Sonar.hpp"
 
@@ -30,7 +33,7 @@ struct OculusTaskConfig {
         visit({"status_port", "1", "UDP port of the status; drivers expect 52102", 1, 65535}, self.status_port);
         visit({"record", "",
                "file (.oculus) of the maker's viewer for the pings that are sent, relative to the output "
-               "folder; absent: none"},
+               "folder, written anew at each start; absent: none"},
               self.record);
         OculusConfig::describe(self.device, visit);
     }
@@ -57,16 +60,25 @@ private:
     void opened(Client client) override;
     void received(Client client, std::span<const uint8_t> bytes) override;
     void closed(Client client) override;
+    void follow(types::Time clock) override { emulator_->follow(clock); }
     void takePings() override;
     std::optional<types::Time> tick(types::Time now) override;
+    bool startHook() override;
+    void stopHook() override;
     void openRecord();
+    /** Adds a message to the recording. A message that the disk cannot take is counted where a run may lose samples. */
+    void record(const Bytes& message);
+    /** Ends a recording that cannot be written any more; throws `failure` where a run may not lose samples. */
+    void endRecord(const std::exception& failure);
     void sendStatus(const Bytes& status, Network& network) const;
     void sendToAll(const Bytes& message);
     /** Warns when bins are not codes. */
     void checkCodes(const types::Sonar& codes);
 
     std::optional<OculusEmulator> emulator_;
-    std::optional<OculusRecorder> recorder_;
+    std::unique_ptr<output::ByteFile> recorded_;  ///< Null: no recording, or it cannot be written any more.
+    std::atomic<uint64_t> unrecorded_{0};         ///< Pings that are not in the recording [1].
+    std::string record_failure_;
     std::set<Client> clients_;
     types::RecurringDiagnostic no_codes_;
 };

@@ -227,7 +227,7 @@ void Ping1dEmulator::proceed(types::Time now) {
     if (wantsPing(now)) listen(now);
 }
 
-std::optional<types::Time> Ping1dEmulator::wakeAt() const {
+std::optional<types::Time> Ping1dEmulator::nextWork() const {
     if (turn_.underWay()) return turn_.next();
     if (enabled_ != 0 && !streams_.empty()) return next_;
     return {};

@@ -39,8 +39,6 @@ public:
     /** @param most the max code of the receiver that the pings come from */
     explicit Ping1dEmulator(const Ping1dConfig& config, double max_code = 65535);
 
-    std::optional<types::Time> wakeAt() const override;
-
 private:
     /** A message that a client waits for. */
     struct Wanted {
@@ -53,6 +51,7 @@ private:
     bool answer(PingClient client, uint16_t requested, types::Time now) override;
     void forget(PingClient client) override;
     void proceed(types::Time now) override;
+    std::optional<types::Time> nextWork() const override;
 
     bool answerSetting(PingClient client, uint16_t requested);
     bool answerBoard(PingClient client, uint16_t requested);

@@ -230,7 +230,7 @@ void Ping360Emulator::proceed(types::Time now) {
     while (step(now)) continue;
 }
 
-std::optional<types::Time> Ping360Emulator::wakeAt() const {
+std::optional<types::Time> Ping360Emulator::nextWork() const {
     if (phase_ == Phase::Listening) return turn_.next();
     if (phase_ == Phase::Turning || scan_) return ready_;
     return {};

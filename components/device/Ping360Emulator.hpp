@@ -37,7 +37,6 @@ public:
     /** @param most the max code of the receiver that the pings come from */
     explicit Ping360Emulator(const Ping360Config& config, double max_code = 65535);
 
-    std::optional<types::Time> wakeAt() const override;
     uint16_t angle() const { return state_.angle; }  ///< Present or next angle of the head [gradian].
     bool scans() const { return scan_.has_value(); }
 
@@ -62,6 +61,7 @@ private:
     bool answer(PingClient client, uint16_t requested, types::Time now) override;
     void forget(PingClient client) override;
     void proceed(types::Time now) override;
+    std::optional<types::Time> nextWork() const override;
 
     void takeTransducer(PingClient client, const Ping360Transducer& asked);
     void takeAutoTransmit(PingClient client, const Ping360AutoTransmit& asked);

@@ -47,8 +47,8 @@ void PingTurn::ask(types::Time now) {
     asked_.add(now, after(std::max(now, due_), listens_));
 }
 
-bool PingTurn::take(const types::SonarPtr& ping, types::Time now) {
-    if (!asked_.awaits(ping->time)) return false;
+bool PingTurn::take(const types::SonarPtr& ping, types::Time stamp, types::Time now) {
+    if (!asked_.awaits(stamp)) return false;
     if (ping->beam_count != 1 || ping->bin_count != wanted_.bin_count || !ping->wellShaped()) {
         warning_ = fmt::format(
             "pings have {} beams of {} bins where the driver asked for one of {}; connect `settings` to a sonar of one "
@@ -80,7 +80,26 @@ bool PingTurn::failed(types::Time now) {
     return true;
 }
 
-void PingDevice::receive(PingClient client, std::span<const uint8_t> bytes, bool datagram, types::Time now) {
+types::Time PingDevice::follow(types::Time clock) {
+    now_ = steady_.read(clock);
+    if (steady_.jumpedBack()) turn_.repeat(now_);
+    return now_;
+}
+
+std::optional<types::Time> PingDevice::wakeAt() const {
+    auto next = nextWork();
+    if (now_ < deaf_until_) next = std::min(next.value_or(deaf_until_), deaf_until_);
+    return next ? std::optional(steady_.clock(*next)) : std::nullopt;
+}
+
+std::optional<types::SonarSettings> PingDevice::takeAsked() {
+    auto asked = turn_.takeAsked();
+    if (asked) asked->time = steady_.clock(asked->time);
+    return asked;
+}
+
+void PingDevice::receive(PingClient client, std::span<const uint8_t> bytes, bool datagram, types::Time clock) {
+    const types::Time now = follow(clock);
     if (datagram) {
         for (const PingFrame& frame : pingFrames(bytes, max_payload_to_device)) handle(client, frame, now);
     } else {
@@ -97,8 +116,9 @@ void PingDevice::close(PingClient client) {
     forget(client);
 }
 
-void PingDevice::takePing(const types::SonarPtr& ping, types::Time now) {
-    turn_.take(ping, now);
+void PingDevice::takePing(const types::SonarPtr& ping, types::Time clock) {
+    const types::Time now = follow(clock);
+    turn_.take(ping, steady_.steady(ping->time), now);
     if (std::string warning = turn_.takeWarning(); !warning.empty() && !std::exchange(silent_, true))
         warnings_.push_back(std::move(warning));
     proceed(now);

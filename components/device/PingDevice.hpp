@@ -7,6 +7,7 @@
 
 #include "components/device/AskedPings.hpp"
 #include "components/device/PingProtocol.hpp"
+#include "types/Elapsed.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"
 
@@ -34,7 +35,7 @@ std::string diagnosticOf(std::initializer_list<PingBound> bounds);
 /** Converts a ping's codes to 8 bits. @param most the max code of the receiver */
 Bytes bytesOfCodes(std::span<const float> codes, double max_code);
 
-/** One ping at a time that is requested from a simulated sonar.
+/** One ping at a time that is requested from a simulated sonar. All times are steady.
  *
  *  Devices count echoes by time. The range follows from the sonar's speed of sound, which its pings contain. If a ping
  *  has another speed of sound than the request assumed, the ping is requested again. */
@@ -43,8 +44,12 @@ public:
     /** Requests a ping that listens for `listens` [s] and is answered no sooner than `after` from now [s]. @param
      *  wanted all settings except time and range */
     void ask(types::SonarSettings wanted, double listens, double after, types::Time now);
-    /** Takes a ping that answers the request; false for other pings. */
-    bool take(const types::SonarPtr& ping, types::Time now);
+    /** Takes a ping that answers the request; false for other pings. @param stamp the steady time of the ping's */
+    bool take(const types::SonarPtr& ping, types::Time stamp, types::Time now);
+    /** Requests a ping again that has not arrived, after the clock was set back. */
+    void repeat(types::Time now) {
+        if (!asked_.empty()) ask(now);
+    }
     void drop() {
         asked_.clear();
         ping_.reset();
@@ -79,24 +84,26 @@ private:
 /** The common part of devices of the ping protocol: finding frames, answering general requests, acknowledging and
  *  refusing. A client that sends a message of the device without payload requests that message, as older drivers do.
  *
- *  Inputs and outputs are bytes by client, pings and requests for pings; there are no sockets and no clock. */
+ *  Inputs and outputs are bytes by client, pings and requests for pings; there are no sockets. The clock, which may be
+ *  set, is an argument. */
 class PingDevice {
 public:
     virtual ~PingDevice() = default;
 
     /** Takes bytes of a client. @param datagram true: whole frames; false: a part of a stream */
-    void receive(PingClient client, std::span<const uint8_t> bytes, bool datagram, types::Time now);
+    void receive(PingClient client, std::span<const uint8_t> bytes, bool datagram, types::Time clock);
     /** Forgets a client: nothing is sent to it any more, and its requests are dropped. */
     void close(PingClient client);
     /** Takes a ping of the simulated sonar, in codes. */
-    void takePing(const types::SonarPtr& ping, types::Time now);
+    void takePing(const types::SonarPtr& ping, types::Time clock);
     /** Does the due work. */
-    void tick(types::Time now) { proceed(now); }
-    /** Returns when tick is needed next; none: not before an input. */
-    virtual std::optional<types::Time> wakeAt() const = 0;
+    void tick(types::Time clock) { proceed(follow(clock)); }
+    /** Returns when tick is needed next, also to see the clock while messages are ignored; none: not before an input.
+     */
+    std::optional<types::Time> wakeAt() const;
 
     std::vector<PingOutgoing> takeOutgoing() { return std::exchange(outgoing_, {}); }
-    std::optional<types::SonarSettings> takeAsked() { return turn_.takeAsked(); }
+    std::optional<types::SonarSettings> takeAsked();
     std::vector<std::string> takeWarnings() { return std::exchange(warnings_, {}); }
     uint8_t id() const { return id_; }
 
@@ -104,12 +111,14 @@ protected:
     PingDevice(const PingDeviceInformation& information, const PingProtocolVersion& version, uint8_t id)
         : id_(id), information_(information), version_(version) {}
 
+    // The times of these are steady.
     /** Executes a message. */
     virtual void command(PingClient client, const PingFrame& frame, types::Time now) = 0;
     /** Answers a request for one of the device's own messages; false: there is no such message. */
     virtual bool answer(PingClient client, uint16_t requested, types::Time now) = 0;
     virtual void forget(PingClient client) = 0;
     virtual void proceed(types::Time now) = 0;
+    virtual std::optional<types::Time> nextWork() const = 0;  ///< As wakeAt.
 
     void send(PingClient client, const auto& message, bool stream = false) {
         add({client, pingBytes(message, id_), stream});
@@ -138,6 +147,8 @@ protected:
     PingTurn turn_;
 
 private:
+    /** Reads the clock; returns the steady time. */
+    types::Time follow(types::Time clock);
     void handle(PingClient client, const PingFrame& frame, types::Time now);
     void handleRequest(PingClient client, uint16_t requested, types::Time now);
     /** Bytes streamed to a client at once are one piece, which the next one replaces whole. */
@@ -151,6 +162,8 @@ private:
     std::vector<PingOutgoing> outgoing_;
     std::vector<std::string> warnings_;
     bool silent_ = false;
+    types::SteadyTime steady_;
+    types::Time now_;  ///< At the last reading.
     types::Time deaf_until_;
 };
 

@@ -9,6 +9,7 @@
 #include <regex>
 #include <utility>
 
+#include "components/command/Json.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::device {
@@ -186,9 +187,10 @@ struct Sonar3dEmulator::Api {
     }
 
     Json timeStatus() const {
-        const Json since =
-            state.ntp_synced ? Json(static_cast<int64_t>((time - state.synced_at).seconds())) : Json(nullptr);
-        return {{"system_time", isoText(time + device.shift_)},
+        const Json since = state.ntp_synced
+                               ? Json(static_cast<int64_t>((device.steady_.steady(time) - state.synced_at).seconds()))
+                               : Json(nullptr);
+        return {{"system_time", isoText(device.deviceTime(time))},
                 {"ntp_synced", state.ntp_synced},
                 {"ntp_synced_to", state.ntp_synced ? state.ntp_address : ""},
                 {"ntp_seconds_since_last_sync", since}};
@@ -201,7 +203,7 @@ struct Sonar3dEmulator::Api {
             const auto set = isoTime(text);
             if (!set) throw bad(fmt::format("now is \"{}\"; must be like 2026-11-23T03:10:05Z", text));
             if (state.ntp_synced) throw Refused{409, "the time is synchronised already"};
-            device.shift_ = *set - time;
+            device.shift_ = *set - device.steady_.steady(time);
         });
         paths["time/ntp"] = {[this] {
                                  return Json{{"ntp_address", state.ntp_address}};
@@ -215,9 +217,9 @@ struct Sonar3dEmulator::Api {
         paths["time/ntp/force-sync"].post = [this](const Json& json) {
             if (numberIn(memberOf(json, "timeout_seconds"), "timeout_seconds") < 0)
                 throw bad("timeout_seconds must not be negative");
-            device.shift_ = {};
+            device.shift_.reset();
             state.ntp_synced = true;
-            state.synced_at = time;
+            state.synced_at = device.steady_.steady(time);
             return std::optional<Json>(Json{{"success", true}, {"message", "Synchronised."}, {"status", timeStatus()}});
         };
     }
@@ -231,7 +233,7 @@ struct Sonar3dEmulator::Api {
         if (request.method == "GET" && known.get) return {200, known.get().dump()};
         if (request.method != "POST" || !known.post)
             throw Refused{405, fmt::format("{} does not know {}", request.path, request.method)};
-        const Json body = Json::parse(request.body, nullptr, false);
+        const Json body = command::readJson<Json>(request.body);
         if (body.is_discarded()) throw bad("the body is no JSON");
         const auto answer = known.post(body);
         return answer ? HttpReply{200, answer->dump()} : HttpReply{};
@@ -248,9 +250,14 @@ void Sonar3dDevice::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"multicast_address", "is \"" + multicast_address + "\"; must be like 224.0.0.96"});
 }
 
-HttpReply Sonar3dEmulator::answer(const HttpRequest& request, types::Time now) {
+types::Time Sonar3dEmulator::deviceTime(types::Time stamp) const {
+    return shift_ ? steady_.steady(stamp) + *shift_ : stamp;
+}
+
+HttpReply Sonar3dEmulator::answer(const HttpRequest& request, types::Time clock) {
+    follow(clock);
     try {
-        return Api(*this, now).reply(request);
+        return Api(*this, clock).reply(request);
     } catch (const Refused& refused) {
         return httpError(refused.status, refused.why);
     }
@@ -263,7 +270,7 @@ double Sonar3dEmulator::speedOfSound() const {
 
 void Sonar3dEmulator::ask(types::Time now) {
     types::SonarSettings settings;
-    settings.time = now;
+    settings.time = steady_.clock(now);
     settings.range = state_.range_max;
     settings.frequency_khz = frequencyKhz(state_);
     settings.speed_of_sound = speedOfSound();
@@ -276,8 +283,19 @@ void Sonar3dEmulator::ask(types::Time now) {
     outlet_.ask(settings);
 }
 
-std::optional<types::Time> Sonar3dEmulator::tick(types::Time now) {
+types::Time Sonar3dEmulator::follow(types::Time clock) {
+    const types::Time now = steady_.read(clock);
+    if (steady_.jumpedBack() && !asked_.empty()) ask(now);
+    return now;
+}
+
+std::optional<types::Time> Sonar3dEmulator::tick(types::Time clock) {
+    const types::Time now = follow(clock);
     if (!state_.acoustics) return std::nullopt;
+    return steady_.clock(workAt(now));
+}
+
+types::Time Sonar3dEmulator::workAt(types::Time now) {
     types::Time due = last_ ? *last_ + types::Time::fromSeconds(period()) : now;
     if (!asked_.empty()) due = std::max(due, asked_.deadline());
     if (now < due) return due;
@@ -289,7 +307,7 @@ std::optional<types::Time> Sonar3dEmulator::tick(types::Time now) {
 
 RipImage Sonar3dEmulator::frameOf(const types::DepthMap& map, const Sonar3dState& asked) const {
     RipImage image;
-    image.time = map.time + shift_;
+    image.time = deviceTime(map.time);
     image.sequence = sequence_;
     image.speed_of_sound = static_cast<float>(asked.speed_of_sound);
     image.range = static_cast<float>(asked.range_max);
@@ -308,7 +326,7 @@ void Sonar3dEmulator::send(const Bytes& packet) {
 }
 
 void Sonar3dEmulator::takePing(const types::DepthMap& map) {
-    const auto asked = asked_.take(map.time);
+    const auto asked = asked_.take(steady_.steady(map.time));
     if (!asked) return;
     warned_ = false;
     ++sequence_;

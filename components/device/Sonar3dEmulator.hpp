@@ -8,6 +8,7 @@
 #include "components/device/Http.hpp"
 #include "components/device/Rip2.hpp"
 #include "types/DepthMap.hpp"
+#include "types/Elapsed.hpp"
 #include "types/SonarSettings.hpp"
 
 namespace insonify::device {
@@ -52,13 +53,14 @@ struct Sonar3dState {
     bool imu = false;
     std::string ntp_address = "auto";
     bool ntp_synced = false;
-    types::Time synced_at;
+    types::Time synced_at;  ///< Steady time.
 };
 
 /** A Water Linked Sonar 3D-15 without sockets and clocks: answers to its HTTP API, and range images in its protocol.
  *
  *  Once acoustics are enabled it requests pings at the rate of its mode, one at a time. Each range image is sent with
- *  the image of its strengths. The device reads the given clock plus the offset that a client has set. There is no IMU:
+ *  the image of its strengths. The device reads the given clock until a client sets its time; then its clock runs on
+ *  evenly, however the given clock is set. There is no IMU:
  *  its switch is kept and nothing is sent. */
 class Sonar3dEmulator {
 public:
@@ -72,16 +74,21 @@ public:
         state_.range_max = std::min(state_.range_max, device_.longest_range);
     }
 
-    HttpReply answer(const HttpRequest& request, types::Time now);
+    HttpReply answer(const HttpRequest& request, types::Time clock);
+    /** Reads the clock, which may be set, before a ping is taken; returns the steady time. A ping that was requested
+     *  before it was set back by more than a second is requested again. */
+    types::Time follow(types::Time clock);
     /** Takes a requested ping, even a late one: ranges and strengths by direction. */
     void takePing(const types::DepthMap& map);
     /** Sends due requests; returns when the next is due. */
-    std::optional<types::Time> tick(types::Time now);
+    std::optional<types::Time> tick(types::Time clock);
     const Sonar3dState& state() const { return state_; }
 
 private:
     struct Api;
     void ask(types::Time now);
+    types::Time workAt(types::Time now);              ///< As tick, in steady time.
+    types::Time deviceTime(types::Time stamp) const;  ///< What the device's clock shows at a stamp of ours.
     double speedOfSound() const;
     double period() const { return state_.high_frequency ? 1.0 / 20 : 1.0 / 5; }  ///< [s]
     double frequencyKhz(const Sonar3dState& state) const {
@@ -95,8 +102,9 @@ private:
     Outlet outlet_;
     Sonar3dState state_;
     AskedPings<Sonar3dState> asked_{8};  ///< With the state at each request.
+    types::SteadyTime steady_;
     std::optional<types::Time> last_;
-    types::Time shift_;  ///< Shift of the device's clock.
+    std::optional<types::Time> shift_;  ///< Of the device's clock from steady time, once a client has set it.
     uint32_t sequence_ = 0;
     bool warned_ = false;
 };

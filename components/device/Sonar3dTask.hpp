@@ -56,6 +56,7 @@ private:
         network().close(client);
     }
     void closed(Client client) override { clients_.erase(client); }
+    void follow(types::Time clock) override { emulator_->follow(clock); }
     void takePings() override {
         for (types::DepthMapPtr map; range_image.readNew(map);) emulator_->takePing(*map);
     }

@@ -16,7 +16,7 @@ bool Executor::advance() { throw std::logic_error("only schedule: lockstep can a
 
 Progress Executor::progress() const {
     const uint64_t counted = graph_.countedSamples(), rehearsed = std::min(counted, first_);
-    return {counted - rehearsed, rehearsed, (environment_.now() - start_).seconds(),
+    return {counted - rehearsed, rehearsed, environment_.elapsed().seconds(),
             std::chrono::duration<double>(Clock::now() - wall_start_).count()};
 }
 

@@ -20,7 +20,7 @@ struct RunLimits {
     };
 
     uint64_t samples = 0;   ///< Counted samples, see Graph::countedSamples.
-    double duration_s = 0;  ///< On the deployment's clock [s].
+    double duration_s = 0;  ///< By Environment::elapsed [s].
     double pace = 0;        ///< In lockstep, max simulated seconds per wall-clock second; 0: unlimited.
     /** In lockstep: makes only these samples. Instants before the shard are rehearsed. From the instant after sample
      *  `first` - 1 the run proceeds as the whole run does; it ends with sample `last` - 1. All tasks must be
@@ -31,7 +31,7 @@ struct RunLimits {
 struct Progress {
     uint64_t samples = 0;    ///< Counted samples, see Graph::countedSamples; in a shard, those made.
     uint64_t rehearsed = 0;  ///< Counted samples before the shard.
-    double elapsed_s = 0;    ///< On the deployment's clock [s].
+    double elapsed_s = 0;    ///< By Environment::elapsed [s].
     double wall_s = 0;       ///< [s]
 };
 

@@ -25,7 +25,8 @@ public:
     virtual std::optional<types::Time> nextTime() const { return std::nullopt; }
 
     /** Returns, in realtime, the clock that all tasks read instead of `wall`; it may follow `wall` at its own pace.
-     *  None: this task has no clock. Called once, when the connections are made. */
+     *  `wall` is never set, and counts from an unspecified time. None: this task has no clock. Called once, when the
+     *  connections are made. */
     virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
 };
 

@@ -72,11 +72,16 @@ void RealtimeExecutor::followClocks() {
     for (const auto& task : graph_.tasks()) {
         auto* const source = dynamic_cast<ClockSource*>(task.get());
         if (!source) continue;
-        if (auto clock = source->clock(environment_.now)) {
+        const std::function<types::Time()> wall = environment_.wall_clock ? steadyClock : environment_.now;
+        if (auto clock = source->clock(wall)) {
             environment_.now = std::move(clock);
             environment_.wall_clock = false;
         }
     }
+    if (!environment_.wall_clock) return;
+    environment_.run_time = [this] {
+        return types::Time{std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - wall_start_).count()};
+    };
 }
 
 void RealtimeExecutor::begin() {
@@ -85,6 +90,7 @@ void RealtimeExecutor::begin() {
         if (const std::string refused = lockMemory(); !refused.empty()) environment_.warn(refused);
     prepareThreads();
     start_ = environment_.now();
+    wall_start_ = Clock::now();
     watchdog_.emplace(watchdogLimits(), environment_.warn);
 }
 

@@ -20,22 +20,35 @@ AlignedPortBase::AlignedPortBase(StreamAligner& aligner, const InputPortBase& po
     aligner.enlist(this);
 }
 
+AlignedMoment AlignedPortBase::momentOf(types::Time time) const {
+    if (last_.time == before_all) return {aligner_.newest().round, time};
+    const bool is_back = time < last_.time && outlasts(last_.time, time, types::max_lateness + types::Time{1});
+    return {is_back ? std::max(last_.round + 1, aligner_.handedOver().round) : last_.round, time};
+}
+
 bool AlignedPortBase::accepts(types::Time time) {
     ++counts_.received;
-    if (time < std::max(last_, aligner_.handedOver())) return ++counts_.late, false;
-    last_ = time;
-    aligner_.noteTaken(time);
+    AlignedMoment moment = momentOf(time);
+    if (moment.round < aligner_.handedOver().round) {
+        if (!behind_since_ || time < *behind_since_) behind_since_ = time;
+        if (outlasts(time, *behind_since_, aligner_.timeout())) moment.round = aligner_.handedOver().round;
+    }
+    if (moment < std::max(last_, aligner_.handedOver())) return ++counts_.late, false;
+    behind_since_.reset();
+    last_ = moment;
+    aligner_.noteTaken(moment);
     return true;
 }
 
 void AlignedPortBase::clear() {
     forget();
     counts_ = {};
-    last_ = before_all;
+    last_ = {};
+    behind_since_.reset();
 }
 
-bool AlignedPortBase::holdsUp(types::Time time) const {
-    return empty() && port_.connected() && (counts_.received == 0 || last_ < time);
+bool AlignedPortBase::holdsUp(const AlignedMoment& moment) const {
+    return empty() && port_.connected() && (counts_.received == 0 || last_ < moment);
 }
 
 std::string AlignedPortBase::notice() const {
@@ -50,11 +63,15 @@ std::string AlignedPortBase::notice() const {
 
 void StreamAligner::clear(double timeout) {
     timeout_ = types::Time::fromSeconds(timeout);
-    newest_ = done_ = before_all;
+    newest_ = done_ = {};
+    round_began_ = before_all;
     for (AlignedPortBase* port : ports_) port->clear();
 }
 
-void StreamAligner::noteTaken(types::Time time) { newest_ = std::max(newest_, time); }
+void StreamAligner::noteTaken(const AlignedMoment& moment) {
+    if (newest_.time == before_all || moment.round > newest_.round) round_began_ = moment.time;
+    newest_ = std::max(newest_, moment);
+}
 
 void StreamAligner::update() {
     bool taken = true;
@@ -72,6 +89,11 @@ void StreamAligner::flush() {
 
 std::vector<std::string> StreamAligner::notices() const {
     std::vector<std::string> notices;
+    if (newest_.round > 0)
+        notices.push_back(
+            fmt::format("stamps went back by more than {:g} s {} times; the samples after each are in the order of "
+                        "their new stamps",
+                        types::max_lateness.seconds(), newest_.round));
     for (const AlignedPortBase* port : ports_)
         if (std::string notice = port->notice(); !notice.empty()) notices.push_back(std::move(notice));
     return notices;
@@ -80,23 +102,24 @@ std::vector<std::string> StreamAligner::notices() const {
 AlignedPortBase* StreamAligner::earliest() const {
     AlignedPortBase* earliest = nullptr;
     for (AlignedPortBase* port : ports_)
-        if (!port->empty() && (!earliest || port->firstTime() < earliest->firstTime())) earliest = port;
+        if (!port->empty() && (!earliest || port->first() < earliest->first())) earliest = port;
     return earliest;
 }
 
 bool StreamAligner::isDue(const AlignedPortBase& candidate) {
-    const types::Time time = candidate.firstTime();
-    const auto holdsUp = [time](const AlignedPortBase* port) { return port->holdsUp(time); };
+    const AlignedMoment moment = candidate.first();
+    const auto holdsUp = [&moment](const AlignedPortBase* port) { return port->holdsUp(moment); };
     if (std::ranges::none_of(ports_, holdsUp)) return true;
     const auto isFull = [](const AlignedPortBase* port) { return port->full(); };
-    if (!outlasts(newest_, time, timeout_) && std::ranges::none_of(ports_, isFull)) return false;
+    const types::Time since = moment.round == newest_.round ? moment.time : round_began_;
+    if (!outlasts(newest_.time, since, timeout_) && std::ranges::none_of(ports_, isFull)) return false;
     for (AlignedPortBase* port : ports_)
-        if (port->holdsUp(time)) port->noteAwaited();
+        if (port->holdsUp(moment)) port->noteAwaited();
     return true;
 }
 
 void StreamAligner::handOver(AlignedPortBase& port) {
-    done_ = port.firstTime();
+    done_ = port.first();
     port.handOver();
 }
 

@@ -2,11 +2,12 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "components/framework/Port.hpp"
-#include "types/Time.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::framework {
 
@@ -14,6 +15,14 @@ class StreamAligner;
 
 /** The time of a sample that has not arrived yet. */
 constexpr types::Time before_all{std::numeric_limits<int64_t>::min()};
+
+/** The place of a sample in the order: by its stamp, in rounds that begin where stamps go back by more than
+ *  types::max_lateness, as a recording that repeats or after a clock was set back. */
+struct AlignedMoment {
+    uint64_t round = 0;
+    types::Time time = before_all;
+    friend auto operator<=>(const AlignedMoment&, const AlignedMoment&) = default;
+};
 
 /** The untyped part of a StreamAligner's port. */
 class AlignedPortBase {
@@ -37,23 +46,29 @@ public:
     // For its aligner only.
     virtual bool empty() const = 0;
     virtual bool full() const = 0;
-    virtual types::Time firstTime() const = 0;  ///< Returns the time of the oldest waiting sample; there must be one.
-    virtual bool fill() = 0;                    ///< Takes new samples while there is capacity; false: none was new.
-    virtual void handOver() = 0;                ///< Hands over the oldest waiting sample.
-    void clear();                               ///< Forgets samples and counts.
-    bool holdsUp(types::Time time) const;       ///< A sample before that time may still arrive.
+    virtual AlignedMoment first() const = 0;          ///< Of the oldest waiting sample; there must be one.
+    virtual bool fill() = 0;                          ///< Takes new samples while there is capacity; false: none.
+    virtual void handOver() = 0;                      ///< Hands over the oldest waiting sample.
+    void clear();                                     ///< Forgets samples and counts.
+    bool holdsUp(const AlignedMoment& moment) const;  ///< A sample before that moment may still arrive.
     void noteAwaited() { ++counts_.awaited; }
 
 protected:
     virtual void forget() = 0;  ///< Drops the waiting samples.
     /** Records a sample's time; returns whether it is in the order of time. */
     bool accepts(types::Time time);
+    uint64_t round() const { return last_.round; }  ///< Of the sample that was accepted last.
 
 private:
+    AlignedMoment momentOf(types::Time time) const;
+
     StreamAligner& aligner_;
     const InputPortBase& port_;
     Counts counts_;
-    types::Time last_ = before_all;  ///< Time of the newest sample.
+    AlignedMoment last_;  ///< The newest sample.
+    /** Stamp of the first dropped sample of a round that is over. A port whose stamps did not go back with the others
+     *  takes part again after the timeout. */
+    std::optional<types::Time> behind_since_;
 };
 
 /** Hands over the samples of several ports in the order of their stamps, regardless of their order of arrival, as
@@ -68,8 +83,9 @@ private:
  *  A sample waits until every other port has a sample that is as late or later, so that no earlier sample can arrive.
  *  It stops waiting once some port has a sample later by `timeout`, or its own buffer is full. A silent port thus
  *  delays the others by at most `timeout`; the samples that went on without it are counted. Samples of equal time are
- *  handed over in the order in which their ports were declared. Late samples are dropped and counted. No clock is read:
- *  the same samples in the same order give the same result. */
+ *  handed over in the order in which their ports were declared. Late samples are dropped and counted. When a port's
+ *  stamps go back by more than types::max_lateness, its samples wait until those of the other ports do, or for the
+ *  timeout, and the order begins anew. No clock is read: the same samples in the same order give the same result. */
 class StreamAligner {
 public:
     void clear(double timeout);  ///< Forgets samples and counts; the timeout is in [s] of the samples' time.
@@ -80,8 +96,10 @@ public:
 
     // For its ports only.
     void enlist(AlignedPortBase* port) { ports_.push_back(port); }
-    types::Time handedOver() const { return done_; }  ///< Time of the sample handed over last.
-    void noteTaken(types::Time time);                 ///< A port has taken a sample of that time.
+    const AlignedMoment& handedOver() const { return done_; }  ///< Of the sample handed over last.
+    const AlignedMoment& newest() const { return newest_; }
+    types::Time timeout() const { return timeout_; }
+    void noteTaken(const AlignedMoment& moment);  ///< A port has taken a sample of that moment.
 
 private:
     AlignedPortBase* earliest() const;
@@ -90,8 +108,9 @@ private:
 
     std::vector<AlignedPortBase*> ports_;
     types::Time timeout_;
-    types::Time newest_ = before_all;  ///< Time of the newest of all samples.
-    types::Time done_ = before_all;    ///< Time of the sample handed over last.
+    AlignedMoment newest_;                  ///< Of all samples.
+    AlignedMoment done_;                    ///< Of the sample handed over last.
+    types::Time round_began_ = before_all;  ///< Stamp of the first sample of the newest round.
 };
 
 template <class T>
@@ -102,7 +121,7 @@ public:
         : AlignedPortBase(aligner, port), input_(port), use_(std::move(use)), ring_(capacity) {}
 
     /** The oldest waiting sample, next to be handed over. Null when there is none. */
-    const T* next() const { return count_ > 0 ? &ring_[first_] : nullptr; }
+    const T* next() const { return count_ > 0 ? &ring_[first_].sample : nullptr; }
 
 private:
     static types::Time timeOf(const T& sample) {
@@ -113,24 +132,28 @@ private:
     }
     bool empty() const override { return count_ == 0; }
     bool full() const override { return count_ == ring_.size(); }
-    types::Time firstTime() const override { return timeOf(ring_[first_]); }
+    AlignedMoment first() const override { return {ring_[first_].round, timeOf(ring_[first_].sample)}; }
     bool fill() override {
         bool any = false;
         for (; !full() && input_.readNew(sample_); any = true)
-            if (accepts(timeOf(sample_))) ring_[(first_ + count_++) % ring_.size()] = std::move(sample_);
+            if (accepts(timeOf(sample_))) ring_[(first_ + count_++) % ring_.size()] = {std::move(sample_), round()};
         return any;
     }
     void handOver() override {
-        const T sample = std::exchange(ring_[first_], T{});
+        const T sample = std::exchange(ring_[first_], {}).sample;
         first_ = (first_ + 1) % ring_.size();
         --count_;
         use_(sample);
     }
-    void forget() override { ring_.assign(ring_.size(), T{}), count_ = 0; }
+    void forget() override { ring_.assign(ring_.size(), {}), count_ = 0; }
 
+    struct Waiting {
+        T sample{};
+        uint64_t round = 0;
+    };
     InputPort<T>& input_;
     std::function<void(const T&)> use_;
-    std::vector<T> ring_;
+    std::vector<Waiting> ring_;
     T sample_{};
     size_t first_ = 0, count_ = 0;
 };

@@ -59,6 +59,11 @@ types::Time wallClock() {
     return {std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count()};
 }
 
+types::Time steadyClock() {
+    const auto since = std::chrono::steady_clock::now().time_since_epoch();
+    return {std::chrono::duration_cast<std::chrono::microseconds>(since).count()};
+}
+
 const char* toString(TaskState state) {
     static constexpr const char* names[] = {"Init",    "PreOperational", "FatalError",  "Exception",
                                             "Stopped", "Running",        "RunTimeError"};

@@ -33,6 +33,8 @@ struct Outcome {
 };
 
 types::Time wallClock();
+/** A clock that is never set, since an unspecified time. */
+types::Time steadyClock();
 
 /** Folders, clock and other surroundings of a task, shared by all tasks of a deployment. */
 struct Environment {
@@ -40,6 +42,7 @@ struct Environment {
     std::filesystem::path output_folder = ".";     ///< `--out`.
     std::function<types::Time()> now = wallClock;  ///< Or simulated or log time, by the deployment's schedule.
     std::function<types::Time()> start_time;       ///< Start of the run, on the same clock.
+    std::function<types::Time()> run_time;         ///< See elapsed(); empty: by `now`.
     bool lockstep = false;
     bool wall_clock = true;  ///< In realtime: no task has replaced the clock by its own.
     bool is_shard = false;   ///< Only some samples of the run are made, see RunLimits::shard.
@@ -55,6 +58,10 @@ struct Environment {
     /** The number of times that tasks have published their records. Unchanged: records() returns the same as before. */
     std::shared_ptr<std::atomic<uint64_t>> record_changes = std::make_shared<std::atomic<uint64_t>>(0);
     types::DeploymentControl* deployment = nullptr;  ///< Null for a task outside of a deployment.
+
+    /** Returns the time since the start of the run. In a run by the wall clock it continues evenly when that clock is
+     *  set. */
+    types::Time elapsed() const { return run_time ? run_time() : now() - start_time(); }
 };
 
 class Activity;

@@ -5,13 +5,14 @@
 #include <utility>
 
 #include "types/ConfigError.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::gazebo {
 namespace {
 
 constexpr auto between_reports = std::chrono::minutes(1);  ///< Of changes of the world.
 
-constexpr double patience = 5;  ///< Time until the warning that nobody offers a topic [s].
+constexpr types::Time patience{5'000'000};  ///< Time until the warning that nobody offers a topic.
 
 /** Returns a text such as "crate, lid and 3 more". */
 std::string listOf(const std::vector<std::string>& names) {
@@ -82,7 +83,7 @@ void PoseTask::updateHook() {
 }
 
 void PoseTask::warnOfSilence() {
-    if (is_silence_reported_ || (now() - started_).seconds() < patience) return;
+    if (is_silence_reported_ || !types::due(started_, patience, now())) return;
     is_silence_reported_ = true;
     for (size_t i = 0; i < subscriptions_->topics().size(); ++i)
         if (!subscriptions_->hasPublisher(i))

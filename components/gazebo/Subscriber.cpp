@@ -78,22 +78,21 @@ private:
     void run() {
         auto next = WorkerClock::now();
         for (bool continues = true; continues;) {
-            if (WorkerClock::now() >= next) {
-                announce();
-                next = WorkerClock::now() + period;
-            }
             const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next - WorkerClock::now());
             zmq::pollitem_t items[] = {{socket_.handle(), 0, ZMQ_POLLIN, 0},
                                        {nullptr, multicast_.descriptor(), ZMQ_POLLIN, 0},
                                        {nullptr, stop_, ZMQ_POLLIN, 0}};
             try {
                 zmq::poll(items, std::size(items), std::max(wait, std::chrono::milliseconds{0}));
-            } catch (const zmq::error_t&) {
-                continue;  // a signal
+                continues = !items[2].revents;
+                if (items[0].revents) readMessages();
+                if (items[1].revents) readDatagrams();
+                if (WorkerClock::now() < next) continue;
+                next = WorkerClock::now() + period;
+                announce();
+            } catch (const std::exception&) {
+                continue;  // a signal, or a message that is too large for the memory: lost
             }
-            if (items[0].revents) readMessages();
-            if (items[1].revents) readDatagrams();
-            continues = !items[2].revents;
         }
         for (const auto& [address, publication] : publications_) connect(publication, false);
         multicast_.send(goodbyeDatagram(process_));

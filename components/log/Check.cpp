@@ -7,7 +7,8 @@ namespace insonify::log {
 Verdict check(const std::filesystem::path& path) {
     if (!isMcap(path)) return pocolog::check(path);
     const auto log = openLog(path);
-    Verdict verdict{log->streams().size(), 0, {}};
+    Verdict verdict{log->streams().size(), 0, 0, {}};
+    for (const Stream& stream : log->streams()) verdict.set_backs += stream.set_backs;
     for (const SampleRef& at : log->samples()) {
         try {
             log->verify(at);

@@ -6,6 +6,7 @@
 #include "components/log/TypeNames.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::log {
 
@@ -64,7 +65,11 @@ void Reader::verify(const SampleRef& at) {
 
 void Reader::addSample(size_t number, types::Time received, types::Time time, uint64_t position) {
     Stream& stream = streams_[number];
-    if (stream.count++ == 0) stream.first = time;
+    if (stream.count++ == 0) stream.first = stream.last = time;
+    if (stream.last - time > types::max_lateness) {
+        ++stream.set_backs;
+        stream.set_back = stream.set_back + (stream.last - time);
+    }
     stream.last = time;
     samples_.push_back({number, received, time, position, samples_.size()});
 }

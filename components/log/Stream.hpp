@@ -23,6 +23,8 @@ struct Stream {
     Metadata metadata{};
     size_t count = 0;             ///< Samples [1].
     types::Time first{}, last{};  ///< World time of its first and last sample, 0 without samples.
+    types::Time set_back{};       ///< By how much its times went back, in all steps of more than types::max_lateness.
+    size_t set_backs = 0;         ///< Number of these steps: the clock was set back [1].
     std::string topic{};          ///< Topic of its messages, "/auv/sonar"; empty in logs without topics.
 
     /** Whether its samples have type T. */
@@ -30,9 +32,10 @@ struct Stream {
     bool holds() const {
         return sample == types::sampleIndex<T>();
     }
-    /** Returns the mean rate between the first sample and the last; 0: undefined [Hz]. */
+    /** Returns the mean rate between the first sample and the last, where steps back take no time; 0: undefined [Hz].
+     */
     double rate() const {
-        const double span = (last - first).seconds();
+        const double span = (last - first + set_back).seconds();
         return span > 0 ? static_cast<double>(count - 1) / span : 0;
     }
     /** Returns a metadatum of the stream; empty: there is none. */

@@ -5,6 +5,7 @@
 
 #include "components/log/Files.hpp"
 #include "types/ConfigError.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::logger {
 
@@ -45,7 +46,7 @@ Rotation::Rotation(const LoggerConfig& config, log::Writer& log)
 
 bool Rotation::due(types::Time now) const {
     return (max_size_ && static_cast<double>(log_.size()) >= *max_size_) ||
-           (max_duration_ && (now - *began_).seconds() >= *max_duration_);
+           (max_duration_ && types::due(*began_, types::Time::fromSeconds(*max_duration_), now));
 }
 
 void Rotation::before(types::Time now) {

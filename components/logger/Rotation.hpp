@@ -19,8 +19,8 @@ class Rotation {
 public:
     Rotation(const LoggerConfig& config, log::Writer& log);
 
-    /** Continues in the next file if this one is full or old enough, before a sample received at `now`. Throws as
-     *  log::Writer::next. */
+    /** Continues in the next file if this one is full or old enough, or the clock was set back to before its start,
+     *  before a sample received at `now`. Throws as log::Writer::next. */
     void before(types::Time now);
 
 private:

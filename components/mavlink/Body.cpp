@@ -89,7 +89,7 @@ std::vector<uint32_t> Body::missing(Time now) const {
 
 std::string Body::incomplete(const char* came, const char* lacks, Time now) {
     if (!incomplete_since_) incomplete_since_ = now;
-    if (now - *incomplete_since_ < patience) return {};
+    if (!types::due(*incomplete_since_, patience, now)) return {};
     return std::string(came) + " arrives without " + lacks + ": the vehicle must stream both";
 }
 
@@ -126,9 +126,9 @@ Body::Taken Body::take(const LocalPositionNed& position, Time now) {
     if (!isFinite({position.x, position.y, position.z})) return {{}, not_finite};
     position_came_ = now;
     const Time since = position_ ? between(position_->time_boot_ms, position.time_boot_ms) : Time{};
-    if (since < Time{} && Time{} - since <= types::SenderClock::max_lateness) return {{}, overtaken};
+    if (since < Time{} && Time{} - since <= types::max_lateness) return {{}, overtaken};
     position_ = position;
-    const bool is_alone = now - attitude_came_ > patience;
+    const bool is_alone = types::elapsed(attitude_came_, now) > patience;
     return {{}, is_alone ? incomplete(LocalPositionNed::name, AttitudeQuaternion::name, now) : ""};
 }
 

@@ -39,6 +39,8 @@ double WanderingBias::at(types::Time time) {
         const double kept = std::exp(-(time - *last_).seconds() / correlation_time_);
         value_ = kept * value_ + deviation_ * std::sqrt(1 - kept * kept) * normal(seed_, channel_, time);
         last_ = time;
+    } else if (time < *last_) {
+        last_ = time;  // the clock was set back
     }
     return value_;
 }

@@ -35,6 +35,8 @@ std::optional<types::Pose> ScanMosaicTask::bodyAt(types::Time time) {
     if (!before_ && !after) return std::nullopt;
     if (!before_) return held(*after, time);
     if (!after) return held(*before_, time);
+    if (before_->time > time || after->time < time)  // stamps went back between them
+        return held(before_->time > time ? *after : *before_, time);
     types::Pose body = *before_;
     interpolate(*before_, *after, (time - before_->time).seconds() / (after->time - before_->time).seconds(), body);
     return body;

@@ -128,7 +128,7 @@ void putChannel(const XtfFormat& format, const types::Sonar& ping, const XtfPing
     header.put(fields::channel, channel);
     header.putFloat(fields::slant_range, range);
     header.putFloat(fields::duration, 2 * range / static_cast<double>(ping.speed_of_sound));
-    header.putFloat(fields::since_last, more.since_last);
+    header.putFloat(fields::since_last, std::max(0.0, more.since_last));
     header.put(fields::frequency, static_cast<uint16_t>(std::min(format.frequency_khz, 65535.0)));
     header.put(fields::sample_count, ping.bin_count);
     putSamples(ping.bins.data() + size_t{beam} * ping.bin_count, ping.bin_count, channel == 0, format.samples, bytes);

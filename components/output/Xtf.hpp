@@ -25,7 +25,7 @@ struct XtfFormat {
 struct XtfPing {
     types::Pose sonar;      ///< In the world; not finite: unknown.
     double altitude = 0;    ///< Above the bottom [m]; 0: unknown.
-    double since_last = 0;  ///< [s]
+    double since_last = 0;  ///< Negative where the clock was set back; written as 0 [s].
     uint32_t number = 0;    ///< [1]
 };
 

@@ -120,7 +120,7 @@ bool TrajectoryTask::startHook() {
 
 void TrajectoryTask::updateHook() {
     const types::Time time = now();
-    const types::Time elapsed = time - environment().start_time();
+    const types::Time elapsed = environment().elapsed();
     const double seconds = elapsed.seconds();
     types::Pose sample = trajectory_->at(config->loop ? trajectory_->inLoop(seconds) : seconds);
     if (motion_) motion_->move(seconds, sample);

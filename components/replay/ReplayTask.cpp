@@ -68,6 +68,7 @@ void ReplayTask::open() {
     by_stream_.resize(log_->streams().size());
     span_s_ = spanOf(*log_);
     gap_text_ = gapText(*log_);
+    clock_ = log::LoggerClock(log_->samples());
 }
 
 std::optional<types::Playback> ReplayTask::playback() const {
@@ -145,7 +146,7 @@ void ReplayTask::settle() {
     next_ = withOutput(next_);
     if (next_ == samples.size() && config->loop && played_us_ != 0) jump(config->from);
     finished_ = next_ == samples.size();
-    if (!finished_) next_time_ = std::max(next_time_, samples[next_].time + shift_);
+    if (!finished_) next_time_ = std::max(next_time_, clock_.evenTime(samples[next_]) + shift_);
 }
 
 void ReplayTask::rewind() {
@@ -176,7 +177,7 @@ void ReplayTask::jump(double seconds) {
         next_time_ = waits ? std::max(after, now()) : after;
         pause_ = next_time_ - after;
     }
-    shift_ = next_time_ - log_->samples()[next_].time;
+    shift_ = next_time_ - clock_.evenTime(log_->samples()[next_]);
     at_us_ = (log_->samples()[next_].time - log_->samples().front().time).microseconds;
 }
 
@@ -267,7 +268,8 @@ void ReplayTask::play(types::Time until) {
         noteInstant();
         const log::SampleRef& at = log_->samples()[next_];
         at_us_ = (at.time - log_->samples().front().time).microseconds;
-        std::visit([&](auto& output) { publish(output, *log_, at, shift_); }, *by_stream_[at.stream]);
+        const types::Time shift = clock_.evenTime(at) - at.time + shift_;
+        std::visit([&](auto& output) { publish(output, *log_, at, shift); }, *by_stream_[at.stream]);
         ++next_;
         settle();
     }

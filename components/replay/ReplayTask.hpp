@@ -14,6 +14,7 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/StreamNames.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/log/LoggerClock.hpp"
 #include "components/log/Reader.hpp"
 #include "types/Describe.hpp"
 #include "types/Thread.hpp"
@@ -43,7 +44,8 @@ struct ReplayConfig {
  *
  *  Ports: an output for each connection that names a stream of the log, as in `replay.sonar.ping`. Samples keep their
  *  recorded values and stamps; Rock's older beams and scans become pings. A logger keeps the streams' recorded names. A
- *  sample is due at its world time, or with its predecessor in the file if that is later. In lockstep, simulated time
+ *  sample is due at its world time, or with its predecessor in the file if that is later. Where the logger's clock was
+ *  set back, time continues: see log::LoggerClock. In lockstep, simulated time
  *  starts at the first sample and advances from one sample to the next. In realtime the task keeps `pace`, checking
  *  every millisecond unless its activity has a period. All tasks of the deployment then read the log's time, at that
  *  pace, instead of the wall clock.
@@ -120,6 +122,7 @@ private:
 
     std::unique_ptr<log::Reader> log_;
     std::string gap_text_;  ///< Warning of a long gap between two samples; empty: there is none.
+    log::LoggerClock clock_;
     Outputs outputs_{this};
     std::vector<Outputs::Output*> by_stream_;  ///< The output of each stream of the log; null without a connection.
     size_t next_ = 0;                          ///< Index into the log's samples.

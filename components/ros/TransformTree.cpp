@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "types/Elapsed.hpp"
 #include "types/Pose.hpp"
-#include "types/SenderClock.hpp"
 
 namespace insonify::ros {
 namespace {

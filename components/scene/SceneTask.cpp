@@ -14,6 +14,7 @@
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
 #include "components/scene/MaterialNames.hpp"
+#include "types/Elapsed.hpp"
 #include "types/Quaternion.hpp"
 
 namespace insonify::scene {
@@ -287,7 +288,7 @@ std::string SceneTask::staleness() const {
     };
     const auto text = [this](const auto& port, types::Time newest, types::Time arrived) {
         const double behind = (arrived - newest).seconds();
-        const bool arrives = (now() - arrived).seconds() <= poseTimeout();
+        const bool arrives = types::elapsed(arrived, now()).seconds() <= poseTimeout();
         return fmt::format("{}: no pose in the last {:g} s (pose_timeout){}", port.path(), poseTimeout(),
                            arrives
                                ? fmt::format("; the poses that arrive have stamps {:.3g} s {} this clock; if they "
@@ -303,7 +304,7 @@ std::string SceneTask::staleness() const {
 }
 
 void SceneTask::lackPose(const std::string& why) {
-    const bool is_first = !newest_came_ && (now() - newest_).seconds() > poseTimeout();
+    const bool is_first = !newest_came_ && types::elapsed(newest_, now()).seconds() > poseTimeout();
     is_stale_ = !is_first;
     if (!is_first) return error(why);
     if (!std::exchange(waiting_is_reported_, true)) warn(pose.path() + ": waits for the first pose");
@@ -400,7 +401,7 @@ void SceneTask::animate(types::Time time) {
         driven_[i].world_from_node = *movable.world_from_body * body_from_node;
         driven_[i].rate = movable.rate * body_from_node;
     }
-    animator_->take((time - environment().start_time()).seconds(), driven_);
+    animator_->take((environment().elapsed() + (time - now())).seconds(), driven_);
 }
 
 /** Adds the moved objects. Each object follows the innermost of its nodes that has a pose. */

@@ -14,9 +14,9 @@
 #include "components/sonar/places/Motion.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::sonar {
-
 bool ScanningSonarTask::startHook() {
     scan_.emplace(config->head);
     asked_ = {};
@@ -37,7 +37,9 @@ bool ScanningSonarTask::propertiesHook() {
 }
 
 const char* ScanningSonarTask::setLook(types::Snapshot& scene) {
-    if (last_ && scene.time < *last_) return "the snapshot is older than the one before";
+    const bool is_back = last_ && scene.time < *last_;
+    if (is_back && *last_ - scene.time <= types::max_lateness) return "the snapshot is older than the one before";
+    if (is_back) last_.reset(), before_.reset();
     if (last_ && asked_.isUnknown()) checkStep((scene.time - *last_).seconds());
     const double seconds = last_ ? (scene.time - *last_).seconds() : 0;
     last_ = scene.time;

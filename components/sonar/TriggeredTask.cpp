@@ -85,7 +85,10 @@ std::map<std::string, std::string> TriggeredTask::changedBy(const types::SonarSe
     };
     compare("range", asked.range, config.range);
     compare("frequency_khz", asked.frequency_khz, config.frequency_khz);
-    compare("speed_of_sound", asked.speed_of_sound, config.speed_of_sound);
+    if (asked.speed_of_sound != 0)
+        compare("speed_of_sound", asked.speed_of_sound, config.speed_of_sound);
+    else if (own_speed_ && *own_speed_ != config.speed_of_sound)
+        changed["speed_of_sound"] = *own_speed_ ? fmt::format("{}", **own_speed_) : "null";
     compare("field_of_view_deg", asked.field_of_view.deg(), config.field_of_view_deg);
     compare("beam_height_deg", asked.beam_height.deg(), config.beam_height_deg);
     compareCount("bin_count", asked.bin_count, static_cast<uint32_t>(config.bin_count));
@@ -95,6 +98,10 @@ std::map<std::string, std::string> TriggeredTask::changedBy(const types::SonarSe
 
 void TriggeredTask::applySettings(const types::SonarSettings& asked) {
     const auto changed = changedBy(asked);
+    if (asked.speed_of_sound == 0)
+        own_speed_.reset();
+    else if (!own_speed_ && changed.contains("speed_of_sound"))
+        own_speed_ = sonarConfig().speed_of_sound;
     if (!changed.empty()) blockWith(changed.begin()->first, properties())->setAll(changed);
     if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
 }
@@ -110,7 +117,9 @@ bool TriggeredTask::takeAsked() {
         return false;
     }
     takeScene(*sample);
-    taken_.scene.time = std::max(taken_.scene.time, asked.time);
+    // A request from before the clock was set back would be ahead of it.
+    const types::Time latest = activity().realtime() ? std::min(asked.time, now()) : asked.time;
+    taken_.scene.time = std::max(taken_.scene.time, latest);
     taken_.used.time = taken_.scene.time;
     return true;
 }

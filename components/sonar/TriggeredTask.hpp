@@ -115,6 +115,9 @@ private:
     double shortest_ = std::numeric_limits<double>::infinity();
     PeriodMeter period_;
     Taken taken_;
+    /** The property `speed_of_sound` before a driver set it; none: no driver has set it since its own was last asked
+     *  for. */
+    std::optional<std::optional<double>> own_speed_;
 };
 
 }  // namespace insonify::sonar

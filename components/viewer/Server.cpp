@@ -148,6 +148,7 @@ bool Server::Core::makeRoom() {
     refused.add("too many connections: the oldest without a request, or that does not read its answer, was closed");
     oldest->second->close();
     sessions_.erase(oldest);
+    recount();
     return true;
 }
 

@@ -335,5 +335,39 @@ TEST_F(NetworkTest, ReportsWhyAnEndCannotBeOpened) {
     EXPECT_THAT(whyOf([&] { network_.sendTo("", 1, {}); }), testing::HasSubstr("no address"));
 }
 
+TEST(NetworkSerialTest, LeavesALinkThatIsNoLineAndAnAbsentFolderAsTheyAre) {
+    const Folder folder;
+    const auto failure = [](const std::filesystem::path& link) {
+        try {
+            Network network([] {});
+            network.openSerial(link);
+        } catch (const NetworkError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const auto descriptors = [] {
+        return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
+                             std::filesystem::directory_iterator());
+    };
+    std::filesystem::create_symlink("/dev/null", folder / "by-id");
+    std::filesystem::create_symlink("nowhere", folder / "broken");
+    std::filesystem::create_symlink("loop", folder / "loop");
+    EXPECT_THAT(failure(folder / "by-id"), ::testing::HasSubstr("File exists"));
+    const auto before = descriptors();
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_THAT(failure(folder / "by-id"), ::testing::HasSubstr("File exists"));
+        EXPECT_THAT(failure(folder / "broken"), ::testing::HasSubstr("File exists"));
+        EXPECT_THAT(failure(folder / "no" / "line"), ::testing::HasSubstr("cannot be made"));
+        EXPECT_THAT(failure(folder / "loop" / "line"), ::testing::HasSubstr("cannot be made"));
+        EXPECT_THAT(failure(folder / std::string(300, 'x')), ::testing::HasSubstr("cannot be made"));
+    }
+    EXPECT_EQ(descriptors(), before);
+    EXPECT_EQ(std::filesystem::read_symlink(folder / "by-id"), "/dev/null");
+    std::filesystem::create_symlink("/dev/pts/999999", folder / "left");
+    EXPECT_EQ(failure(folder / "left"), "") << "of a process that was killed";
+    EXPECT_FALSE(std::filesystem::is_symlink(folder / "left"));
+}
+
 }  // namespace
 }  // namespace insonify::device

@@ -32,7 +32,7 @@ struct OculusEmulatorTest : ::testing::Test {
     types::Sonar echoes(const types::SonarSettings& asked) const {
         types::Sonar ping;
         ping.time = asked.time + Time{20'000};
-        ping.speed_of_sound = std::isnan(asked.speed_of_sound) ? 1480.f : static_cast<float>(asked.speed_of_sound);
+        ping.speed_of_sound = !(asked.speed_of_sound > 0) ? 1480.f : static_cast<float>(asked.speed_of_sound);
         ping.bin_count = asked.bin_count;
         ping.beam_count = asked.beam_count;
         const double step = asked.field_of_view.rad / asked.beam_count;
@@ -295,7 +295,17 @@ TEST_F(OculusEmulatorTest, TheSpeedOfSoundReturnsToTheSonarsOwn) {
     OculusFire salt = metres(5);
     salt.speed_of_sound = 1520;
     EXPECT_EQ(pinged(salt).speed_of_sound, 1520);
-    EXPECT_EQ(asked(metres(5)).speed_of_sound, 1480);
+    EXPECT_EQ(asked(metres(5)).speed_of_sound, 0);
+}
+
+TEST_F(OculusEmulatorTest, ADriverThatLeavesTheSpeedOfSoundToTheDeviceNeverAsksForOne) {
+    connect();
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(pinged(metres(5)).speed_of_sound, 1480);
+        const types::SonarSettings ask = asked(metres(6));
+        EXPECT_TRUE(std::isnan(ask.speed_of_sound));
+        emulator_.ping(echoes(ask));
+    }
 }
 
 TEST(OculusModelTest, EveryModelHasItsPartNumberAndModes) {

@@ -166,6 +166,21 @@ TEST_F(OculusTaskTest, RecordsSentPings) {
     for (const Bytes& ping : echoes) EXPECT_THAT(recorded, ::testing::Contains(ping));
 }
 
+TEST_F(OculusTaskTest, AFullDiskEndsTheRecordingAndNotThePings) {
+    const Folder folder;
+    std::filesystem::create_symlink("/dev/full", folder / "dive.oculus");
+    start({"device.record=" + (folder / "dive.oculus").string()});
+    OculusDriver driver(port_);
+    driver.send(bytesOf({.rate = 2, .range = 10}));
+    for (int i = 0; i < 10; ++i) EXPECT_GT(driver.nextPing().bin_count, 0);
+    EXPECT_EQ(task().state(), framework::TaskState::RunTimeError);
+    EXPECT_THAT(task().lastError(), HasSubstr("the recording ends here"));
+    EXPECT_THAT(noticeOf("pings are not in"), HasSubstr("dive.oculus"));
+    stop_ = true;
+    thread_.join();
+    EXPECT_EQ(task().state(), framework::TaskState::Stopped);
+}
+
 TEST_F(OculusTaskTest, AClientThatDoesNotReadDelaysNoOther) {
     start();
     OculusDriver deaf(port_), driver(port_);

@@ -280,5 +280,24 @@ TEST_F(Sonar3dEmulatorTest, ALateImageHasTheSettingsOfItsRequest) {
     EXPECT_EQ(datagrams_.size(), 4u) << "twice the same";
 }
 
+TEST_F(Sonar3dEmulatorTest, RefusesBodiesOfAnyDepth) {
+    const auto nested = [](const std::string& open, const std::string& close, int levels) {
+        std::string text;
+        for (int i = 0; i < levels; ++i) text += open;
+        text += "1";
+        for (int i = 0; i < levels; ++i) text += close;
+        return text;
+    };
+    for (const int levels : {9, 100, 32'000, 1'000'000})
+        for (const std::string& deep :
+             {nested("[", "]", levels), nested("{\"a\":", "}", levels), std::string(levels, '[')})
+            for (const char* path : {"acoustics/enabled", "acoustics/range", "acoustics/mode", "udp", "time/manual",
+                                     "time/ntp", "time/ntp/force-sync"})
+                for (const std::string& body :
+                     {deep, R"({"mode":"unicast","unicast_destination_ip":)" + deep + "}", R"({"min":)" + deep + "}"})
+                    EXPECT_EQ(post(path, body).status, 400) << levels << " in " << path;
+    EXPECT_EQ(json("udp")["mode"], "multicast");
+}
+
 }  // namespace
 }  // namespace insonify::device

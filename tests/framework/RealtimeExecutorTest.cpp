@@ -150,5 +150,37 @@ TEST(RealtimeExecutorTest, CannotPauseOrStep) {
     EXPECT_FALSE(executor.betweenInstants().owns_lock()) << "realtime cycles have no time between instants";
 }
 
+/** A source that notes the time since the start of the run. */
+struct Stopwatch : test::Source {
+    using Source::Source;
+    std::vector<double> seconds;
+    void updateHook() override { seconds.push_back(environment().elapsed().seconds()); }
+};
+
+TEST(RealtimeExecutorTest, ARunHasItsDurationHoweverTheClockIsSet) {
+    for (const double step : {600.0, -600.0, 1.8e9, -1.5e9}) {
+        Registry registry = test::testRegistry();
+        registry.add<Stopwatch>("test::Stopwatch", "");
+        const char* yaml = "schedule: realtime\ntasks: {source: {type: test::Stopwatch, activity: {period: 0.005}}}\n";
+        Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
+        deployment.configure();
+        auto& source = dynamic_cast<Stopwatch&>(*deployment.task("source"));
+        const auto begin = std::chrono::steady_clock::now();
+        const auto passed = [&] {
+            return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        };
+        source.environment().now = [&] {
+            return types::Time{wallClock() + types::Time::fromSeconds(passed() > 0.1 ? step : 0)};
+        };
+        const std::atomic<bool> never{false};
+        const RunResult result = deployment.run({.duration_s = 0.3}, never);
+        EXPECT_GE(passed(), 0.3) << step;
+        EXPECT_LE(passed(), patience_s) << step;
+        EXPECT_GE(result.elapsed_s, 0.3);
+        EXPECT_TRUE(std::ranges::is_sorted(source.seconds));
+        EXPECT_LE(source.seconds.back(), passed());
+    }
+}
+
 }  // namespace
 }  // namespace insonify::framework

@@ -175,5 +175,52 @@ TEST(StreamAlignerPortTest, DoesNotWaitForAnUnconnectedPort) {
     EXPECT_THAT(task.notes, ElementsAre("pose 0"));
 }
 
+TEST_F(StreamAlignerTest, StampsThatGoBackBeginAnew) {
+    writePoses({1'000'000, 2'000'000, 500'000, 600'000});
+    writePings({1'000'001, 2'000'001, 500'001, 600'001});
+    EXPECT_THAT(update(), ElementsAre("pose 1000000", "ping 1000001", "pose 2000000", "ping 2000001", "pose 500000",
+                                      "ping 500001", "pose 600000"));
+    EXPECT_EQ(task_.poses.counts().late + task_.pings.counts().late, 0u);
+    EXPECT_THAT(task_.aligner.notices(), ElementsAre(testing::StartsWith("stamps went back by more than 1 s 1 times")));
+}
+
+TEST_F(StreamAlignerTest, ARecordingThatRepeatsIsNeverLate) {
+    std::vector<std::string> all;
+    for (int round = 0; round < 20; ++round)
+        for (int64_t i = 0; i < 15; ++i) {
+            writePoses({100'000 * i});
+            writePings({100'000 * i + 50});
+            for (std::string& note : update()) all.push_back(std::move(note));
+        }
+    EXPECT_EQ(task_.poses.counts().late + task_.pings.counts().late, 0u);
+    EXPECT_EQ(all.size(), 20u * 30 - 1);
+}
+
+TEST_F(StreamAlignerTest, AClockThatIsSetBackDropsNoMoreThanWhatIsUnderWay) {
+    task_.aligner.clear(1.0);
+    size_t handed_over = 0;
+    for (int64_t i = 0; i < 200; ++i) {
+        const auto clock = [](int64_t step) {
+            return 1'000'000'000 + 100'000 * step - (step >= 100 ? 600'000'000 : 0);
+        };
+        writePoses({clock(i)});
+        if (i >= 3) writePings({clock(i - 3)});  // pings are three steps later
+        handed_over += update().size();
+    }
+    EXPECT_GE(handed_over, 385u);
+    EXPECT_EQ(task_.poses.counts().late + task_.pings.counts().late, 0u);
+}
+
+TEST_F(StreamAlignerTest, APortWhoseStampsDoNotGoBackWithTheOthersTakesPartAgainAfterTheTimeout) {
+    task_.aligner.clear(1.0);
+    size_t pings = 0;
+    for (int64_t i = 0; i < 300; ++i) {
+        writePoses({1'000'000'000 + 100'000 * i - (i >= 100 ? 600'000'000 : 0)});
+        writePings({1'000'000'000 + 100'000 * i});
+        for (const std::string& note : update()) pings += note.starts_with("ping") ? 1 : 0;
+    }
+    EXPECT_GE(pings, 270u);
+}
+
 }  // namespace
 }  // namespace insonify::framework

@@ -3,6 +3,7 @@
 
 #include "components/gazebo/PoseTask.hpp"
 #include "components/gazebo/Request.hpp"
+#include "components/gazebo/Subscriber.hpp"
 #include "components/gazebo/World.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/gazebo/HarmonicWorld.hpp"
@@ -230,6 +231,36 @@ TEST_F(HarmonicTest, AWorldWithoutANameOrTogetherWithAFileIsAnError) {
     EXPECT_EQ(diagnostics[0].text(), "world: is missing; give the name of a world that Gazebo runs");
     EXPECT_EQ(diagnostics[1].text(), "gazebo: is given, and file as well; give one of both, which holds the models");
     EXPECT_THAT(diagnosticOf(world("two words")), HasSubstr("is two words, which Gazebo's transport does not take"));
+}
+
+TEST_F(HarmonicTest, AWorldThatSpawnsModelsAllTheTimeIsReportedOnceInTenSeconds) {
+    HarmonicWorld world({});
+    follow("red");
+    types::Pose pose;
+    double seconds = 1;
+    ASSERT_TRUE(becomesTrue([&] {
+        world.publish(poses(seconds += 0.01, {"red"}, 0));
+        task.update();
+        return readers[0].port.readNew(pose);
+    }));
+    for (int i = 0; i < 200; ++i) {
+        world.publish(poses(seconds += 0.01, {"red", "bubble" + std::to_string(i)}, 0));
+        task.update();
+    }
+    ASSERT_TRUE(becomesTrue([&] { return task.update(), isWarned("has entities that the scene does not have"); }));
+    size_t lines = 0;
+    for (size_t at = 0; (at = warnings.find("has entities", at)) != warnings.npos; ++at) ++lines;
+    EXPECT_EQ(lines, 1u) << warnings;
+}
+
+TEST_F(HarmonicTest, AMessageThatTheMemoryCannotHoldEndsNothing) {
+    HarmonicWorld world({});
+    std::atomic<int> taken{0};
+    const Topic topic{"/world/sea/pose/info", [&](const std::string&, std::string_view) {
+                          if (++taken == 1) throw std::bad_alloc();
+                      }};
+    const Subscriber subscriber(TransportOptions::fromEnvironment(""), {topic});
+    EXPECT_TRUE(becomesTrue([&] { return world.publish(poses(1, {"red"}, 0)), taken > 3; }));
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ std::vector<Include> includesOf(const Source& source) {
 const std::map<std::string, std::set<std::string>> neighbours = {
     {"dataset", {"command", "log", "output", "pose"}},
     {"dds", {"ros"}},
+    {"device", {"command", "output"}},  // readJson, ByteFile
     {"framework", {"loader"}},
     {"gazebo", {"meshes", "scene"}},
     {"log", {"ros"}},
@@ -44,7 +45,7 @@ const std::map<std::string, std::set<std::string>> neighbours = {
     {"study", {"acoustics", "device", "noise", "output", "receiver", "scene", "sonar"}},
     {"survey", {"scene"}},
     {"video", {"output"}},
-    {"viewer", {"ros"}},
+    {"viewer", {"command", "ros"}},
     {"worlds", {"command", "loader"}},
 };
 

@@ -34,6 +34,7 @@ struct RotationTest : testing::Test {
             source.port.write(std::to_string(i) + std::string(100'000, ' '));
             task.update();
             now = now + types::Time{100'000};
+            if (i + 1 == set_back_at) now = now + step;
         }
         ASSERT_TRUE(task.stop());
         ASSERT_TRUE(task.cleanup());
@@ -57,6 +58,8 @@ struct RotationTest : testing::Test {
         return counts;
     }
     const Folder folder;
+    int set_back_at = -1;  ///< Number of samples before the clock is set.
+    types::Time step{};
 };
 
 TEST_F(RotationTest, ALoggerThatNeverStartsLeavesTheFilesOfAnEarlierRun) {
@@ -196,6 +199,17 @@ TEST_F(RotationTest, AFolderWithTheNameOfTheNextFileIsPassedOver) {
     pushTexts(file(0), 15, [](int) {});
     EXPECT_TRUE(std::filesystem::is_regular_file(file(2)));
     EXPECT_FALSE(log::check(file(2)).diagnostic);
+}
+
+TEST_F(RotationTest, AClockThatIsSetEndsAFileWithADurationAndFilesAreOfTheirDurationThen) {
+    LoggerConfig config;
+    config.max_file_duration = 1;
+    for (const double seconds : {-4.0, -600.0, 600.0}) {
+        set_back_at = 15;
+        step = types::Time::fromSeconds(seconds);
+        log(config, 40);
+        EXPECT_THAT(countsOf(5), testing::ElementsAre(10, 5, 10, 10, 5)) << seconds;
+    }
 }
 
 }  // namespace

@@ -207,5 +207,13 @@ TEST_F(BodyTest, EveryVisionEstimateIsAPoseRelativeToTheOrigin) {
     EXPECT_TRUE(see({.usec = 5}, 50.3).pose) << "booted again";
 }
 
+TEST_F(BodyTest, AMissingMessageIsReportedAfterTheClockIsSetBack) {
+    take(turned(0, {1, 0, 0}, 100), 1000);
+    std::string reported;
+    for (int i = 1; i <= 100 && reported.empty(); ++i)
+        reported = take(turned(0, {1, 0, 0}, static_cast<uint32_t>(100 + 100 * i)), 400 + 0.1 * i).diagnostic;
+    EXPECT_THAT(reported, HasSubstr("arrives without"));
+}
+
 }  // namespace
 }  // namespace insonify::mavlink

@@ -108,5 +108,12 @@ TEST(ErrorModelTest, TheVarianceMatchesTheReadings) {
     EXPECT_NEAR(squares / count / varianceOf(errors, step), 1, 0.03);
 }
 
+TEST(ErrorModelTest, ABiasWandersOnAfterTheClockIsSetBack) {
+    WanderingBias bias(2, 5, 11, 1);
+    const double before = bias.at(types::Time::fromSeconds(1000));
+    EXPECT_EQ(bias.at(types::Time::fromSeconds(400)), before);
+    EXPECT_NE(bias.at(types::Time::fromSeconds(401)), before);
+}
+
 }  // namespace
 }  // namespace insonify::nav

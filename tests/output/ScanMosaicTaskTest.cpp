@@ -127,5 +127,19 @@ TEST_F(ScanMosaicTaskTest, ARestartForgetsEarlierPings) {
     EXPECT_THAT(task_.notices(), IsEmpty());
 }
 
+TEST_F(ScanMosaicTaskTest, APingBetweenStampsThatWentBackHasTheNearerPose) {
+    start();
+    givePose(1000, 0);
+    givePose(1001, 1);
+    for (const double time : {400.0, 400.5, 401.0, 1e6, 3.0}) {
+        givePing(time);
+        givePose(time, 5);
+    }
+    givePose(4, 6);
+    ASSERT_TRUE(task_.stop());
+    EXPECT_EQ(pictures(), 5u);
+    EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("stamps went back")));
+}
+
 }  // namespace
 }  // namespace insonify::output

@@ -140,5 +140,15 @@ TEST_F(TruthImageTaskTest, ASteadyStreamAllocatesNothingOfOurs) {
     EXPECT_EQ(task_.image.written(), 20u) << task_.lastError();
 }
 
+TEST_F(TruthImageTaskTest, ShowsPingsAfterTheClockIsSetBack) {
+    start();
+    for (const double time : {1000.0, 1001.0, 400.0, 400.1, 1.6e9, 2.0}) {
+        givePing(time);
+        giveTruth(time);
+    }
+    ASSERT_TRUE(task_.stop());
+    EXPECT_EQ(pictures(), 6u);
+}
+
 }  // namespace
 }  // namespace insonify::output

@@ -181,5 +181,22 @@ TEST(XtfConfigTest, RequiresTheFileExtension) {
     EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("is line.jsf; must end in .xtf")));
 }
 
+TEST_F(XtfTest, EveryPingIsWrittenWhenTheClockIsSetOrARecordingRepeats) {
+    start();
+    constexpr int64_t first = 1'700'000'000'000'000, period = 100'000;
+    size_t written = 0;
+    for (const int64_t step :
+         {int64_t{0}, int64_t{-600'000'000}, int64_t{600'000'000}, int64_t{-1'500'000'000'000'000}})
+        for (int64_t i = 0; i < 20; ++i, ++written) {
+            give(towed(first + step + i * period));
+            give(pingLine(first + step + i * period));
+        }
+    ASSERT_TRUE(task_.stop());
+    EXPECT_THAT(task_.notices(), ElementsAre(HasSubstr("stamps went back by more than 1 s 2 times")));
+    const auto size = std::filesystem::file_size(folder_ / "line.xtf");
+    EXPECT_EQ((size - 1024) % written, 0u) << "a header, and pings of one size";
+    EXPECT_GT((size - 1024) / written, 256u);
+}
+
 }  // namespace
 }  // namespace insonify::output

@@ -228,5 +228,18 @@ TEST_F(TrajectoryTaskTest, RefusesTimesThatAreNoNumbersOrOutOfOrder) {
         EXPECT_THAT(refusals(bad), testing::ElementsAre(testing::HasSubstr("t.csv:3:1"))) << bad;
 }
 
+TEST_F(TrajectoryTaskTest, FollowsTheTimeOfTheRunAndStampsByTheClock) {
+    types::Time run;
+    task_.environment().run_time = [&] { return run; };
+    task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 10, .position = {20, 0, 0}}}});
+    ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
+    for (const double clock : {5.0, 605.0, -1000.0}) {  // it is set forward and back
+        run = run + types::Time::fromSeconds(1);
+        const types::Pose pose = poseAt(clock);
+        EXPECT_DOUBLE_EQ(pose.position.x, 2 * run.seconds());
+        EXPECT_EQ(pose.time, types::Time::fromSeconds(clock));
+    }
+}
+
 }  // namespace
 }  // namespace insonify::pose

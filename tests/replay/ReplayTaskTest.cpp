@@ -128,5 +128,35 @@ TEST(ReplayTaskTest, ASampleThatCannotBeDecodedEndsInException) {
     EXPECT_THAT(bench.task.lastError(), HasSubstr("vehicle.pose: the sample at byte"));
 }
 
+/** A log of poses each 0.1 s whose logger's clock is set back by ten minutes after the tenth. */
+void logOfAClockThatWasSetBack(const std::filesystem::path& file) {
+    log::pocolog::Writer log(file);
+    const size_t pose = log.addStream<types::Pose>("vehicle.pose");
+    for (int64_t i = 0; i < 20; ++i) {
+        const int64_t time = 1'000'000'000 + 100'000 * i - (i < 10 ? 0 : 600'000'000);
+        log.write(pose, {time + 1}, poseAt(time));
+    }
+    log.close();
+}
+
+TEST(ReplayTaskTest, TimeContinuesWhereTheLoggersClockWasSetBack) {
+    for (const bool lockstep : {true, false}) {
+        Bench bench(lockstep);
+        logOfAClockThatWasSetBack(bench.folder / "x.0.log");
+        test::Reader<types::Pose> poses;
+        bench.clock = {1'000'000};
+        bench.start("vehicle.pose", poses);
+        std::vector<int64_t> expected;
+        for (int64_t i = 0; i < 20; ++i) {
+            expected.push_back(1'000'000'000 + 100'000 * i);
+            EXPECT_TRUE(!lockstep || bench.task.nextTime() == types::Time{expected.back()}) << i;
+            lockstep ? bench.updateAt(expected.back()) : bench.updateAt(1'000'000 + 100'000 * i);
+            const auto played = stampsIn(poses);
+            EXPECT_THAT(played, ElementsAre(expected.back())) << i;
+        }
+        EXPECT_TRUE(bench.task.finished());
+    }
+}
+
 }  // namespace
 }  // namespace insonify::replay

@@ -11,6 +11,7 @@
 
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
+#include "components/sonar/OthersReceived.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
 #include "components/sonar/ways/Waveform.hpp"
 #include "tests/support/Pings.hpp"
@@ -331,6 +332,22 @@ TEST(CrosstalkTest, ExtremeSendersLeaveFiniteBins) {
             quiet.crosstalk->source_level_db = -300;
             for (const float bin : pingOf(quiet, snapshot).bins) ASSERT_TRUE(std::isfinite(bin) && bin >= 0);
         }
+}
+
+TEST(CrosstalkTest, KeepsThePulsesOfTenSecondsHoweverTheClockIsSet) {
+    OthersReceived received;
+    types::Snapshot scene;
+    const auto arrivals = [&](double seconds) {
+        scene.time = types::Time::fromSeconds(1 + seconds);
+        received.give(scene, 1e6, 1500);
+        return scene.transmissions.size();
+    };
+    const auto add = [&](double seconds) { received.add(sentFrom({1, 0, 0}, seconds)); };
+    for (int i = 0; i < 100'000; ++i) add(1000 + 0.01 * i);
+    EXPECT_EQ(arrivals(1999.99), 1001u) << "older pulses are forgotten without a ping";
+    add(1399);  // the clock was set back by ten minutes
+    EXPECT_EQ(arrivals(1399.01), 1u) << "those of before are forgotten";
+    EXPECT_EQ(arrivals(1409.01), 0u);
 }
 
 }  // namespace

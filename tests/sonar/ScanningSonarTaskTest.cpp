@@ -160,5 +160,11 @@ TEST_F(ScanningSonarTaskTest, AHeadThatIsSetAndFarTooSlowIsRefusedAndTheScanCont
     EXPECT_FALSE(task_.config->head.speed_deg_per_s.has_value());
 }
 
+TEST_F(ScanningSonarTaskTest, ScansOnAfterTheClockIsSetBackOrARecordingRepeats) {
+    start(sector);
+    for (const double time : {1000.0, 1001.0, 400.0, 401.0, 1.8e9, 2.0, 2.5, 1.0, 1.5})
+        EXPECT_TRUE(pingAt(time)) << time << " s: " << task_.lastError();
+}
+
 }  // namespace
 }  // namespace insonify::sonar

@@ -203,5 +203,44 @@ TEST(SettingsTest, AreThoseOfTheBlockThatHasThem) {
     EXPECT_EQ(sonar.task.config->range, 12);
 }
 
+TEST(SettingsTest, TheSonarsOwnSpeedOfSoundFollowsItsWaterBeforeAndAfterADriverSetsOne) {
+    auto config = smallSonar();
+    config.speed_of_sound.reset();
+    config.water.emplace().temperature_celsius = 4;
+    Asked<SonarTask> sonar(config);
+    sonar.show(facingWall(5));
+    const auto speed = [&](double asked) {
+        types::SonarSettings settings;
+        settings.speed_of_sound = asked;
+        const auto ping = sonar.ask(settings);
+        return ping ? double{ping->speed_of_sound} : 0;
+    };
+    const auto warm = [&](const char* celsius) {
+        sonar.task.properties().front()->setAll({{"water", std::string("{temperature_celsius: ") + celsius + "}"}});
+    };
+    const double unset = types::SonarSettings::unset, cold = speed(unset);
+    EXPECT_EQ(speed(0), cold);
+    EXPECT_EQ(speed(1520), 1520);
+    EXPECT_EQ(speed(1530), 1530);
+    EXPECT_EQ(speed(0), cold);
+    warm("20");
+    EXPECT_GT(speed(0), cold + 20);
+    EXPECT_GT(speed(unset), cold + 20);
+}
+
+TEST(SettingsTest, ASpeedOfSoundThatIsConfiguredComesBackAfterADriversOwn) {
+    auto config = smallSonar();
+    config.speed_of_sound = 1450;
+    Asked<SonarTask> sonar(config);
+    sonar.show(facingWall(5));
+    for (const auto& [asked, used] : {std::pair{0.0, 1450.0}, {1520.0, 1520.0}, {0.0, 1450.0}, {0.0, 1450.0}}) {
+        types::SonarSettings settings;
+        settings.speed_of_sound = asked;
+        const auto ping = sonar.ask(settings);
+        ASSERT_TRUE(ping) << sonar.task.lastError();
+        EXPECT_EQ(double{ping->speed_of_sound}, used);
+    }
+}
+
 }  // namespace
 }  // namespace insonify::sonar

@@ -11,6 +11,7 @@
 #include "components/ros/Poses.hpp"
 #include "components/ros/Schema.hpp"
 #include "components/ros/SonarMessages.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::log::mcap {
 namespace {
@@ -85,7 +86,8 @@ void Transforms::before(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, 
     if (poses == poses_.end() && !pings_.contains(channel)) return;
     if (!first_ns_) first_ns_ = log_ns;
     if (mounts_due_) writeMounts(log_ns);
-    if (!clock_ns_ || publish_ns > *clock_ns_) {
+    constexpr auto lateness_ns = static_cast<uint64_t>(1000 * types::max_lateness.microseconds);
+    if (!clock_ns_ || publish_ns > *clock_ns_ || *clock_ns_ - publish_ns > lateness_ns) {  // or the clock was set back
         clock_ns_ = publish_ns;
         write("/clock", log_ns, publish_ns, ros::Clock{stampOf(publish_ns)});
     }

@@ -12,6 +12,7 @@
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Typelib.hpp"
 #include "components/log/pocolog/Wire.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::log::pocolog {
 namespace {
@@ -48,7 +49,10 @@ public:
             verdict.diagnostic = {file, error.byte, error.what()};
         }
         verdict.streams = streams_.size();
-        for (const Seen& stream : streams_) verdict.samples += stream.index.samples.size();
+        for (const Seen& stream : streams_) {
+            verdict.samples += stream.index.samples.size();
+            verdict.set_backs += stream.declared.set_backs;
+        }
         return verdict;
     }
 
@@ -125,6 +129,11 @@ private:
         content(streams_[header.stream].declared, block + sizeof header + data_header_size, data);
     }
 
+    /** Whether a time may follow another: it is not before it, unless the clock was set back. */
+    static bool isNext(types::Time time, types::Time before) {
+        return time >= before || before - time > types::max_lateness;
+    }
+
     static void times(Seen& stream, uint64_t block, const DataHeader& data) {
         const uint64_t header = block + sizeof(BlockHeader);
         const auto require = [&](bool holds, size_t offset, const char* what) {
@@ -133,10 +142,11 @@ private:
         const bool first = stream.index.samples.empty();
         require(data.received_us < 1'000'000, offsetof(DataHeader, received_us), "there must be less than 1000000 us");
         require(data.time_us < 1'000'000, offsetof(DataHeader, time_us), "there must be less than 1000000 us");
-        require(first || data.received() >= stream.index.last_received, offsetof(DataHeader, received_s),
+        require(first || isNext(data.received(), stream.index.last_received), offsetof(DataHeader, received_s),
                 "the time of logging must not run backwards");
-        require(first || data.time() >= stream.last, offsetof(DataHeader, time_s), "time must not run backwards");
+        require(first || isNext(data.time(), stream.last), offsetof(DataHeader, time_s), "time must not run backwards");
         require(data.compressed <= 1, offsetof(DataHeader, compressed), "the flag may be 0, or 1 for compressed");
+        if (!first && data.time() < stream.last) ++stream.declared.set_backs;
         if (first) stream.index.first_received = data.received();
         stream.index.last_received = data.received();
         stream.last = data.time();

@@ -2,8 +2,10 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 namespace insonify::log::pocolog {
 namespace {
@@ -20,19 +22,24 @@ void putBigEndian(std::vector<char>& bytes, auto value) {
 void put(std::vector<char>& bytes, uint64_t value) { putBigEndian(bytes, value); }
 void put(std::vector<char>& bytes, types::Time time) { put(bytes, static_cast<uint64_t>(time.microseconds)); }
 
-types::Time firstTime(const StreamIndex& stream) {
-    return stream.samples.empty() ? types::Time{} : stream.samples.front().time;
+/** Returns the earliest and latest time, 0 without samples. The earliest need not be the first sample's: the clock may
+ *  have been set back, and offsets from it are not negative. */
+std::pair<types::Time, types::Time> spanOf(const StreamIndex& stream) {
+    if (stream.samples.empty()) return {};
+    const auto [first, last] = std::ranges::minmax_element(stream.samples, {}, &StreamIndex::Entry::time);
+    return {first->time, last->time};
 }
 
 void putStream(std::vector<char>& bytes, const StreamIndex& stream, uint64_t data_position) {
     put(bytes, stream.declaration);
+    const auto [first, last] = spanOf(stream);
     put(bytes, data_position);
-    put(bytes, firstTime(stream));
+    put(bytes, first);
     put(bytes, stream.samples.size());
     put(bytes, stream.first_received);
     put(bytes, stream.last_received);
-    put(bytes, firstTime(stream));
-    put(bytes, stream.samples.empty() ? types::Time{} : stream.samples.back().time);
+    put(bytes, first);
+    put(bytes, last);
 }
 
 }  // namespace
@@ -54,11 +61,13 @@ std::vector<char> indexBytes(const std::vector<StreamIndex>& streams, uint64_t l
         putStream(bytes, stream, data_position);
         data_position += stream.samples.size() * sample_entry_size;
     }
-    for (const StreamIndex& stream : streams)
+    for (const StreamIndex& stream : streams) {
+        const types::Time first = spanOf(stream).first;
         for (const StreamIndex::Entry& sample : stream.samples) {
             put(bytes, sample.position);
-            put(bytes, sample.time - firstTime(stream));
+            put(bytes, sample.time - first);
         }
+    }
     return bytes;
 }
 

@@ -8,15 +8,18 @@
 #include "components/log/pocolog/Metadata.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Wire.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::log::pocolog {
 namespace {
 
 constexpr size_t flush_size = 1 << 20;  // [B]
 
-/** Returns the time limited to `earliest` and to the format's range. */
-types::Time logTime(types::Time time, types::Time earliest) {
-    return std::clamp(time, std::max(earliest, types::Time{}), latest_time);
+/** Returns the time within the format's range. A time before that of the sample before is set to it, unless the clock
+ *  was set back. */
+types::Time logTime(types::Time time, types::Time before) {
+    time = std::clamp(time, types::Time{}, latest_time);
+    return before - time > types::max_lateness ? time : std::max(time, before);
 }
 
 void split(types::Time time, uint32_t& s, uint32_t& us) {

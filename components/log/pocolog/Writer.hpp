@@ -32,9 +32,10 @@ public:
     size_t declareRaw(const std::string& name, const std::string& type, const std::string& registry,
                       const std::string& yaml);
 
-    /** In the block's header, times before 1970 or after 2106 are set to those limits, and a time earlier than that of
-     *  the stream's previous sample is set to the latter, because readers search by these times. The stamp in the
-     *  sample is not changed. Throws std::length_error above 4 GiB. */
+    /** In the block's header, times before 1970 or after 2106 are set to those limits. A time earlier than that of the
+     *  stream's previous sample by at most types::max_lateness is set to the latter, because readers search by these
+     *  times; an earlier one is kept, because the clock was set back. The stamp in the sample is not changed. Throws
+     *  std::length_error above 4 GiB. */
     void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override;
     /** The same for the bytes of a sample. */
     void write(size_t stream, types::Time received, types::Time time, std::span<const char> bytes);

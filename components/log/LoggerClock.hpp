@@ -1,0 +1,30 @@
+#pragma once
+#include <vector>
+
+#include "components/log/Stream.hpp"
+
+namespace insonify::log {
+
+/** The times of a log whose logger's clock was set back while it ran, without these steps.
+ *
+ *  A step is where a sample was received more than types::max_lateness before the sample that precedes it in the log.
+ *  The samples from there on are later by the step, and by the interval between the two samples before it. A sample
+ *  stamped before the step and received after it stays where it is. Steps forward are not told from pauses. */
+class LoggerClock {
+public:
+    LoggerClock() = default;
+    /** @param samples of a log, in its order */
+    explicit LoggerClock(const std::vector<SampleRef>& samples);
+
+    /** Returns the world time of a sample of the log without the steps; its recorded time where there are none. */
+    types::Time evenTime(const SampleRef& at) const;
+
+private:
+    struct Step {
+        size_t number = 0;  ///< Of the first sample after it [1].
+        types::Time shift;  ///< Of the times after it: the sum of the steps up to there.
+    };
+    std::vector<Step> steps_{Step{}};
+};
+
+}  // namespace insonify::log
