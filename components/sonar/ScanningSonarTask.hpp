@@ -13,8 +13,8 @@ namespace insonify::sonar {
  *  The scan starts at `head.left_deg` with the first ping after start. With `settings` connected, the head looks at the
  *  bearing that they request instead. A snapshot older than the one before leads to RunTimeError until time advances.
  *  Changing `head` during a scan starts the scan anew. A step that `head.speed_deg_per_s` cannot make in the mean of
- *  the first eight ping periods is a warning. In lockstep, a step that takes longer than one and a half periods between the
- *  first two pings is an error of the configuration. */
+ *  the first eight ping periods is a warning. In lockstep, a step that takes longer than one and a half periods between
+ *  the first two pings is an error of the configuration. */
 class ScanningSonarTask final : public PingTask {
 public:
     using PingTask::PingTask;
