@@ -21,7 +21,7 @@ AlignedPortBase::AlignedPortBase(StreamAligner& aligner, const InputPortBase& po
 }
 
 AlignedMoment AlignedPortBase::momentOf(types::Time time) const {
-    if (last_.time == before_all) return {aligner_.newest().round, time};
+    if (last_.time == before_all) return {aligner_.handedOver().round, time};
     const bool is_back = time < last_.time && outlasts(last_.time, time, types::max_lateness + types::Time{1});
     return {is_back ? std::max(last_.round + 1, aligner_.handedOver().round) : last_.round, time};
 }

@@ -97,7 +97,6 @@ public:
     // For its ports only.
     void enlist(AlignedPortBase* port) { ports_.push_back(port); }
     const AlignedMoment& handedOver() const { return done_; }  ///< Of the sample handed over last.
-    const AlignedMoment& newest() const { return newest_; }
     types::Time timeout() const { return timeout_; }
     void noteTaken(const AlignedMoment& moment);  ///< A port has taken a sample of that moment.
 
