@@ -34,6 +34,11 @@ public:
      *  arrive through sidelobes, or that the pulse spreads into a bin, have no truth. */
     void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
 
+    /** Fills the bins of `alike`, with the shape of the ping, with what every beam of the last ping records alike,
+     *  whatever it looks at: the ring-down of the transmitter. Returns false, and changes nothing, where there is none.
+     *  Allocates nothing when it has filled `alike` before. */
+    bool takeAlike(const types::Sonar& ping, types::Sonar& alike) const;
+
     /** Fills `signals` with those of the array's elements in `ping`, which must be the last that was rendered. Takes
      *  some time and allocates. Throws std::logic_error where the sonar has no `elements`. */
     void takeElements(const types::Sonar& ping, types::SonarElements& signals);
