@@ -3,7 +3,8 @@
 // tables in sequence.
 
 double tabulatedBackscatter(uint table, double cosine) {
-    double at = min(cosine, 1.0) * double(BACKSCATTER_ENTRIES - 1);
+    double at = 4096.0 * min(cosine, 0.0625) + 4096.0 / 7.0 * min(max(cosine - 0.0625, 0.0), 0.875) +
+                4080.0 * min(max(cosine - 0.9375, 0.0), 0.0625);
     uint i = min(uint(at), uint(BACKSCATTER_ENTRIES - 2));
     double low = backscatterEntry(table * uint(BACKSCATTER_ENTRIES) + i);
     return low + (at - double(i)) * (backscatterEntry(table * uint(BACKSCATTER_ENTRIES) + i + 1u) - low);

@@ -28,8 +28,8 @@
 #define SUMS_BINDING 7
 
 // Steps of the table of an elevation pattern, which is the first of the tables, and entries of a table of backscatter.
-#define ELEVATION_STEPS 4096
-#define BACKSCATTER_ENTRIES 256
+#define ELEVATION_STEPS 16384
+#define BACKSCATTER_ENTRIES 1024
 
 // Bindings for the culling of clusters, in addition to OBJECTS_BINDING.
 #define CLUSTERS_BINDING 1

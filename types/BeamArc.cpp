@@ -52,7 +52,16 @@ void BeamArc::take(std::span<const Angle> table, Angle beam_width, double lone_w
         width = (bearings.back() - bearings.front()) / static_cast<double>(beams.size() - 1);
     right = bearings.front() - width / 2;
     left = bearings.back() + width / 2;
-    if (fullCircle()) right = -pi, left = pi;
+    const bool meet = !width_known_ || stepAcross() <= 2 * width + rounding;
+    if (fullCircle() || (isRing() && meet)) right = -pi, left = pi;
+}
+
+bool BeamArc::isRing() const {
+    if (bearings.size() < 3) return false;
+    if (fullCircle()) return true;
+    double widest = 0;
+    for (size_t i = 1; i < bearings.size(); ++i) widest = std::max(widest, bearings[i] - bearings[i - 1]);
+    return stepAcross() <= widest * (1 + 1e-6);
 }
 
 bool BeamArc::joins(size_t place) const {
@@ -69,6 +78,10 @@ std::optional<double> BeamArc::placeAt(double bearing) const {
     const double at = turned(bearing);
     if (!fullCircle() && (at < right || at > left)) return {};
     const auto after = std::upper_bound(bearings.begin(), bearings.end(), at);
+    if (fullCircle() && beams.size() > 1 && (after == bearings.begin() || after == bearings.end())) {
+        const double beyond = at - bearings.back() + (after == bearings.begin() ? 2 * pi : 0);
+        return static_cast<double>(beams.size() - 1) + beyond / stepAcross();
+    }
     if (after == bearings.begin()) return 0;
     const auto place = static_cast<size_t>(after - bearings.begin() - 1);
     const auto index = static_cast<double>(place);
@@ -81,7 +94,7 @@ std::optional<double> BeamArc::placeAt(double bearing) const {
 
 std::optional<uint32_t> BeamArc::beamAt(double bearing) const {
     const std::optional<double> place = placeAt(bearing);
-    return place ? std::optional(beams[static_cast<size_t>(std::lround(*place))]) : std::nullopt;
+    return place ? std::optional(beams[static_cast<size_t>(std::lround(*place)) % beams.size()]) : std::nullopt;
 }
 
 std::vector<BeamArc::Sector> BeamArc::sectors() const {

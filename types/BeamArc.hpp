@@ -30,10 +30,14 @@ struct BeamArc {
     void take(std::span<const Angle> table, Angle beam_width, double lone_width = usual_width);
 
     bool fullCircle() const { return left - right > 2 * std::numbers::pi - 1e-6; }
+    /** Returns whether the last and the first of three or more beams are neighbours: the beams cover a full circle, or
+     *  the step from the last to the first is no wider than the widest other step. */
+    bool isRing() const;
     /** Returns whether the beam at a place in `beams` joins the next beam to port. */
     bool joins(size_t place) const;
     /** Returns the place in `beams` at a bearing; none when there is no beam. Between the centres of two joined beams
-     *  it is a fraction, which rounds to the nearest beam. */
+     *  it is a fraction, which rounds to the nearest beam. In a full circle a place behind the last beam is between
+     * that and the first, which counts as place beams.size() too. */
     std::optional<double> placeAt(double bearing) const;
     /** Returns the index into the ping's beams of the beam whose centre is nearest to a bearing; none when there is no
      *  beam. */
@@ -56,6 +60,7 @@ struct BeamArc {
     Reach within(size_t place, double half_width) const;
 
 private:
+    double stepAcross() const { return bearings.front() + 2 * std::numbers::pi - bearings.back(); }
     double opposite() const { return (bearings.front() + bearings.back()) / 2 - std::numbers::pi; }
 
     bool width_known_ = false;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <string_view>
 
 namespace insonify::types {
 
@@ -15,6 +16,13 @@ inline uint64_t mixedBits(uint64_t x) {
 inline uint64_t hashed(uint64_t seed, uint64_t a, uint64_t b) {
     constexpr uint64_t golden = 0x9e3779b97f4a7c15u;
     return mixedBits(mixedBits(mixedBits(seed + golden) + a * golden + 1) + b * golden);
+}
+
+/** Returns a random word that depends only on a name and a number of it. */
+inline uint64_t hashedName(std::string_view name, uint64_t number = 0) {
+    uint64_t hash = number;
+    for (const char letter : name) hash = hashed(hash, static_cast<unsigned char>(letter), 0);
+    return hash;
 }
 
 /** Returns 32 random bits as a number in (0, 1), ends excluded. */

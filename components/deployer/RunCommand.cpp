@@ -122,9 +122,8 @@ void refuseUnmeantLength(const framework::Deployment& deployment, const RunOptio
     if (last.end <= week || limits.samples > 0 || limits.duration_s > 0 || limits.shard) return;
     if (!std::isfinite(last.end)) {
         if (!options.quiet)
-            fmt::print(stderr,
-                       "notice: {}: loops, so the run ends at SIGINT; --duration S or --pings N ends it earlier\n",
-                       last.task);
+            command::printDiagnostic(
+                "notice: {}: loops, so the run ends at SIGINT; --duration S or --pings N ends it earlier\n", last.task);
         return;
     }
     throw types::ConfigError(

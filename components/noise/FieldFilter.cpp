@@ -95,41 +95,58 @@ FieldFilter::FieldFilter(const FilterConfig& config)
       across_(config.correlation_beams ? gaussianFilter(*config.correlation_beams) : std::vector<float>{1}),
       beams_((2 * across_.size() - 1) * 2 * filtered_bins) {}
 
-void FieldFilter::fillBeam(const BeamKey& key, size_t chunk, size_t beam) {
+void FieldFilter::fillBeam(const BeamKey& key, size_t chunk, size_t number, size_t slot) {
     Field<random_bins> drawn;
-    drawField({key.seed, key.beam | static_cast<uint32_t>(beam), key.ping_low, key.ping_high}, chunk, drawn);
-    float* const kept = &beams_[beam % (2 * across_.size() - 1) * 2 * filtered_bins];
+    drawField({key.seed, key.beam | static_cast<uint32_t>(number), key.ping_low, key.ping_high}, chunk, drawn);
+    float* const kept = &beams_[slot % (2 * across_.size() - 1) * 2 * filtered_bins];
     filterAlong(drawn.real, along_.data(), along_.size(), kept);
     filterAlong(drawn.imaginary, along_.data(), along_.size(), kept + filtered_bins);
 }
 
-void FieldFilter::addPower(size_t beam, size_t bin_count, float* variates) const {
+void FieldFilter::addPower(size_t first_slot, float scale, size_t bin_count, float* variates) const {
     Field<filtered_bins> field{};
     const size_t reach = across_.size() - 1, span = 2 * reach + 1;
     for (size_t i = 0; i < span; ++i) {
         const float weight = across_[i < reach ? reach - i : i - reach];
-        const float* const kept = &beams_[(beam + i) % span * 2 * filtered_bins];
+        const float* const kept = &beams_[(first_slot + i) % span * 2 * filtered_bins];
         addWeighted(kept, weight, field.real, filtered_bins);
         addWeighted(kept + filtered_bins, weight, field.imaginary, filtered_bins);
     }
-    addSquares(field, 0.5f / static_cast<float>(looks_), variates, bin_count);
+    addSquares(field, scale, variates, bin_count);
 }
 
-void FieldFilter::draw(const BeamKey& key, size_t beam_count, size_t bin_count, std::vector<float>& variates) {
-    variates.assign(beam_count * bin_count, 0.0f);
+double FieldFilter::powerInRing(size_t beam_count) const {
     const size_t reach = across_.size() - 1;
+    if (beam_count > 2 * reach) return 1;
+    std::vector<double> folded(beam_count, 0.0);
+    for (size_t i = 0; i <= 2 * reach; ++i)
+        folded[i % beam_count] += static_cast<double>(across_[i < reach ? reach - i : i - reach]);
+    double power = 0;
+    for (const double weight : folded) power += weight * weight;
+    return power;
+}
+
+void FieldFilter::draw(const BeamKey& key, const BeamOrder& order, size_t bin_count, std::vector<float>& variates) {
+    const size_t beam_count = order.beams.size(), reach = across_.size() - 1;
+    variates.assign(beam_count * bin_count, 0.0f);
+    // White noise is numbered from `reach` before the first beam; in a ring, that of the beam itself.
+    const auto numberOf = [&](size_t slot) {
+        return order.is_ring ? (slot + reach * (beam_count - 1)) % beam_count + reach : slot;
+    };
+    const double power = order.is_ring ? powerInRing(beam_count) : 1;
+    const float scale = power == 1 ? 0.5f / static_cast<float>(looks_) : static_cast<float>(0.5 / (looks_ * power));
     for (int look = 0; look < looks_; ++look) {
-        // This key differs from that of every unfiltered variate. Beams are counted from `reach` before the first.
+        // This key differs from that of every unfiltered variate.
         const BeamKey own{{key.seed[0], key.seed[1] ^ 0x9E3779B9u * static_cast<uint32_t>(look + 1)},
                           key.beam,
                           key.ping_low,
                           key.ping_high};
         for (size_t chunk = 0; chunk * filtered_bins < bin_count; ++chunk) {
             const size_t first = chunk * filtered_bins, count = std::min(filtered_bins, bin_count - first);
-            for (size_t beam = 0; beam < 2 * reach; ++beam) fillBeam(own, chunk, beam);
-            for (size_t beam = 0; beam < beam_count; ++beam) {
-                fillBeam(own, chunk, beam + 2 * reach);
-                addPower(beam, count, &variates[beam * bin_count + first]);
+            for (size_t slot = 0; slot < 2 * reach; ++slot) fillBeam(own, chunk, numberOf(slot), slot);
+            for (size_t place = 0; place < beam_count; ++place) {
+                fillBeam(own, chunk, numberOf(place + 2 * reach), place + 2 * reach);
+                addPower(place, scale, count, &variates[order.beams[place] * bin_count + first]);
             }
         }
     }

@@ -12,21 +12,33 @@ namespace insonify::noise {
  *  whole filter sum up to 1. `width` is at most 16 lags. */
 std::vector<float> gaussianFilter(double width);
 
+/** The beams of a ping as neighbours of each other. */
+struct BeamOrder {
+    std::vector<uint32_t> beams;  ///< Indices into the ping's beams, each once: neighbours follow each other.
+    bool is_ring = false;         ///< Whether the last and the first are neighbours.
+};
+
 /** Variates of unit mean with a receiver's correlation: complex Gaussian noise that is filtered in range and across
  *  beams, squared, and averaged over looks (ACOUSTICS.md 6.8).
  *
- *  The noise of a bin depends only on the key, beam and bin, not on the size of the ping. */
+ *  The noise of a bin depends only on the key, the beam's place in the order and the bin, not on the size of the ping;
+ *  in a ring also on the number of beams. */
 class FieldFilter {
 public:
     explicit FieldFilter(const FilterConfig& config);
 
     /** Fills the variates of all beams. `key.beam` contains only the bits of a stream. Allocates nothing when
      *  `variates` has had this size before. */
-    void draw(const BeamKey& key, size_t beam_count, size_t bin_count, std::vector<float>& variates);
+    void draw(const BeamKey& key, const BeamOrder& order, size_t bin_count, std::vector<float>& variates);
+
+    bool isAcross() const { return across_.size() > 1; }  ///< Whether it correlates beams.
 
 private:
-    void fillBeam(const BeamKey& key, size_t chunk, size_t beam);
-    void addPower(size_t beam, size_t bin_count, float* variates) const;
+    /** Fills white noise, filtered in range, of the beam of a number into a slot. */
+    void fillBeam(const BeamKey& key, size_t chunk, size_t number, size_t slot);
+    void addPower(size_t first_slot, float scale, size_t bin_count, float* variates) const;
+    /** Returns the mean power of the fields of a ring, whose beams the filter may meet several times [1]. */
+    double powerInRing(size_t beam_count) const;
 
     int looks_;
     std::vector<float> along_, across_;  ///< Halves of the filters in range and across beams.

@@ -155,12 +155,28 @@ bool Noise::addsAmbient() const {
     return config_.ambient && !has_ambient;
 }
 
+/** Sorts the beams along their arc where their neighbours matter; those of unknown bearing follow. */
+void Noise::takeOrder(const types::Sonar& ping) {
+    std::vector<uint32_t>& beams = order_.beams;
+    beams.clear();
+    order_.is_ring = false;
+    if (filter_->isAcross()) {
+        arc_.take(ping);
+        beams.assign(arc_.beams.begin(), arc_.beams.end());
+        order_.is_ring = beams.size() == ping.beam_count && arc_.isRing();
+    }
+    for (uint32_t beam = 0; beam < ping.beam_count && beams.size() < ping.beam_count; ++beam)
+        if (beam >= ping.bearings.size() || !std::isfinite(ping.bearings[beam].rad) || !filter_->isAcross())
+            beams.push_back(beam);
+}
+
 void Noise::drawFiltered(const types::Sonar& ping, uint64_t seed) {
     const uint64_t time = static_cast<uint64_t>(ping.time.microseconds);
     const auto draw = [&](Stream stream, bool wanted, std::vector<float>& variates) {
         const BeamKey key{{low(seed), high(seed)}, static_cast<uint32_t>(stream), low(time), high(time)};
-        if (wanted) filter_->draw(key, ping.beam_count, ping.bin_count, variates);
+        if (wanted) filter_->draw(key, order_, ping.bin_count, variates);
     };
+    takeOrder(ping);
     draw(Stream::Speckle, config_.speckle.has_value(), filtered_.factor);
     draw(Stream::Ambient, addsAmbient(), filtered_.ambient);
     draw(Stream::Additive, config_.additive.has_value(), filtered_.additive);

@@ -6,6 +6,7 @@
 #include "components/noise/FieldFilter.hpp"
 #include "components/noise/GammaTable.hpp"
 #include "components/noise/NoiseConfig.hpp"
+#include "types/BeamArc.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::noise {
@@ -37,6 +38,7 @@ private:
         std::vector<float> factor, ambient, additive;
     };
     bool addsAmbient() const;
+    void takeOrder(const types::Sonar& ping);
     void drawFiltered(const types::Sonar& ping, uint64_t seed);
     uint64_t addTo(const Run& run) const;
     uint64_t multiply(const Run& run) const;
@@ -45,6 +47,8 @@ private:
     std::optional<GammaTable> gamma_;  ///< Table of laws gamma and k.
     std::optional<FieldFilter> filter_;
     Filtered filtered_;
+    types::BeamArc arc_;
+    BeamOrder order_;                   ///< Of the beams of the ping, for the filter.
     float ambient_ = 0, additive_ = 0;  ///< Mean intensities [1].
 };
 

@@ -48,7 +48,8 @@ void FanImage::build(const types::Sonar& ping) {
     shape_ = FanShape::of(ping);
     const double range = shape_.range > 0 ? shape_.range : 1;
     layout_.emplace(static_cast<int>(config_.width), shape_.right, shape_.left, range);
-    const int rows = static_cast<int>(shape_.bearings.size()), bins = static_cast<int>(shape_.bin_count);
+    const int again = shape_.fullCircle() ? 1 : 0;  // the first beam follows the last
+    const int rows = static_cast<int>(shape_.bearings.size()) + again, bins = static_cast<int>(shape_.bin_count);
     columns_ = std::min(bins, std::max(1, static_cast<int>(layout_->radius())));
     bins_.create(rows, bins, CV_32F);
     polar_.create(rows, columns_, CV_32F);
@@ -87,11 +88,13 @@ void FanImage::buildGround() {
     overlay_->finish();
 }
 
-/** Gathers the ping's beams in order of bearing, with at most one range cell per pixel. */
+/** Gathers the ping's beams in order of bearing, in a full circle with the first one again at the end, with at most one
+ * range cell per pixel. */
 void FanImage::gather(const types::Sonar& ping) {
     const size_t count = shape_.bin_count;
-    for (size_t row = 0; row < shape_.beams.size(); ++row)
-        std::memcpy(bins_.ptr(static_cast<int>(row)), &ping.bins[shape_.beams[row] * count], count * sizeof(float));
+    for (size_t row = 0; row < static_cast<size_t>(bins_.rows); ++row)
+        std::memcpy(bins_.ptr(static_cast<int>(row)), &ping.bins[shape_.beams[row % shape_.beams.size()] * count],
+                    count * sizeof(float));
     if (columns_ == bins_.cols)
         bins_.copyTo(polar_);
     else

@@ -45,6 +45,27 @@ types::Sonar firstLine(const types::Sonar& ping) {
     return line;
 }
 
+/** Joins groups that touch across the ends of a ring: cells of the last row and of the first. `number_of` turns the
+ *  numbers of groups into those of joined groups, which have no gaps. */
+void joinEnds(const cv::Mat& numbers, std::vector<int32_t>& number_of) {
+    const auto rootOf = [&](int32_t group) {
+        while (number_of[static_cast<size_t>(group)] != group) group = number_of[static_cast<size_t>(group)];
+        return group;
+    };
+    const auto *first = numbers.ptr<int32_t>(0), *last = numbers.ptr<int32_t>(numbers.rows - 1);
+    for (int cell = 0; cell < numbers.cols; ++cell)
+        for (int other = std::max(0, cell - 1); other <= std::min(cell + 1, numbers.cols - 1); ++other) {
+            if (first[cell] == 0 || last[other] == 0) continue;
+            const int32_t a = rootOf(first[cell]), b = rootOf(last[other]);
+            number_of[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+        }
+    int32_t count = 0;
+    for (size_t group = 0; group < number_of.size(); ++group) {
+        const auto own = static_cast<int32_t>(group);
+        number_of[group] = number_of[group] == own ? count++ : number_of[static_cast<size_t>(number_of[group])];
+    }
+}
+
 }  // namespace
 
 DisplayConfig PlainConfig::display() const {
@@ -201,9 +222,15 @@ std::vector<int32_t> PlainPicture::groupsOf(const std::vector<uint8_t>& chosen) 
     cv::Mat in_order(static_cast<int>(order.size()), static_cast<int>(cells_), CV_8U), numbers;
     for (size_t row = 0; row < order.size(); ++row)
         std::copy_n(&chosen[size_t{order[row]} * cells_], cells_, in_order.ptr<uint8_t>(static_cast<int>(row)));
-    cv::connectedComponents(in_order, numbers);
-    for (size_t row = 0; row < order.size(); ++row)
-        std::copy_n(numbers.ptr<int32_t>(static_cast<int>(row)), cells_, &groups[size_t{order[row]} * cells_]);
+    const int count = cv::connectedComponents(in_order, numbers);
+    std::vector<int32_t> number_of(static_cast<size_t>(count));
+    std::iota(number_of.begin(), number_of.end(), 0);
+    if (config_.shape == PlainShape::Fan && shape_.isRing()) joinEnds(numbers, number_of);
+    for (size_t row = 0; row < order.size(); ++row) {
+        const auto* of_row = numbers.ptr<int32_t>(static_cast<int>(row));
+        std::transform(of_row, of_row + cells_, &groups[size_t{order[row]} * cells_],
+                       [&](int32_t number) { return number_of[static_cast<size_t>(number)]; });
+    }
     return groups;
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "types/PosedMesh.hpp"
+#include "types/Weld.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -148,11 +149,16 @@ std::span<const uint32_t> trianglesOf(const types::Mesh& mesh, const types::Clus
     return std::span(mesh.indices).subspan(first.first_index, last.first_index + last.index_count - first.first_index);
 }
 
-/** Returns indices in which vertices at the same place are one. */
+/** Returns indices in which vertices at the same place are one, without triangles that have two corners there. */
 Indices welded(const types::Mesh& mesh) {
-    Indices indices(mesh.indices.size());
-    meshopt_generateShadowIndexBuffer(indices.data(), mesh.indices.data(), mesh.indices.size(), mesh.positions.data(),
-                                      mesh.positions.size(), sizeof(glm::vec3), sizeof(glm::vec3));
+    const std::vector<uint32_t> first = types::weldedPlaces(mesh.positions, mesh.indices);
+    Indices indices;
+    indices.reserve(mesh.indices.size());
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const Triangle corners{first[mesh.indices[i]], first[mesh.indices[i + 1]], first[mesh.indices[i + 2]]};
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+        indices.insert(indices.end(), corners.begin(), corners.end());
+    }
     return indices;
 }
 

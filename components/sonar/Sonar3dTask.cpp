@@ -103,7 +103,7 @@ bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, ty
         received = renderer.hasEchoes() || renderer.othersReceived() > 0 || received;
         if (column == 0) shape(sample);
         if (column == 0 && truth_of_ping) GridTruth::shape(sample, map_.vertical_size, *truth_of_ping, return_truth_);
-        addTo(sample, column);
+        addTo(sample, column, renderer);
         if (truth_of_ping) grid_truth_.addTo(fan_, fan_truth_, static_cast<size_t>(column), *truth_of_ping);
         if (wantsReturns()) detect(column, truth_of_ping != nullptr);
     }
@@ -139,9 +139,17 @@ void Sonar3dTask::shape(types::Sonar& sample) {
     levels_.assign(rows * columns, 0);
 }
 
-void Sonar3dTask::addTo(types::Sonar& sample, int column) const {
+void Sonar3dTask::addTo(types::Sonar& sample, int column, const SonarRenderer& renderer) {
     float* const sum = sample.bins.data() + static_cast<size_t>(column) * sample.bin_count;
     for (size_t i = 0; i < fan_.bins.size(); ++i) sum[i % fan_.bin_count] += fan_.bins[i];
+    if (fan_.beam_count < 2 || !renderer.takeAlike(fan_, alike_)) return;
+    // The sonar rings once: its mean over the beams that were summed remains.
+    const double too_many = 1 - 1.0 / fan_.beam_count;
+    for (size_t k = 0; k < fan_.bin_count; ++k) {
+        double ringing = 0;
+        for (size_t i = k; i < alike_.bins.size(); i += fan_.bin_count) ringing += double{alike_.bins[i]};
+        if (ringing > 0) sum[k] = std::max(0.0f, static_cast<float>(double{sum[k]} - too_many * ringing));
+    }
 }
 
 void Sonar3dTask::detect(int column, bool with_truth) {

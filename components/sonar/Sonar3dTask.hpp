@@ -91,14 +91,15 @@ protected:
 private:
     /** Writes the returns of one upright fan into a column of the map, and their truth if there is one. */
     void detect(int column, bool with_truth);
-    /** Adds one upright fan to its beam of the ping. */
-    void addTo(types::Sonar& sample, int column) const;
+    /** Adds one upright fan to its beam of the ping, and the ring-down of the sonar once. */
+    void addTo(types::Sonar& sample, int column, const SonarRenderer& renderer);
     void shape(types::Sonar& sample);
     void writePoints(const types::Sonar& sample, const types::Pose& sonar);
     void writeReturnTruth();
     bool wantsReturns() const { return range_image.connected() || soundings.connected() || range_truth.connected(); }
 
     types::Sonar fan_;            ///< Beams of one azimuth.
+    types::Sonar alike_;          ///< What all of these beams record alike.
     sonar::Stages fan_stages_{};  ///< Sum over all azimuths of the last ping.
     types::DepthMap map_;
     std::vector<double> levels_;  ///< Of the return of each cell of the map, without spreading [1].

@@ -191,6 +191,18 @@ void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) 
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+bool SonarRenderer::takeAlike(const types::Sonar& ping, types::Sonar& alike) const {
+    if (!parts_->plan.has(Pass::RingDown)) return false;
+    alike.time = ping.time;
+    static_cast<types::RangeBins&>(alike) = ping;
+    alike.beam_count = ping.beam_count;
+    alike.bin_count = ping.bin_count;
+    alike.bins.assign(ping.bins.size(), 0);
+    parts_->effects.addAlike(alike);
+    parts_->plan.beams.toTableOrder(std::span(alike.bins), alike.bin_count);
+    return true;
+}
+
 void SonarRenderer::setElements(const types::Sonar& ping, types::SonarElements* signals) {
     if (signals && !(parts_->echoes->field() && parts_->plan.config.elements))
         throw std::logic_error("the sonar has no elements");

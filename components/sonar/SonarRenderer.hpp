@@ -38,6 +38,11 @@ public:
      *  allocates. Null: no more. Throws std::logic_error where the sonar has no `elements`. */
     void setElements(const types::Sonar& ping, types::SonarElements* signals);
 
+    /** Fills the bins of `alike`, with the shape of the ping, with what every beam of the last ping records alike,
+     *  whatever it looks at: the ring-down of the transmitter. Returns false, and changes nothing, where there is none.
+     *  Allocates nothing when it has filled `alike` before. */
+    bool takeAlike(const types::Sonar& ping, types::Sonar& alike) const;
+
     /** Forgets all pings, as if it had just been made. Returns false where a new renderer is needed: with motion in a
      *  ping, with bent rays, or where it rasterises. */
     bool forget();

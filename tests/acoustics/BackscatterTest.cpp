@@ -124,9 +124,9 @@ TEST(BackscatterTest, TheLossOfSeabedsMatchesFigure1OfTheReport) {
 
 TEST(BackscatterTest, ATableIsItsLawOverTheCosine) {
     const BackscatterTable lambert([](double grazing) { return lambertSection(-16.7, std::sin(grazing)); });
-    EXPECT_EQ(lambert.values().size(), 256u);
-    for (size_t i = 1; i < 256; ++i) {
-        const double cosine = static_cast<double>(i) / 255;
+    EXPECT_EQ(lambert.values().size(), 1024u);
+    for (size_t i = 1; i < 1024; ++i) {
+        const double cosine = BackscatterTable::cosineOf(static_cast<int>(i));
         EXPECT_NEAR(lambert.values()[i], std::pow(10, -1.67) * cosine, 1e-12) << cosine;
     }
 }
@@ -134,7 +134,7 @@ TEST(BackscatterTest, ATableIsItsLawOverTheCosine) {
 TEST(BackscatterTest, ATableIsClampedNearGrazing) {
     const BackscatterTable table([](double grazing) { return grazing; });
     EXPECT_NEAR(table.values()[0], 1, 1e-6);
-    EXPECT_NEAR(table.values()[255], pi / 2, 1e-9);
+    EXPECT_NEAR(table.values()[1023], pi / 2, 1e-9);
 }
 
 TEST(BackscatterTest, ReadsAMeasuredTableAndReportsErrorsWithTheirPlace) {

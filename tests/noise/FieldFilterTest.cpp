@@ -157,5 +157,26 @@ TEST(FieldFilterTest, RejectsAFilterWithoutNoiseOrWithoutAField) {
                 ElementsAre("filter: is given with speckle.law: gaussian, which is no field; give rayleigh or k"));
 }
 
+/** The first and the last beam of a ring, and beams that a table lists far apart, are neighbours. */
+TEST(FieldFilterTest, NeighboursAlongTheArcCorrelateInAnyOrderOfBeamsAndRoundARing) {
+    for (const uint32_t count : {24u, 7u}) {
+        for (const uint32_t step : {1u, 5u}) {
+            types::Sonar clean = pingOf(count, 20000);
+            for (uint32_t k = 0; k < count; ++k)  // beam k of the ring is in row k * step % count
+                clean.bearings[k * step % count] = types::Angle::fromDeg(360.0 * (k + 0.5) / count - 180);
+            clean.beam_width = types::Angle::fromDeg(360.0 / count);
+            const types::Sonar noisy = noisyOf(filtered({1, {}, 1.5}), clean);
+            const auto beam = [&](uint32_t k) { return &noisy.bins[size_t{k % count * step % count} * 20000]; };
+            for (uint32_t k = 0; k < count; ++k) {
+                EXPECT_NEAR(correlation(beam(k), beam(k + 1), 20000), std::exp(-1 / 2.25), count > 20 ? 0.05 : 0.2)
+                    << k;
+                double mean = 0;
+                for (size_t bin = 0; bin < 20000; ++bin) mean += double{beam(k)[bin]} / 20000;
+                EXPECT_NEAR(mean, 1, 0.05) << k;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace insonify::noise

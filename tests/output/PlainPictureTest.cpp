@@ -148,5 +148,19 @@ TEST(PlainPictureTest, RefusesAPingWithoutBins) {
     EXPECT_THROW(pictureOf(types::Sonar{}, configOf(PlainShape::Fan, 100)), std::runtime_error);
 }
 
+TEST(PlainPictureTest, GroupsOfAFullCircleTouchAcrossItsSeam) {
+    for (const double view_deg : {360.0, 300.0}) {
+        const PlainPicture picture = pictureOf(emptyPing(view_deg, 36, 40), configOf(PlainShape::Fan, 100));
+        std::vector<uint8_t> chosen(size_t{36} * picture.cellsPerBeam(), 0);
+        const auto at = [&](size_t beam, size_t cell) { return beam * picture.cellsPerBeam() + cell; };
+        for (const size_t cell : {at(0, 5), at(35, 6), at(18, 5), at(34, 6), at(0, 20)}) chosen[cell] = 1;
+        const std::vector<int32_t> groups = picture.groupsOf(chosen);
+        EXPECT_EQ(groups[at(0, 5)] == groups[at(35, 6)], view_deg == 360);
+        EXPECT_EQ(groups[at(34, 6)], groups[at(35, 6)]);
+        std::set<int32_t> all(groups.begin(), groups.end());
+        EXPECT_EQ(*all.rbegin(), static_cast<int32_t>(all.size()) - 1) << "numbers without gaps";
+    }
+}
+
 }  // namespace
 }  // namespace insonify::output

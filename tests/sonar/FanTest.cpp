@@ -152,5 +152,29 @@ TEST(FanTest, CoverageIsThatOfTheArc) {
     EXPECT_DOUBLE_EQ(config.coverageDeg(), 50);
 }
 
+TEST(FanTest, TheEndsOfARingAreNeighbours) {
+    const auto isRing = [](double first, double step, int count, double width) {
+        std::vector<Beam> table;
+        for (int k = 0; k < count; ++k) {
+            const double at = std::remainder(radians(first + k * 7 % count * step), 2 * std::numbers::pi);
+            table.push_back({at, at - radians(width) / 2, at + radians(width) / 2});
+        }
+        return Fan(table).isRing();
+    };
+    for (const double first : {-180.0, -175.0, 3.0, 90.0}) {
+        EXPECT_TRUE(isRing(first, 10, 36, 10)) << first;
+        EXPECT_TRUE(isRing(first, 10, 36, 4)) << "with gaps";
+        EXPECT_TRUE(isRing(first, 10, 36, 25)) << "with overlaps";
+        EXPECT_FALSE(isRing(first, 10, 35, 10)) << first;
+        EXPECT_FALSE(isRing(first, 9, 36, 9)) << first;
+    }
+    EXPECT_FALSE(isRing(0, 180, 2, 10)) << "two beams are neighbours once";
+    SonarConfig config;
+    for (const double view_deg : {360.0, 350.0}) {
+        config.field_of_view_deg = view_deg;
+        EXPECT_EQ(makeBeams(config).isRing(), view_deg == 360);
+    }
+}
+
 }  // namespace
 }  // namespace insonify::sonar

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/fan/Directivity.hpp"
@@ -355,6 +356,38 @@ TEST(ImperfectionsTest, RejectsImpossibleConfigurationsWithTheReason) {
     elements.elements.emplace();
     EXPECT_THAT(test::refusalsOf(elements), ElementsAre(HasSubstr("whose signals are those of the far field"),
                                                         HasSubstr("their number is that of `elements`")));
+}
+
+/** A target in each of the first and the last beam leaks across the seam, for fans and tables of any order. */
+TEST(ImperfectionsTest, BeamsAcrossTheSeamOfARingLeakIntoEachOther) {
+    std::mt19937 random(4);
+    for (int trial = 0; trial < 6; ++trial) {
+        SonarConfig config = test::sonarOf({.beams = 36, .width_deg = 360, .height_deg = 20, .bins = 200, .rows = 8});
+        config.visibility = Visibility::Cpu;
+        config.imperfections.emplace().crosstalk_db = -20;
+        if (trial % 3 > 0) {
+            config.field_of_view_deg.reset();
+            config.beam_width_deg = trial % 3 == 1 ? 10 : 6;
+            for (int k = 0; k < 36; ++k) config.bearings_deg.push_back(std::remainder(-175 + 10 * k + 1000, 360));
+            std::ranges::shuffle(config.bearings_deg, random);
+        }
+        for (const double azimuth_deg : {175.0, -175.0, 5.0}) {
+            types::Snapshot snapshot = test::snapshotOf(test::openWater());
+            const double azimuth = config.bearings_deg.empty() ? radians(azimuth_deg) : radians(config.bearings_deg[7]);
+            snapshot.targets = {{10.05 * glm::dvec3(std::cos(azimuth), std::sin(azimuth), 0), 0}};
+            const types::Sonar ping = imperfectPing(config, snapshot);
+            size_t own = 0, leaks = 0;
+            for (size_t beam = 0; beam < 36; ++beam) {
+                const double level = double{ping.bins[beam * 200 + 100]} * std::pow(10.05, 4);
+                const double off = std::abs(std::remainder(ping.bearings[beam].rad - azimuth, 2 * pi));
+                EXPECT_NEAR(level, off < radians(1) ? 1 : off < radians(11) ? 0.01 : 0, 1e-5) << beam;
+                own += off < radians(1) ? 1 : 0;
+                leaks += off >= radians(1) && off < radians(11) ? 1 : 0;
+            }
+            EXPECT_EQ(own, 1u);
+            EXPECT_EQ(leaks, 2u);
+        }
+    }
 }
 
 }  // namespace

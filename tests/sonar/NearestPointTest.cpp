@@ -32,7 +32,7 @@ double sampledDistance(const types::Mesh& mesh, const glm::dmat4& place) {
 
 double distance(const types::Mesh& mesh, const glm::dmat4& place) {
     std::vector<float> scratch;
-    return nearestDistance(mesh, longestEdge(mesh), place, scratch);
+    return distancesTo(mesh, longestEdge(mesh), place, scratch).nearest;
 }
 
 types::Mesh randomMesh(Random& random, int triangles) {
@@ -120,6 +120,25 @@ TEST(NearestPointTest, NoEchoIsBeforeAnObject) {
         EXPECT_GE(firstEcho(visibility), nearest - bin);
         EXPECT_LE(firstEcho(visibility), nearest + 3 * bin);
     }
+}
+
+/** Random meshes of few and of many corners, turned and scaled: no corner is farther, and one is that far. */
+TEST(NearestPointTest, TheFarthestCornerIsFoundToo) {
+    Random random(9);
+    for (const int triangles : {1, 40, 700, 6000})
+        for (int trial = 0; trial < 5; ++trial) {
+            types::Mesh mesh = randomMesh(random, triangles);
+            scene::buildClusters(mesh);
+            const glm::dmat4 place = glm::translate(glm::dmat4(1), uniformVector(random, 6)) *
+                                     glm::rotate(glm::dmat4(1), 1.0 + trial, uniformVector(random, 1)) *
+                                     glm::scale(glm::dmat4(1), glm::dvec3(1, 0.6, 1.7));
+            double farthest = 0;
+            for (const uint32_t index : mesh.indices)
+                farthest = std::max(farthest, glm::length(glm::dvec3(place * glm::dvec4(mesh.positions[index], 1))));
+            std::vector<float> scratch;
+            EXPECT_NEAR(distancesTo(mesh, longestEdge(mesh), place, scratch).farthest, farthest, 2e-5 * farthest)
+                << triangles;
+        }
 }
 
 }  // namespace insonify::sonar

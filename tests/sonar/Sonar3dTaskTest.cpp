@@ -351,5 +351,35 @@ TEST_F(Sonar3dTaskTest, ASilentSonarReportsItsDirections) {
     EXPECT_THAT(reported, testing::HasSubstr("beyond the range of 15 m"));
 }
 
+/** The sonar rings once, whatever the number of its rows: 10^(L/10) exp(-K r) (1 - exp(-K dR)) / (K dR). */
+TEST_F(Sonar3dTaskTest, TheRingDownOfThePingIsThatOfTheSonarForAnyNumberOfRows) {
+    test::Reader<types::SonarPtr> pings;
+    task_.ping.connectTo(pings.port, framework::ConnPolicy::buffer(4));
+    Sonar3dConfig config = grid();
+    config.horizontal = {2, 20};
+    config.sonar.quality.rows = config.sonar.quality.columns_per_beam = 2;
+    config.sonar.pulse.emplace().bandwidth_khz = 5;
+    config.sonar.pulse->ring_down = acoustics::RingDownConfig{-40, 10};
+    for (const int rows : {1, 4, 16}) {
+        config.vertical = {rows, 2.0 * rows};
+        for (const bool imperfect : {false, true}) {
+            config.sonar.imperfections.reset();
+            if (imperfect) config.sonar.imperfections.emplace().clock_jitter_us = 0;
+            startWith(config);
+            ASSERT_TRUE(mapOf(test::snapshotOf(test::openWater()))) << task_.lastError();
+            types::SonarPtr ping;
+            ASSERT_TRUE(pings.port.readNew(ping));
+            const double width = ping->binStart(1), rate = std::log(10);
+            for (size_t k = 0; k < 40; ++k) {
+                const double r = width * static_cast<double>(k);
+                const double right = 1e-4 * std::exp(-rate * r) * (1 - std::exp(-rate * width)) / (rate * width);
+                EXPECT_NEAR(double{ping->bins[k]} / right, 1, 1e-5) << rows << " rows, bin " << k;
+            }
+            task_.stop();
+            task_.cleanup();
+        }
+    }
+}
+
 }  // namespace
 }  // namespace insonify::sonar

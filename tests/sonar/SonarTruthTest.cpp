@@ -3,6 +3,8 @@
 
 #include <bit>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <random>
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
@@ -280,6 +282,40 @@ TEST(SonarTaskTruthTest, ReturnsAreTheFirstAndTheStrongestOfEachBeam) {
     const auto silent = bench.pingOf(test::snapshotOf(scene, {0, 0, 500}));
     ASSERT_TRUE(silent && bench.returns.port.readNew(returns));
     EXPECT_TRUE(std::isnan(returns->first_range[beam]) && std::isnan(returns->strongest_level[beam]));
+}
+
+/** Random balls, boxes and tilted plates: no bin beyond an object's farthest point, or before its nearest, has its
+ *  label. */
+TEST(ObjectTruthTest, LabelsAreWithinTheRangesOfTheirObjects) {
+    std::mt19937 random(21);
+    const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    SonarConfig config = test::sonarOf(
+        {.beams = 12, .width_deg = 60, .height_deg = 40, .bins = 400, .bin = 0.05, .rows = 64, .columns = 4});
+    config.visibility = Visibility::Cpu;
+    for (int trial = 0; trial < 12; ++trial) {
+        const auto scene = std::make_shared<types::Geometry>(*test::sceneOf(
+            {test::ground(-4), trial % 2 ? test::sphere(static_cast<float>(between(0.3, 1.5)), trial % 4 == 1 ? 6 : 12)
+                                         : test::quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0})},
+            0, {{}, {between(6, 14), between(-3, 3), between(-3, 2)}}));
+        const glm::dquat turn =
+            glm::normalize(glm::dquat(between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1)));
+        scene->objects[1].world_from_object = scene->objects[1].world_from_object * glm::mat4_cast(turn);
+        double near = 1e9, far = 0;
+        for (const glm::vec3& corner : scene->meshes[1].positions) {
+            const double range = glm::length(glm::dvec3(scene->objects[1].world_from_object * glm::dvec4(corner, 1)));
+            near = std::min(near, range), far = std::max(far, range);
+        }
+        const Truths all = truthsOf(config, test::snapshotOf(scene));
+        size_t labelled = 0;
+        for (size_t i = 0; i < all.ping.bins.size(); ++i) {
+            if (all.truth.object[i] != 1) continue;
+            ++labelled;
+            const double start = all.ping.binStart(static_cast<double>(i % 400));
+            EXPECT_LT(start, far + 1e-3) << trial;
+            EXPECT_GT(start + 0.05, near - 0.6) << trial;  // within a facet
+        }
+        EXPECT_GT(labelled, 0u) << trial;
+    }
 }
 
 }  // namespace

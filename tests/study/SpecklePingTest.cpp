@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <complex>
+#include <glm/gtc/matrix_transform.hpp>
 #include <iostream>
 #include <numbers>
 
@@ -446,6 +447,44 @@ TEST(SpecklePingTest, ReportsMissingRequirements) {
     SonarConfig mean = coherent(boxes());
     mean.model = Model::Cerqueira2017;
     EXPECT_THAT(test::refusalsOf(mean), Contains(HasSubstr("cerqueira2017")));
+}
+
+/** The speckle of an object is its own: other objects may come, go and change places in the list. */
+TEST(SpecklePingTest, AnObjectKeepsItsSpeckleWhenOthersAreAddedAndChangeTheirOrder) {
+    SonarConfig config = coherent(boxes());
+    config.range_min = 1;
+    auto alone = std::make_shared<types::Geometry>(*test::sceneOf({test::ground(-3)}));
+    alone->objects[0].name = "floor";
+    const types::Sonar first = pingOf(config, test::snapshotOf(alone));
+    const auto both = [&](bool floor_last, const char* other) {
+        auto scene = std::make_shared<types::Geometry>(
+            *test::sceneOf({test::ground(-3), test::disc(1, 0.1f)}, 0, {{}, {-50, 0, 0}}));
+        scene->objects[0].name = "floor";
+        scene->objects[1].name = other;
+        if (floor_last) std::swap(scene->objects[0], scene->objects[1]);
+        return pingOf(config, test::snapshotOf(scene));
+    };
+    EXPECT_EQ(both(false, "thing").bins, first.bins);
+    EXPECT_EQ(both(true, "thing").bins, first.bins);
+    EXPECT_EQ(both(true, "another").bins, first.bins);
+    alone->objects[0].name = "bottom";
+    EXPECT_NE(pingOf(config, test::snapshotOf(std::make_shared<types::Geometry>(*alone))).bins, first.bins);
+}
+
+/** Two places of one mesh, and two objects of one name, have their own speckle. */
+TEST(SpecklePingTest, EqualObjectsOfOneNameHaveTheirOwnSpeckle) {
+    SonarConfig config = coherent(boxes());
+    config.range_min = 1;
+    const auto withNames = [&](const char* one, const char* other) {
+        auto scene = std::make_shared<types::Geometry>(*test::sceneOf({test::ground(-3), test::ground(-3)}));
+        scene->objects[0].name = one;
+        scene->objects[1].name = other;
+        types::Snapshot snapshot = test::snapshotOf(scene);
+        snapshot.moved = {{0, glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -1000))}};  // only the second is near
+        return pingOf(config, snapshot);
+    };
+    EXPECT_NE(withNames("floor", "floor").bins, withNames("other", "floor").bins) << "the second of its name";
+    EXPECT_EQ(withNames("a", "floor").bins, withNames("b", "floor").bins);
 }
 
 }  // namespace

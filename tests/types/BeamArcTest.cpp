@@ -111,5 +111,26 @@ TEST(BeamArcTest, SectorsOfARandomFanAscendWithoutOverlapWithinOneTurn) {
     }
 }
 
+TEST(BeamArcTest, AFullCircleIsContinuousAcrossItsSeam) {
+    for (const bool narrow : {false, true}) {
+        Sonar ping = emptyPing(360, 36);
+        if (narrow) ping.beam_width = Angle::fromDeg(6);  // joined, with gaps of less than a width
+        const BeamArc arc(ping);
+        EXPECT_TRUE(arc.isRing());
+        EXPECT_TRUE(arc.fullCircle());
+        for (int i = 0; i < 720; ++i) {
+            const double bearing = Angle::fromDeg(i * 0.5 - 179.9).rad;
+            const std::optional<double> place = arc.placeAt(bearing);
+            ASSERT_TRUE(place) << bearing;
+            const double low = std::floor(*place), share = *place - low, step = 2 * std::numbers::pi / 36;
+            const double from = arc.bearings[static_cast<size_t>(low) % 36] + share * step;
+            EXPECT_NEAR(std::remainder(from - bearing, 2 * std::numbers::pi), 0, 1e-9);
+            const double nearest = arc.bearings[static_cast<size_t>(std::lround(*place)) % 36];
+            EXPECT_EQ(ping.bearings[*arc.beamAt(bearing)].rad, std::remainder(nearest, 2 * std::numbers::pi));
+        }
+    }
+    EXPECT_FALSE(BeamArc(emptyPing(350, 36)).isRing());
+}
+
 }  // namespace
 }  // namespace insonify::types

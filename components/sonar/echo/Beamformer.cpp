@@ -11,11 +11,23 @@ namespace {
 
 /** Returns the mean of a beam's pattern over a cell, by Simpson's rule; for fields the root of the mean power, with the
  *  sign of the middle. */
-double meanOver(const Beamformer::Rules& rules, const Beam& cell, double bearing) {
+double meanOver(const Beamformer::Rules& rules, const Beam& whole, double bearing) {
+    Beam cell = whole;
+    double share = 1;
+    if (std::isfinite(rules.half_box)) {
+        const double from =
+            bearing + 2 * std::numbers::pi * std::round((whole.centre - bearing) / (2 * std::numbers::pi));
+        cell.low = std::max(whole.low, from - rules.half_box);
+        cell.high = std::min(whole.high, from + rules.half_box);
+        share = (cell.high - cell.low) / (whole.high - whole.low);
+        if (!(share > 1e-9)) return 0;
+        if (share > 1 - 1e-9) share = 1, cell = whole;
+        cell.centre = 0.5 * (cell.low + cell.high);
+    }
     const double low = rules.pattern(cell.low, bearing), middle = rules.pattern(cell.centre, bearing),
                  high = rules.pattern(cell.high, bearing);
-    if (!rules.of_fields) return (low + 4 * middle + high) / 6;
-    return std::copysign(std::sqrt((low * low + 4 * middle * middle + high * high) / 6), middle);
+    if (!rules.of_fields) return share * (low + 4 * middle + high) / 6;
+    return std::copysign(std::sqrt(share * (low * low + 4 * middle * middle + high * high) / 6), middle);
 }
 
 double widthOf(const Beam& cell) { return cell.high - cell.low; }
@@ -64,7 +76,8 @@ Beamformer::Beamformer(const Fan& beams, const Fan& cells, size_t bin_count, con
         BandsTo& bands = bands_.emplace_back(BandsTo{end, {}});
         for (const Beam& beam : beams) bands.of_beams.push_back(bandOf(beam, cells, own));
     };
-    for (const Zone& zone : rules.nearer) addBands(zone.end, {zone.pattern, zone.near, rules.floor, rules.of_fields});
+    for (const Zone& zone : rules.nearer)
+        addBands(zone.end, {zone.pattern, zone.near, rules.floor, rules.of_fields, rules.half_box});
     addBands(bin_count, rules);
 }
 
@@ -106,8 +119,10 @@ Beamformer::Band Beamformer::bandOf(const Beam& beam, const Fan& cells, const Ru
     addCells(from, to, band.cells[0]);
     if (start > 0) addCells(0, start, band.cells[1]);
     if (start == 0) addCells(end, groupCount(), band.cells[1]);
-    addGroups(start, from, band.groups[0]);
-    addGroups(to, start > 0 ? groupCount() : end, band.groups[1]);
+    if (!std::isfinite(rules.half_box)) {
+        addGroups(start, from, band.groups[0]);
+        addGroups(to, start > 0 ? groupCount() : end, band.groups[1]);
+    }
     for (Run& run : band.cells) trim(run, rules.floor);
     for (Run& run : band.groups) trim(run, rules.floor);
     return band;

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -29,11 +30,15 @@ public:
         double near;             ///< Distance from its bearing within which a beam weights each cell [rad].
         double floor;            ///< Weights below it, positive or negative, are ignored [1].
         bool of_fields = false;  ///< Fields are summed. Groups, whose fields have any phase, use the mean of powers.
+        /** Half the width about its bearing within which a beam receives, exactly: a cell that is partly outside has a
+         *  smaller weight [rad]; infinite: as far as the pattern reaches. */
+        double half_box = std::numeric_limits<double>::infinity();
         std::vector<Zone> nearer = {};  ///< Zones of nearer bins, in order; `pattern` is that of the bins behind them.
     };
 
     /** `cells` are adjacent and of equal width. A wider cell counts as a group of its own and must be far from all
-     *  beams. Where the cells form a circle, the cells near a beam continue across its seam. */
+     *  beams. With a box, cells may have gaps and any width. Where the cells form a circle, the cells near a beam
+     * continue across its seam. */
     Beamformer(const Fan& beams, const Fan& cells, size_t bin_count, const Rules& rules);
 
     size_t groupCount() const { return groups_.size() - 1; }

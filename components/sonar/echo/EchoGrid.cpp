@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace insonify::sonar {
+
+Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, bool of_fields) {
+    const double half = plan.directivity->boxWidth() / 2, floor = plan.directivity->floor();
+    return {std::move(sent), half, of_fields ? std::sqrt(floor) : floor, of_fields, half};
+}
 
 Beamformer beamformerOf(const RenderPlan& plan) {
     const Directivity& directivity = *plan.directivity;
     const auto zoneRules = [&](size_t zone) {
+        if (directivity.hasBoxes()) return boxRules([&](double a, double) { return directivity.sentAzimuth(a); }, plan);
         return Beamformer::Rules{
             [&, zone](double azimuth, double bearing) { return directivity.azimuth(azimuth, bearing, zone); },
             directivity.nearAzimuth(zone), directivity.floor()};

@@ -15,6 +15,9 @@ namespace insonify::sonar {
 /** Returns the beamformer of a plan that forms beams. */
 Beamformer beamformerOf(const RenderPlan& plan);
 
+/** Returns the rules of beams that receive their boxes, times what is sent. `sent`: power, or field. */
+Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, bool of_fields = false);
+
 /** Returns the rules of a beamformer of a plan's beams with `samples` in range, by the directivity's zones. */
 Beamformer::Rules rulesOfZones(const RenderPlan& plan, size_t samples,
                                const std::function<Beamformer::Rules(size_t zone)>& zoneRules);

@@ -65,7 +65,7 @@ EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects) {
     for (int k = 0; k < bins.bin_count; ++k) rules.middles.push_back(bins.centre(k));
     rules.edges.resize(rules.edges.size() + bins_at_once);
     rules.middles.resize(rules.middles.size() + bins_at_once);
-    if (rules.features.has(Feature::ElevationPattern)) tabulateElevation(plan, rules);
+    if (rules.features.has(Feature::ElevationPattern) && !plan.traces_rays) tabulateElevation(plan, rules);
     effects.giveRules(rules);
     return rules;
 }

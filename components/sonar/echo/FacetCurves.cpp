@@ -21,9 +21,14 @@ class SmoothFacets {
 public:
     SmoothFacets(const types::Mesh& mesh, const glm::dmat3& world_from_mesh)
         : mesh_(mesh), world_from_mesh_(world_from_mesh), edges_(edgesOf(mesh)) {
+        for (const glm::vec3& at : mesh.positions) {
+            const glm::dvec3 size = glm::abs(glm::dvec3(at));
+            rounding_ = std::max({rounding_, size.x, size.y, size.z});
+        }
+        const auto scale = [&](int i) { return glm::length(world_from_mesh[i]); };
+        rounding_ *= 0x1p-24 * std::max({scale(0), scale(1), scale(2)});
         body_.resize(mesh.indices.size() / 3);
         std::iota(body_.begin(), body_.end(), 0u);
-        open_.resize(body_.size());
         joinBodies();
         if (std::ranges::all_of(body_, [&](uint32_t t) { return open_[bodyOf(t)]; })) return;
         findVolumes();
@@ -59,10 +64,8 @@ private:
 
     /** Joins connected triangles into bodies, and marks bodies with an edge of one triangle, or of more than two. */
     void joinBodies() {
-        std::vector<bool> no_area(body_.size());
-        for (const Edge& edge : edges_)
-            if (edge.low == edge.high) no_area[edge.triangle] = open_[edge.triangle] = true;
-        std::erase_if(edges_, [&](const Edge& edge) { return no_area[edge.triangle]; });
+        open_.assign(body_.size(), true);  // triangles without area have no edges
+        for (const Edge& edge : edges_) open_[edge.triangle] = false;
         eachPair([&](const Edge& one, const Edge& other) {
             const uint32_t a = bodyOf(one.triangle), b = bodyOf(other.triangle);
             body_[std::max(a, b)] = std::min(a, b);
@@ -82,18 +85,28 @@ private:
         }
     }
 
+    /** Returns the angle by which the rounding of coordinates may have turned a facet: of its corners, over its least
+     *  height. A facet of 2 mm that a file has 1 km from its origin is turned by up to 0.06 rad [rad]. */
+    double roundingOf(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& across) const {
+        const glm::dvec3 sides(glm::distance(corners[0], corners[1]), glm::distance(corners[1], corners[2]),
+                               glm::distance(corners[2], corners[0]));
+        return 2 * rounding_ * std::max({sides.x, sides.y, sides.z}) / std::max(glm::length(across), 1e-30);
+    }
+
     /** Marks the ends of an edge that is not possible on a smooth convex surface. */
     void markRough(const Edge& one, const Edge& other) {
         const auto a = cornersOf(one.triangle), b = cornersOf(other.triangle);
         const glm::dvec3 n = glm::cross(a[1] - a[0], a[2] - a[0]), m = glm::cross(b[1] - b[0], b[2] - b[0]);
         const double turn = std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
         const glm::dvec3 onward = b[0] + b[1] + b[2] - a[0] - a[1] - a[2];
-        const bool hollow = turn > straight && glm::dot(n, onward) * volumes_[bodyOf(one.triangle)] > 0;
+        const bool hollow = turn > std::max(straight, roundingOf(a, n) + roundingOf(b, m)) &&
+                            glm::dot(n, onward) * volumes_[bodyOf(one.triangle)] > 0;
         if (hollow || (turn > coarse && turn < crease)) rough_[one.low] = rough_[one.high] = true;
     }
 
     const types::Mesh& mesh_;
     glm::dmat3 world_from_mesh_;
+    double rounding_ = 0;  ///< Of the coordinates of vertices, in the world's metres [m].
     std::vector<Edge> edges_;
     std::vector<uint32_t> body_;   ///< For each triangle another triangle of its body, or itself.
     std::vector<bool> open_;       ///< For each body.
@@ -116,7 +129,7 @@ CurveRecord curveOf(const FacetRecord& facet, const glm::dvec3& normal, const gl
 
 /** Returns for each facet the first facet with the same corners in any order. */
 std::vector<size_t> firstsOf(const types::Mesh& mesh) {
-    const std::vector<uint32_t> first = weld(mesh.positions);
+    const std::vector<uint32_t> first = weld(mesh);
     std::vector<std::pair<std::array<uint32_t, 3>, size_t>> facets;
     facets.reserve(mesh.indices.size() / 3);
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {

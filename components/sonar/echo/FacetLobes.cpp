@@ -117,8 +117,11 @@ public:
     FacetLobes(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double wavelength)
         : mesh_(mesh), world_from_mesh_(world_from_mesh), wavelength_(wavelength) {
         facets_.resize(mesh.indices.size() / 3);
-        for (uint32_t t = 0; t < facets_.size(); ++t) measure(t);
         edges_ = edgesOf(mesh);
+        std::vector<bool> has_area(facets_.size());
+        for (const Edge& edge : edges_) has_area[edge.triangle] = true;
+        for (uint32_t t = 0; t < facets_.size(); ++t)
+            if (has_area[t]) measure(t);
         joinNeighbours();
         findSmoothParts();
         findFlatParts();

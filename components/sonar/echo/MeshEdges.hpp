@@ -1,7 +1,6 @@
 #pragma once
 #include <compare>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <numbers>
 #include <vector>
 
@@ -17,10 +16,11 @@ struct Edge {
     auto operator<=>(const Edge&) const = default;
 };
 
-/** Returns for each vertex the first vertex at the same place. */
-std::vector<uint32_t> weld(const std::vector<glm::vec3>& positions);
+/** Returns for each vertex the first vertex at the same place (types::weldedPlaces()). */
+std::vector<uint32_t> weld(const types::Mesh& mesh);
 
-/** Returns the edges of all triangles of a mesh, ascending: common edges of neighbours are adjacent. */
+/** Returns the edges of all triangles of a mesh, ascending: common edges of neighbours are adjacent. Omits triangles
+ *  with two corners at one place, which have no area: their neighbours meet. */
 std::vector<Edge> edgesOf(const types::Mesh& mesh);
 
 }  // namespace insonify::sonar

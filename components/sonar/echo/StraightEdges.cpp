@@ -103,7 +103,6 @@ private:
             std::vector<Side> sides;
             for (; last < edges.size() && edges[last].low == edges[first].low && edges[last].high == edges[first].high;
                  ++last) {
-                if (edges[last].low == edges[last].high) continue;
                 const glm::dvec3 inward = inwardOf(edges[last]);
                 if (glm::dot(inward, inward) > 0) sides.push_back({edges[last], inward});
             }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
+#include <cstddef>
 #include <numbers>
 #include <numeric>
 
@@ -12,9 +12,9 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double water_density = 1025;      ///< [kg/m^3]
-constexpr acoustics::Fluid air{1.23, 340};  ///< Compressed air is denser, which has no effect on a wall.
-constexpr int entries = 1024;
+constexpr double water_density = 1025;                   ///< [kg/m^3]
+constexpr acoustics::Fluid air{1.23, 340};               ///< Compressed air is denser, which has no effect on a wall.
+constexpr size_t narrow_cells = 4096, mean_cells = 512;  ///< Of tables of one frequency, and of means over a resonance.
 constexpr double min_first = 1e-4;  ///< Min share of the first return, to which the others are relative [1].
 
 /** A wall between the sonar's water and the fluid behind it. */
@@ -30,22 +30,18 @@ public:
           has_fluid_(shell.fill_density > 0) {}
 
     double reflected() const { return std::norm(at(frequency_, 1).reflected); }
-    /** Returns means over steps of the cosine, so that no resonance falls between two entries, and over `bands`
-     *  frequencies within the width of a resonance. `times`: that sound passes. */
-    std::vector<float> passed(int bands, int times) const {
-        std::vector<float> table;
-        const double width = plate_.sound_speed / (2 * plate_.thickness);
-        const int per_entry = bands == 1 ? 8 : 2;
-        for (int i = 0; i < entries; ++i) {
-            double sum = 0;
-            for (int k = 0; k < per_entry * bands; ++k) {
-                const double cosine = (i + (k % per_entry + 0.5) / per_entry) / entries;
-                const double off = bands == 1 ? 0 : width / inPlate(cosine) * ((k / per_entry + 0.5) / bands - 0.5);
-                sum += std::pow(std::norm(at(frequency_ + off, cosine).transmitted) * fluids(cosine), times);
-            }
-            table.push_back(static_cast<float>(sum / (per_entry * bands)));
+    /** Returns the share of the energy that passes a number of times at a cosine: the mean over `bands` frequencies
+     *  within the width of a resonance [1]. */
+    double passed(double cosine, int times, int bands) const {
+        if (!(cosine > 0)) return 0;
+        cosine = std::min(cosine, 1.0);
+        const double width = plate_.sound_speed / (2 * plate_.thickness), fluid = fluids(cosine);
+        double sum = 0;
+        for (int k = 0; k < bands; ++k) {
+            const double off = bands == 1 ? 0 : width / inPlate(cosine) * ((k + 0.5) / bands - 0.5);
+            sum += std::pow(std::norm(at(frequency_ + off, cosine).transmitted) * fluid, times);
         }
-        return table;
+        return sum / bands;
     }
     double reflectedWithin() const {
         return std::norm(acoustics::plateResponse(plate_, behind_, water_, frequency_, 1).reflected);
@@ -110,12 +106,6 @@ WallFill fillOf(const types::Shell& shell, const SonarConfig& config, const Wall
 
 }  // namespace
 
-double WallLaw::shareAt(const std::vector<float>& shares, double cosine) {
-    if (shares.empty()) return 0;
-    return static_cast<double>(shares[static_cast<size_t>(
-        std::clamp(cosine * static_cast<double>(shares.size()), 0.0, static_cast<double>(shares.size() - 1)))]);
-}
-
 double WallLaw::spacing(double sine) const {
     const double in_wall = sine * speed_ratio;
     return in_wall < 1 ? thickness / speed_ratio * std::sqrt(1 - in_wall * in_wall) : 0;
@@ -145,8 +135,11 @@ WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) 
         bands = bands_of_resonance;
     }
     if (!material.shell->has_air) {
-        law.passed = wall.passed(bands, 2);
-        law.passed_once = wall.passed(bands, 1);
+        law.exactly_once = [wall, bands](double cosine) { return wall.passed(cosine, 1, bands); };
+        law.exactly = [wall, bands](double cosine) { return wall.passed(cosine, 2, bands); };
+        const size_t cells = bands == 1 ? narrow_cells : mean_cells;
+        law.passed_once = acoustics::AdaptiveTable(law.exactly_once, 0, 1, {0.0115, 1e-5}, cells);
+        if (bands > 1) law.passed = acoustics::AdaptiveTable(law.exactly, 0, 1, {0.023, 1e-7}, cells);
     }
     if (material.shell->fill_density > 0) law.fill = fillOf(*material.shell, config, law, wall);
     return law;

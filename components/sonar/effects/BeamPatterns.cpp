@@ -5,6 +5,7 @@
 #include "components/sonar/effects/Effect.hpp"
 #include "components/sonar/effects/Places.hpp"
 #include "components/sonar/fan/Directivity.hpp"
+#include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -80,6 +81,14 @@ public:
         else
             leaveOut(plan, {"elevation beam pattern", Reason::NotConfigured});
         return azimuth || elevation;
+    }
+    void note(const RenderPlan& plan, const types::Geometry& /*geometry*/,
+              std::vector<std::string>& notices) const override {
+        if (plan.directivity && plan.directivity->hasBoxes())
+            notices.push_back(
+                fmt::format("the receiver has no law in azimuth: each beam receives its own {:.4g} deg alike, times "
+                            "the transmit law",
+                            types::degrees(plan.directivity->boxWidth())));
     }
     std::string takeOut(SonarConfig& config) const override { return takenOut(config.beam_pattern, "beam pattern"); }
 };

@@ -101,6 +101,9 @@ public:
     virtual void addEchoes(PingInMaking& /*ping*/) {}
     /** Changes the bins of a ping that has all its echoes. */
     virtual void addToBins(types::Sonar& /*ping*/) {}
+    /** Does to bins the part of addToBins() that concerns what every beam records alike, whatever it looks at: the
+     *  transmitter's own ringing. Tasks that sum beams count it once. */
+    virtual void addAlike(types::Sonar& /*bins*/) {}
 
     /** Returns the number of things, other than surfaces, of which the last ping has an echo [1]. */
     virtual size_t received() const { return 0; }

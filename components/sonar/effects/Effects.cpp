@@ -186,6 +186,10 @@ void PingEffects::addToBins(types::Sonar& ping) {
     for (const auto& effect : all_) effect->addToBins(ping);
 }
 
+void PingEffects::addAlike(types::Sonar& bins) {
+    for (const auto& effect : all_) effect->addAlike(bins);
+}
+
 size_t PingEffects::received() const {
     size_t received = 0;
     for (const auto& effect : all_) received += effect->received();

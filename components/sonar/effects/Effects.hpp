@@ -40,6 +40,7 @@ public:
     void addToTruth(const TracedPing& ping, types::SonarTruth& truth);
     void addEchoes(PingInMaking& ping);
     void addToBins(types::Sonar& ping);
+    void addAlike(types::Sonar& bins);
     size_t received() const;  ///< [1]
     std::vector<Omitted> omissions() const;
 

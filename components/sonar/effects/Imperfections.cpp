@@ -11,6 +11,8 @@
 namespace insonify::sonar {
 namespace {
 
+constexpr double no_crosstalk_db = -200;  ///< The least that a configuration may give: none.
+
 void checkBeams(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const ImperfectionsConfig& own = *config.imperfections;
     const auto beams = static_cast<size_t>(std::max(1, config.beams()));
@@ -26,7 +28,9 @@ public:
         : plan_(plan),
           own_(*plan.config.imperfections),
           factors_(own_.beamFactors(plan.beams.size())),
-          share_(own_.crosstalk_db ? static_cast<float>(std::pow(10, *own_.crosstalk_db / 10)) : 0.0f) {}
+          share_(own_.crosstalk_db && *own_.crosstalk_db > no_crosstalk_db
+                     ? static_cast<float>(std::pow(10, *own_.crosstalk_db / 10))
+                     : 0.0f) {}
 
     void addToBins(types::Sonar& ping) override {
         if (own_.clock_jitter_us > 0) jitter(ping);
@@ -37,6 +41,7 @@ public:
             for (size_t k = 0; k < ping.bin_count; ++k) ping.bins[beam * ping.bin_count + k] *= factor;
         }
     }
+    void addAlike(types::Sonar& bins) override { addToBins(bins); }
 
 private:
     /** Samples all beams at erroneous times, interpolating linearly between bins. */
@@ -57,13 +62,18 @@ private:
                 ping.bins[row + k] = kept_[row + low] + part * (kept_[row + high] - kept_[row + low]);
         }
     }
-    /** Adds to each beam a share of its neighbours along the arc. */
+    /** Adds to each beam a share of its neighbours along the arc, or round the ring. */
     void mix(types::Sonar& ping) {
         kept_.assign(ping.bins.begin(), ping.bins.end());
-        const size_t bins = ping.bin_count;
+        const size_t bins = ping.bin_count, last = kept_.size() - bins;
         for (size_t i = 0; i < kept_.size(); ++i) {
             if (i >= bins) ping.bins[i] += share_ * kept_[i - bins];
-            if (i + bins < kept_.size()) ping.bins[i] += share_ * kept_[i + bins];
+            if (i < last) ping.bins[i] += share_ * kept_[i + bins];
+        }
+        if (!plan_.beams.isRing()) return;
+        for (size_t k = 0; k < bins; ++k) {
+            ping.bins[k] += share_ * kept_[last + k];
+            ping.bins[last + k] += share_ * kept_[k];
         }
     }
 

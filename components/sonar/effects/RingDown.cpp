@@ -17,6 +17,7 @@ public:
         for (size_t beam = 0; beam < ping.beam_count; ++beam)
             for (size_t k = 0; k < bins_.size(); ++k) ping.bins[beam * ping.bin_count + k] += bins_[k];
     }
+    void addAlike(types::Sonar& bins) override { addToBins(bins); }
 
 private:
     std::vector<float> bins_;  ///< The ring-down in the first bins of every beam.

@@ -22,6 +22,8 @@ double strengthOf(const VolumeLayer& layer) {
     return *layer.strength_db <= no_strength_db ? 0 : std::pow(10, *layer.strength_db / 10);
 }
 
+std::string clear(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "strength_db is -200: no scatterers"; }
+
 double strongest(const SonarConfig& config) {
     double maximum = 0;
     for (const VolumeLayer& layer : config.volume) maximum = std::max(maximum, strengthOf(layer));
@@ -205,6 +207,8 @@ public:
     }
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         if (plan.config.volume.empty()) return leaveOut(plan, {"volume reverberation", Reason::NotConfigured});
+        if (!(strongest(plan.config) > 0))
+            return leaveOut(plan, {.effect = "volume reverberation", .reason = Reason::Other, .words = clear});
         plan.effect_features.emplace_back("volume");
         plan.echoes_from_misses = plan.config.hasLayers();
         if (plan.echoes_from_misses) plan.effect_features.emplace_back("volume_layers");

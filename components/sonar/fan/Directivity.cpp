@@ -97,6 +97,7 @@ size_t receivingElements(const SonarConfig& config) {
 
 Directivity::Directivity(const SonarConfig& config)
     : conical_(config.beam_geometry == BeamGeometry::Conical),
+      half_box_(types::radians(config.beamWidthDeg()) / 2),
       floor_(std::pow(10, config.beam_pattern->floor_db / 10)) {
     std::optional<double> wavelength;
     if (config.frequency_khz) wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
@@ -152,6 +153,10 @@ double Directivity::sentAzimuth(double azimuth) const {
 
 double Directivity::receivedAzimuth(double azimuth, double bearing, size_t zone) const {
     if (!zones_.empty()) return std::norm(receivedField(azimuth, bearing, zone));
+    if (hasBoxes()) {
+        const double off = conical_ ? azimuth - bearing : wrapped(azimuth - bearing);
+        return off >= -half_box_ && off < half_box_ ? 1 : 0;
+    }
     return conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
                     : powerOf(receive_azimuth_, wrapped(azimuth - bearing));
 }
@@ -161,6 +166,7 @@ double Directivity::azimuth(double azimuth, double bearing, size_t zone) const {
 }
 
 double Directivity::idealAzimuth(double azimuth, double bearing) const {
+    if (hasBoxes()) return this->azimuth(azimuth, bearing, 0);
     return sentAzimuth(azimuth) * (conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
                                             : powerOf(receive_azimuth_, wrapped(azimuth - bearing)));
 }
@@ -204,6 +210,7 @@ int Directivity::rowsFor(int in_main_lobe, bool even) const {
 }
 
 Directivity::Span Directivity::azimuthSpan(const Fan& beams) const {
+    if (hasBoxes()) return {beams.low(), beams.high()};
     const double to = conical_ ? pi / 2 : beams.seam(), from = conical_ ? -to : to - 2 * pi;
     const auto any = [&](double at) {
         return std::max({azimuth(at, beams.front().centre), azimuth(at, beams[beams.size() / 2].centre),
@@ -218,12 +225,63 @@ double Directivity::halfPowerAzimuth() const {
     return 2 * angle;
 }
 
+namespace {
+
+/** Returns the cells of beams that receive boxes: parts of the directions between neighbouring edges of beams, so that
+ *  each cell is within a beam or outside of it. `widest`: of a cell [rad]. */
+std::vector<Beam> boxCells(const Fan& beams, bool conical, double widest) {
+    const double first = beams.front().low, turn = 2 * pi;
+    std::vector<double> edges;
+    for (const Beam& beam : beams)
+        for (double edge : {beam.low, beam.high}) {
+            if (!conical && edge > first + turn) edge -= turn;
+            edges.push_back(edge);
+        }
+    const bool is_round = !conical && beams.high() - beams.low() >= turn - 1e-9;
+    if (is_round) edges.push_back(first + turn);
+    std::ranges::sort(edges);
+    std::vector<Beam> cells;
+    for (size_t k = 1; k < edges.size(); ++k) {
+        const double low = edges[k - 1], width = edges[k] - low;
+        bool received = false;
+        if (width > 1e-9 * widest) beams.eachAt(low + width / 2, [&](size_t) { received = true; });
+        const int parts = received ? std::max(1, static_cast<int>(std::ceil(width / widest - 1e-6))) : 0;
+        for (int i = 0; i < parts; ++i) {
+            const double from = low + width * i / parts, to = i + 1 < parts ? low + width * (i + 1) / parts : edges[k];
+            cells.push_back({(from + to) / 2, from, to});
+        }
+    }
+    return cells;
+}
+
+/** Returns the cells of a sonar whose beams receive boxes, at most max_cells unless the beams' edges make more. */
+std::vector<Beam> boxCells(const SonarConfig& config, const Directivity& directivity) {
+    const Fan beams = makeBeams(config);
+    const double width = std::min(directivity.boxWidth(), directivity.halfPowerAzimuth()),
+                 fine = width / std::max(min_cells, config.columnsPerBeam()),
+                 least = (beams.high() - beams.low()) / max_cells;
+    return boxCells(beams, config.beam_geometry == BeamGeometry::Conical, std::max(fine, least));
+}
+
+}  // namespace
+
 SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directivity, bool traces_rays) {
     SonarConfig sampled = config;
     if (directivity.hasElevation())
         sampled.beam_height_deg =
             std::min(types::degrees(2 * directivity.elevationReach()), traces_rays ? 180 : tallest_image_deg);
     if (!directivity.hasAzimuth()) return sampled;
+    if (directivity.hasBoxes()) {
+        double narrowest = 2 * pi;
+        sampled.bearings_deg.clear();
+        for (const Beam& cell : boxCells(config, directivity)) {
+            sampled.bearings_deg.push_back(types::degrees(cell.centre));
+            narrowest = std::min(narrowest, cell.high - cell.low);
+        }
+        sampled.beam_width_deg = types::degrees(narrowest);
+        sampled.quality.columns_per_beam = 1;
+        return sampled;
+    }
     const Fan beams = makeBeams(config);
     const auto [low, high] = directivity.azimuthSpan(beams);
     const double fine =
@@ -237,7 +295,9 @@ SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directiv
     return sampled;
 }
 
-Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity& directivity, bool traces_rays) {
+Fan azimuthCells(const SonarConfig& config, const SonarConfig& sampled, const Fan& beams,
+                 const Directivity& directivity, bool traces_rays) {
+    if (directivity.hasBoxes()) return Fan::sorted(boxCells(config, directivity));
     const Fan all = makeBeams(sampled);
     if (!traces_rays || !directivity.hasAzimuth()) return all;
     const bool each = sampled.elements || (sampled.isCoherent() && directivity.isComplex());

@@ -14,13 +14,18 @@
 namespace insonify::sonar {
 
 /** The two-way power pattern of a sonar's `beam_pattern`: transmit times receive, each the product of a law in azimuth
- *  and one in elevation (ACOUSTICS.md 5.9). An absent law is 1 in all directions. */
+ *  and one in elevation (ACOUSTICS.md 5.9). Without a receive law in azimuth
+ *  each beam receives its own box; any other absent law is 1 in all directions, beside a law of the other array. */
 class Directivity {
 public:
     /** @throws types::ConfigError for a measured table that cannot be read, or an aperture without a frequency. */
     explicit Directivity(const SonarConfig& config);
 
     bool hasAzimuth() const { return transmit_azimuth_ || receive_azimuth_; }
+    /** Returns whether a transmit law in azimuth has no receive law beside it: each beam receives its own box, times
+     * the transmit law. */
+    bool hasBoxes() const { return transmit_azimuth_ && !receive_azimuth_; }
+    double boxWidth() const { return 2 * half_box_; }  ///< [rad]
     bool hasElevation() const { return transmit_elevation_ || receive_elevation_; }
     /** Returns the pattern of the beam at a bearing, at an azimuth from the sonar's axis [rad]. A conical fan is a
      *  straight array, whose beams widen with electronic steering. The beams of a planar fan are alike. */
@@ -32,6 +37,7 @@ public:
         return sentAmplitude(azimuth) * receivedField(azimuth, bearing, zone);
     }
     double sentAmplitude(double azimuth) const;
+    /** Returns the field of the law; 1 without a law, also outside of the beam's box. */
     std::complex<double> receivedField(double azimuth, double bearing, size_t zone) const;
     /** Return the one-way patterns at angles [rad]. */
     double sentAzimuth(double azimuth) const;
@@ -82,6 +88,7 @@ private:
 
     std::vector<Zone> zones_;  ///< Empty for an ideal array.
     bool conical_;
+    double half_box_;  ///< Half the width of a beam without a receive law [rad].
     double floor_;
     Law transmit_azimuth_, receive_azimuth_, transmit_elevation_, receive_elevation_;
 };
@@ -95,7 +102,8 @@ SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directiv
 
 /** Returns the azimuth cells of a sampled configuration. With rays, cells far from all beams are sixteen times as wide,
  *  because only sidelobes receive their echoes. */
-Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity& directivity, bool traces_rays);
+Fan azimuthCells(const SonarConfig& config, const SonarConfig& sampled, const Fan& beams,
+                 const Directivity& directivity, bool traces_rays);
 
 /** Returns why the cells of a sonar would exceed the max memory; empty where they do not.
  *  @throws types::ConfigError as Directivity does. */

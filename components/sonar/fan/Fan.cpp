@@ -89,6 +89,14 @@ void Fan::measure() {
     }
 }
 
+bool Fan::isRing() const {
+    if (size() < 3) return false;
+    if (isRound()) return true;
+    double widest = 0;
+    for (size_t k = 1; k < size(); ++k) widest = std::max(widest, beams_[k].centre - beams_[k - 1].centre);
+    return front().centre + whole_turn - back().centre <= widest * (1 + 1e-6);
+}
+
 bool Fan::spans(double azimuth) const {
     const double off = std::abs(std::remainder(azimuth - 0.5 * (low_ + high_), whole_turn));
     return off <= 0.5 * (high_ - low_) * (1 + 1e-12);

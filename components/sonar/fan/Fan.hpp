@@ -53,6 +53,9 @@ public:
     double seam() const { return seam_; }
     /** Returns whether the arc closes to a circle. */
     bool isRound() const { return high_ - low_ >= 2 * std::numbers::pi - 1e-9; }
+    /** Returns whether the first and the last of three or more beams are neighbours: the arc closes to a circle, or
+     *  the step across its seam is no wider than the widest step between two other neighbours. */
+    bool isRing() const;
     /** Returns whether an azimuth is between the ends of the arc, gaps between beams included [rad]. */
     bool spans(double azimuth) const;
     /** Returns the largest azimuth to either side of straight ahead that the arc reaches [rad]. */

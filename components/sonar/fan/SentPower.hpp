@@ -7,8 +7,8 @@
 
 namespace insonify::sonar {
 
-/** Directions in which a sonar's transmitter radiates: by its `beam_pattern.transmit`, else evenly over fan and
- *  aperture. */
+/** Directions in which a sonar's transmitter radiates: by the laws of its `beam_pattern.transmit`; without one
+ *  in azimuth evenly over the fan, without one in elevation evenly over the aperture. */
 class SentPower final : public types::Radiation {
 public:
     /** @throws types::ConfigError as Directivity does */
@@ -20,6 +20,7 @@ private:
     double half_height_;  ///< [rad]
     Fan beams_;
     std::optional<Directivity> pattern_;
+    bool has_azimuth_ = false, has_elevation_ = false;  ///< Transmit laws of the pattern.
 };
 
 }  // namespace insonify::sonar

@@ -50,6 +50,8 @@ Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers, bool imaginar
     const Directivity& directivity = *plan.directivity;
     const bool each = plan.config.elements || directivity.isComplex();
     const auto zoneRules = [&](size_t zone) {
+        if (directivity.hasBoxes())
+            return boxRules([&](double azimuth, double) { return directivity.sentAmplitude(azimuth); }, plan, true);
         const auto pattern = [&directivity, zone, imaginary](double azimuth, double bearing) {
             const std::complex<double> field = directivity.azimuthField(azimuth, bearing, zone);
             return imaginary ? field.imag() : field.real();

@@ -395,9 +395,9 @@ void Scatterers::deposit(const Patch& patch) {
     if (!(patch.strength_range > 0)) return;
     const Ranges all = rangesOf(patch);
     if (!(all.near < all.far)) return;
-    if (frame_of_ != patch.number) {
+    if (frame_of_ != &patch.object) {
         frame_ = LatticeFrame(patch.object);
-        frame_of_ = patch.number;
+        frame_of_ = &patch.object;
     }
     const PatchLattice lattice(patch, frame_);
     double begin = 0;

@@ -27,7 +27,7 @@ struct Patch {
     double strength_range;                    ///< Strength times slant range [m].
     double per_solid_angle;                   ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
     const ObjectRecord& object;
-    uint32_t number;  ///< Number of the object [1].
+    uint32_t number;  ///< Number of the object's lattice [1].
     bool conical;     ///< Bearings are bearings of cones.
 };
 
@@ -90,7 +90,7 @@ private:
     const EchoRules& rules_;
     uint64_t* sums_;
     LatticeFrame frame_;
-    uint32_t frame_of_ = 0xffffffff;  ///< Number of the object of `frame_`.
+    const ObjectRecord* frame_of_ = nullptr;  ///< The object of `frame_`.
     LatticeSquares squares_;
     LatticeScatterers scatterers_;
 };

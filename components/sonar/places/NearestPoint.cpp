@@ -55,7 +55,7 @@ INSONIFY_VECTOR_CLONES void nearest2(const Corners& c, float (&distance2)[at_onc
     }
 }
 
-/** Finds the nearest point in the boxes that may contain it. */
+/** Finds the nearest and the farthest point in the boxes that may contain them. */
 class Search {
 public:
     Search(const types::Mesh& mesh, const glm::dmat4& sonar_from_mesh)
@@ -65,7 +65,7 @@ public:
 
     /** For a mesh of few corners. Omits triangles whose corners are all clearly farther than the nearest corner. No
      *  point of a triangle is farther from all its corners than its longest edge over the root of 3. */
-    double nearestByCorners(double longest_edge, std::vector<float>& corners2) {
+    MeshDistances byCorners(double longest_edge, std::vector<float>& corners2) {
         corners2.clear();
         for (const glm::vec3& p : mesh_.positions) {
             const glm::vec3 at = fromSonar(p);
@@ -80,7 +80,32 @@ public:
             if (std::min({corners2[corner[0]], corners2[corner[1]], corners2[corner[2]]}) <= limit2) look(i);
         }
         lookAtWaiting();
-        return std::isfinite(found_) ? static_cast<double>(found_) : 0;
+        if (!std::isfinite(found_)) return {};
+        return {static_cast<double>(found_), std::sqrt(static_cast<double>(farthestOf(corners2)))};
+    }
+
+    double farthest() const {
+        float found = 0;
+        uint32_t looked_at = 0;
+        for (size_t i = 0; i < std::max<size_t>(1, mesh_.cluster_nodes.size());) {
+            const bool all = mesh_.cluster_nodes.empty();
+            if (!all && atMost(mesh_.cluster_nodes[i].centre, mesh_.cluster_nodes[i].half) <= found) {
+                i = mesh_.cluster_nodes[i].next;
+                continue;
+            }
+            const bool is_leaf = all || mesh_.cluster_nodes[i].next == i + 1;
+            const size_t first = all ? 0 : mesh_.cluster_nodes[i].first_cluster,
+                         count = all ? mesh_.clusters.size() : mesh_.cluster_nodes[i].cluster_count;
+            for (size_t k = first; is_leaf && k < first + count; ++k) {
+                const types::Cluster& cluster = mesh_.clusters[k];
+                const float at_most = atMost(cluster.centre, cluster.half);
+                if (at_most <= found) continue;
+                looked_at += cluster.index_count / 3;
+                found = looked_at > max_triangles ? at_most : std::max(found, farthestIn(cluster));
+            }
+            ++i;
+        }
+        return static_cast<double>(found);
     }
 
     double nearest() {
@@ -132,6 +157,28 @@ private:
         return distance - glm::dot(glm::abs(at / distance * linear_), half);
     }
 
+    /** Returns an upper bound of the distance to any point of such a box. */
+    float atMost(const glm::vec3& centre, const glm::vec3& half) const {
+        return glm::length(fromSonar(centre)) + glm::length(linear_[0]) * half.x + glm::length(linear_[1]) * half.y +
+               glm::length(linear_[2]) * half.z;
+    }
+
+    float farthestIn(const types::Cluster& cluster) const {
+        float most2 = 0;
+        for (uint32_t i = 0; i < cluster.index_count; ++i) {
+            const glm::vec3 at = fromSonar(mesh_.positions[mesh_.indices[cluster.first_index + i]]);
+            most2 = std::max(most2, glm::dot(at, at));
+        }
+        return std::sqrt(most2);
+    }
+
+    /** Returns the greatest of the corners' squared distances, of corners that triangles have. */
+    float farthestOf(const std::vector<float>& corners2) const {
+        float most2 = 0;
+        for (const uint32_t corner : mesh_.indices) most2 = std::max(most2, corners2[corner]);
+        return most2;
+    }
+
     void look(const types::Cluster& cluster) {
         for (uint32_t i = 0; i < cluster.index_count; i += 3) look(cluster.first_index + i);
         lookAtWaiting();
@@ -173,11 +220,13 @@ double longestEdge(const types::Mesh& mesh) {
     return std::sqrt(static_cast<double>(longest2));
 }
 
-double nearestDistance(const types::Mesh& mesh, double longest_edge, const glm::dmat4& sonar_from_mesh,
-                       std::vector<float>& scratch) {
+MeshDistances distancesTo(const types::Mesh& mesh, double longest_edge, const glm::dmat4& sonar_from_mesh,
+                          std::vector<float>& scratch) {
     Search search(mesh, sonar_from_mesh);
     const bool few = mesh.positions.size() <= max_corners && !mesh.positions.empty();
-    return few ? search.nearestByCorners(longest_edge, scratch) : search.nearest();
+    if (few) return search.byCorners(longest_edge, scratch);
+    const double nearest = search.nearest();
+    return {nearest, search.farthest()};
 }
 
 }  // namespace insonify::sonar

@@ -9,10 +9,16 @@ namespace insonify::sonar {
 /** Returns the longest edge of all triangles of a mesh, in its own coordinates [m]. */
 double longestEdge(const types::Mesh& mesh);
 
-/** Returns the distance from the sonar to the nearest point of a mesh that is placed by `sonar_from_mesh` [m]. If very
- *  many triangles of the mesh are about equally near, returns a lower bound: the distance to the nearest box of
- *  triangles. Returns 0 for a mesh without triangles. Allocates in `scratch` only. */
-double nearestDistance(const types::Mesh& mesh, double longest_edge, const glm::dmat4& sonar_from_mesh,
-                       std::vector<float>& scratch);
+/** Distances from the sonar to a mesh [m]. */
+struct MeshDistances {
+    double nearest = 0;   ///< To its nearest point.
+    double farthest = 0;  ///< To its farthest corner.
+};
+
+/** Returns the distances to a mesh that is placed by `sonar_from_mesh`; 0 for a mesh without triangles. If very many
+ *  triangles are about equally near or far, they are bounds: the distances to the nearest and to the farthest box of
+ *  triangles. Allocates in `scratch` only. */
+MeshDistances distancesTo(const types::Mesh& mesh, double longest_edge, const glm::dmat4& sonar_from_mesh,
+                          std::vector<float>& scratch);
 
 }  // namespace insonify::sonar

@@ -161,10 +161,12 @@ vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, double nearest_of_s
     }
     const size_t mesh = meshOf(index);
     const double rounding = 1e-6 * farthest;  // upper bound for the floats of the search
-    const double nearest =
-        (in_view_[index] ? nearestDistance(geometry_.meshes[mesh], meshes_[mesh]->longestEdge(), m, scratch_)
-                         : nearest_of_sphere) -
-        rounding;
+    double nearest = nearest_of_sphere - rounding;
+    if (in_view_[index]) {
+        const MeshDistances found = distancesTo(geometry_.meshes[mesh], meshes_[mesh]->longestEdge(), m, scratch_);
+        nearest = found.nearest - rounding;
+        if (found.farthest > 0) farthest = std::min(farthest, found.farthest + rounding);
+    }
     const double slack = 1e-5;  // rounding of the float that stores it
     return vec4(nearest > 1e-6 ? (1 + slack) / nearest : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
 }

@@ -47,7 +47,7 @@ void RenderPlan::setQuality(int rows, int columns_per_beam) {
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns_per_beam;
     sampled = directivity ? sampledConfig(config, *directivity, traces_rays) : config;
-    cells = directivity ? azimuthCells(sampled, beams, *directivity, traces_rays) : beams;
+    cells = directivity ? azimuthCells(config, sampled, beams, *directivity, traces_rays) : beams;
     if (!traces_rays) frusta = makeFrusta(sampled, cells, options);
 }
 

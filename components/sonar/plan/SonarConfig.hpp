@@ -35,7 +35,8 @@ struct AbsorptionConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Directivity of an array in azimuth and elevation; an absent law is 1 in all directions. */
+/** Directivity of an array in azimuth and elevation. A receiver without a law in azimuth receives the box of each beam;
+ *  any other absent law is 1 in all directions, beside a law of the other array about the same axis. */
 struct ArrayConfig {
     std::optional<acoustics::BeamLaw> azimuth, elevation;
 

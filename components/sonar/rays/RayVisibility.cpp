@@ -7,11 +7,14 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "components/sonar/places/MeshFacts.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
+#include "types/Hash.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -29,15 +32,24 @@ glm::dvec3 originNear(const glm::dvec3& sonar) { return origin_spacing * glm::ro
  *  are instances of one tree, which are slower to trace [1]. */
 constexpr size_t max_copied = 4'000'000;
 
-/** Returns the object whose lattice of scatterers an object uses: its own; for the tiles of a survey that of the first,
- *  for any set of tiles. */
-uint32_t latticeOf(const types::Geometry& geometry, size_t object) {
-    const types::Object& own = geometry.objects[object];
-    const auto is_same = [&](const types::Object& other) {
-        return other.transient && other.name == own.name && other.world_from_object == own.world_from_object;
-    };
-    if (!own.transient) return static_cast<uint32_t>(object);
-    return static_cast<uint32_t>(std::ranges::find_if(geometry.objects, is_same) - geometry.objects.begin());
+/** Returns the number of the lattice of scatterers of each object. It follows from the object's name alone, so that the
+ *  speckle of an object does not change with the order or number of the others. The tiles of a survey, which share a
+ *  name and a place, share a lattice. Other objects of one name, which no file has, are numbered in their order. */
+std::vector<uint32_t> latticesOf(const types::Geometry& geometry) {
+    std::map<std::string, std::vector<size_t>> namesakes;  // the first object of each lattice of a name
+    std::vector<uint32_t> lattices;
+    for (size_t i = 0; i < geometry.objects.size(); ++i) {
+        const types::Object& own = geometry.objects[i];
+        std::vector<size_t>& firsts = namesakes[own.name];
+        const auto same = std::ranges::find_if(firsts, [&](size_t first) {
+            const types::Object& other = geometry.objects[first];
+            return own.transient && other.transient && other.world_from_object == own.world_from_object;
+        });
+        lattices.push_back(
+            static_cast<uint32_t>(types::hashedName(own.name, static_cast<uint64_t>(same - firsts.begin()))));
+        if (same == firsts.end()) firsts.push_back(i);
+    }
+    return lattices;
 }
 
 /** The three rows of a matrix that transforms directions and places from one frame to another. */
@@ -275,12 +287,13 @@ void RayVisibility::listCommands() {
         first_plane.push_back(planes);
         planes += static_cast<uint32_t>(mesh.indices.size() / 3);
     }
+    const std::vector<uint32_t> lattices = latticesOf(*geometry_);
     for (size_t i = 0; i < geometry_->objects.size(); ++i) {
         first_command_.push_back(static_cast<uint32_t>(commands_.size()));
         const auto mesh = static_cast<size_t>(geometry_->objects[i].mesh);
         for (const MaterialRun& run : materialRuns(geometry_->meshes[mesh]))
-            commands_.push_back({static_cast<uint32_t>(i), first_plane[mesh], static_cast<uint32_t>(run.material),
-                                 latticeOf(*geometry_, i)});
+            commands_.push_back(
+                {static_cast<uint32_t>(i), first_plane[mesh], static_cast<uint32_t>(run.material), lattices[i]});
     }
 }
 

@@ -20,7 +20,7 @@ void DirectSound::takeScene(const types::Geometry& geometry) { ways_.emplace(pla
 double DirectSound::receivedBy(const Beam& beam, const BeamAngles& from, double range) const {
     const auto& pattern = plan_.directivity;
     const double off = std::remainder(from.azimuth - beam.centre, 2 * std::numbers::pi);
-    const double across = pattern && pattern->hasAzimuth()
+    const double across = pattern && pattern->hasAzimuth() && !pattern->hasBoxes()
                               ? pattern->receivedAzimuth(from.azimuth, beam.centre, pattern->zoneAt(range))
                               : off >= beam.low - beam.centre && off < beam.high - beam.centre;
     const double along = pattern && pattern->hasElevation()

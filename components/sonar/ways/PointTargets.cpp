@@ -63,7 +63,7 @@ bool PointTargets::mayReceive(const glm::dvec3& direction) const {
     } else if (std::abs(angles->elevation) > types::radians(plan_.config.beam_height_deg) / 2) {
         return false;
     }
-    return (pattern && pattern->hasAzimuth()) || plan_.beams.spans(angles->azimuth);
+    return (pattern && pattern->hasAzimuth() && !pattern->hasBoxes()) || plan_.beams.spans(angles->azimuth);
 }
 
 double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
@@ -71,11 +71,12 @@ double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
     const double half_height = types::radians(plan_.config.beam_height_deg) / 2;
     const double off = std::remainder(echo.received.azimuth - beam.centre, 2 * std::numbers::pi);
     const bool in_box = off >= beam.low - beam.centre && off < beam.high - beam.centre;
-    const double across =
-        pattern && pattern->hasAzimuth()
-            ? pattern->sentAzimuth(echo.sent.azimuth) *
-                  pattern->receivedAzimuth(echo.received.azimuth, beam.centre, pattern->zoneAt(echo.range))
-            : in_box && plan_.beams.spans(echo.sent.azimuth);
+    const double across = pattern && pattern->hasAzimuth()
+                              ? pattern->sentAzimuth(echo.sent.azimuth) *
+                                    (pattern->hasBoxes() ? static_cast<double>(in_box)
+                                                         : pattern->receivedAzimuth(echo.received.azimuth, beam.centre,
+                                                                                    pattern->zoneAt(echo.range)))
+                              : in_box && plan_.beams.spans(echo.sent.azimuth);
     const double along =
         pattern && pattern->hasElevation()
             ? pattern->sentElevation(echo.sent.elevation) * pattern->receivedElevation(echo.received.elevation)
@@ -153,8 +154,10 @@ size_t PointTargets::add(PingInMaking& to) {
     ways_->place(snapshot, plan_.grid.range_max + (shape_ ? shape_->reach() : 0));
     size_t received = 0;
     const auto time = static_cast<uint64_t>(snapshot.time.microseconds);
+    const bool named = snapshot.target_names && snapshot.target_names->size() == snapshot.targets.size();
     for (size_t i = 0; i < snapshot.targets.size(); ++i) {
         const types::PointTarget& target = snapshot.targets[i];
+        const uint64_t own = named ? types::hashedName((*snapshot.target_names)[i]) : i;
         bool any = false;
         std::span<const TargetWay> ways = ways_->waysTo(target.position);
         const auto way = to.bent && !ways.empty() ? bentWay(*to.bent, snapshot, i) : std::nullopt;
@@ -163,7 +166,7 @@ size_t PointTargets::add(PingInMaking& to) {
             for (const TargetWay& back : ways) {
                 const auto pair =
                     static_cast<uint64_t>((&out - ways.data()) * std::ssize(ways) + (&back - ways.data()));
-                any |= addPair(out, back, target.strength_db, to, types::hashed(time, i, pair));
+                any |= addPair(out, back, target.strength_db, to, types::hashed(time, own, pair));
             }
         received += any ? 1 : 0;
     }

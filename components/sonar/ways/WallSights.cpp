@@ -21,7 +21,7 @@ double WallSights::passed(const Sightlines& sightlines, const glm::dvec3& from, 
         if (met.range < behind) continue;  // another triangle of the same wall
         behind = met.range * (1 + same_wall) + nearest_wall;
         once *= pass(met, arrivals);
-        both *= plan_.laws.walls[met.material].passedAt(met.cosine);
+        both *= plan_.laws.walls[met.material].exactly(met.cosine);
         if (++walls > plan_.config.max_walls || !(both >= min_passed * min_passed)) return 0;
     }
     arrivals.ringing *= both / (once * once);
@@ -35,7 +35,8 @@ double WallSights::pass(const Sightlines::WallMet& met, WallArrivals& arrivals) 
         arrivals.both = arrivals.both.then(wall.behind, wall.spacing(sine), resolution);
         arrivals.both.moveAway(wall.delay(sine));
     }
-    return arrivals.once.passOnce(wall, sine, resolution);
+    arrivals.once.passOnce(wall, sine, resolution);
+    return wall.exactly_once(met.cosine);
 }
 
 }  // namespace insonify::sonar

@@ -12,7 +12,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int pattern_steps = 2048;
+constexpr size_t table_cells = 1024;
 
 }  // namespace
 
@@ -22,33 +22,34 @@ WayPatterns::WayPatterns(const RenderPlan& plan)
       has_azimuth_(plan.has(Pass::Beamform)),
       reach_(std::sin(types::radians(plan.sampled.beam_height_deg) / 2)),
       beam_width_(has_azimuth_ ? plan.directivity->halfPowerAzimuth() : types::radians(plan.config.beamWidthDeg())) {
-    const bool patterned = plan.directivity && plan.directivity->hasElevation();
-    for (int i = 0; i <= pattern_steps; ++i) {
-        const double angle = std::asin(reach_ * (2.0 * i / pattern_steps - 1));
-        sent_.push_back(patterned ? plan.directivity->sentElevation(angle) : 1);
-        received_.push_back(patterned ? plan.directivity->receivedElevation(angle) : 1);
-        if (has_azimuth_) azimuths_.push_back(plan.directivity->sentAzimuth(pi * (2.0 * i / pattern_steps - 1)));
+    constexpr acoustics::AdaptiveTable::Bound bound{0.0115, 1e-5};
+    if (plan.directivity && plan.directivity->hasElevation()) {
+        const auto tableOf = [&](double (Directivity::*law)(double) const) {
+            const auto at = [&](double sine) {
+                return ((*plan.directivity).*law)(std::asin(std::clamp(sine, -1.0, 1.0)));
+            };
+            return acoustics::AdaptiveTable(at, -reach_, reach_, bound, table_cells);
+        };
+        sent_ = tableOf(&Directivity::sentElevation);
+        received_ = tableOf(&Directivity::receivedElevation);
     }
+    if (has_azimuth_)
+        azimuths_ = acoustics::AdaptiveTable([&](double azimuth) { return plan.directivity->sentAzimuth(azimuth); },
+                                             -pi, pi, bound, table_cells);
 }
 
 WayPatterns::Way WayPatterns::wayOf(const glm::dvec3& direction) const {
     return {beamAzimuthOf(direction, conical_), direction.z, !conical_ || direction.x >= 0};
 }
 
-double WayPatterns::elevation(const std::vector<double>& table, double sine) const {
-    const double at = 0.5 * pattern_steps * (1 + sine / reach_);
-    if (!(at >= 0 && at <= pattern_steps)) return 0;
-    const auto i = std::min(static_cast<size_t>(at), size_t{pattern_steps - 1});
-    const double part = at - static_cast<double>(i);
-    return table[i] * (1 - part) + table[i + 1] * part;
+double WayPatterns::elevation(const acoustics::AdaptiveTable& table, double sine) const {
+    if (!(std::abs(sine) <= reach_)) return 0;
+    return table.empty() ? 1 : table.at(sine);
 }
 
 double WayPatterns::sentAzimuth(double azimuth) const {
     if (!has_azimuth_) return plan_.cells.spans(azimuth) ? 1 : 0;
-    const double at = 0.5 * pattern_steps * (1 + std::remainder(azimuth, 2 * pi) / pi);
-    const auto i = std::min(static_cast<size_t>(at), size_t{pattern_steps - 1});
-    const double part = at - static_cast<double>(i);
-    return azimuths_[i] * (1 - part) + azimuths_[i + 1] * part;
+    return azimuths_.at(std::remainder(azimuth, 2 * pi));
 }
 
 double WayPatterns::power(const Way& sent, const Way& received) const {

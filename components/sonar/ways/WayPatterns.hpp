@@ -1,7 +1,7 @@
 #pragma once
 #include <glm/vec3.hpp>
-#include <vector>
 
+#include "components/acoustics/AdaptiveTable.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 
 namespace insonify::sonar {
@@ -30,14 +30,15 @@ public:
     void eachCell(const Way& way, const auto& use) const { plan_.cells.eachAt(way.azimuth, use); }
 
 private:
-    double elevation(const std::vector<double>& table, double sine) const;
+    double elevation(const acoustics::AdaptiveTable& table, double sine) const;
     double sentAzimuth(double azimuth) const;
 
     const RenderPlan& plan_;
     bool conical_, has_azimuth_;
     double reach_, beam_width_;
-    std::vector<double> sent_, received_;  ///< Powers in elevation, over its sine from -reach_ [1].
-    std::vector<double> azimuths_;         ///< Transmit power, over azimuths from -pi [1].
+    /** Powers within 0.05 dB, or 1e-5: in elevation over its sine from -reach_ to reach_, empty for 1 everywhere; of
+     * the transmitter over azimuths from -pi to pi [1]. */
+    acoustics::AdaptiveTable sent_, received_, azimuths_;
 };
 
 }  // namespace insonify::sonar

@@ -250,6 +250,11 @@ std::vector<std::vector<double>> weightsOf(const sonar::SonarConfig& config, con
     std::vector<std::vector<double>> weights;
     for (const sonar::Beam& beam : sonar::makeBeams(config)) {
         const double axis = (beam.low + beam.high) / 2;
+        const auto shareInBox = [&](const Strip& strip) {
+            const double off = std::remainder((strip.low + strip.high) / 2 - axis, 2 * std::numbers::pi),
+                         half = (strip.high - strip.low) / 2, box = (beam.high - beam.low) / 2;
+            return std::max(0.0, std::min(off + half, box) - std::max(off - half, -box)) / (2 * half);
+        };
         std::vector<double>& each = weights.emplace_back();
         for (const Strip& strip : strips) {
             constexpr double gauss = 0.7745966692414834;  // three points of Gauss and Legendre
@@ -257,7 +262,8 @@ std::vector<std::vector<double>> weightsOf(const sonar::SonarConfig& config, con
                 const double a = (strip.low + strip.high + share * (strip.high - strip.low)) / 2;
                 return (sent ? sent->power(a) : 1) * (received ? received->power(a - axis) : 1);
             };
-            each.push_back((5 * power(-gauss) + 8 * power(0) + 5 * power(gauss)) / 18);
+            each.push_back((received ? 1 : shareInBox(strip)) * (5 * power(-gauss) + 8 * power(0) + 5 * power(gauss)) /
+                           18);
         }
     }
     return weights;
