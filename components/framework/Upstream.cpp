@@ -6,6 +6,7 @@
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Offers.hpp"
+#include "components/framework/Properties.hpp"
 #include "components/framework/YamlText.hpp"
 #include "types/Sonar.hpp"
 
@@ -99,7 +100,8 @@ std::optional<types::Mount> upstreamMount(const InputPortBase& port) {
 std::string whyNoCodes(const InputPortBase& port) {
     std::string why;
     forEachUpstream(port, [&](const TaskContext& task) {
-        const types::TaskRecord record = task.record();
+        types::TaskRecord record;  // as they are now: the task's own record follows once all tasks are checked
+        for (const PropertiesBase* properties : task.properties()) record.properties.merge(properties->values());
         const auto output = valueAt(record, "output");  // of a receiver
         const std::string* const name = output ? std::get_if<std::string>(&*output) : nullptr;
         const bool is_sonar = valueAt(record, "range_rounding").has_value();

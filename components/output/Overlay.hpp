@@ -41,7 +41,7 @@ private:
 Overlay fanOverlay(const FanLayout& layout, const cv::Rect& taken = {});
 
 inline const cv::Size colour_bar_size{12, 128};
-inline const cv::Size labelled_bar_size{66, 136};  ///< With the labels.
+inline const cv::Size labelled_bar_size{54, 136};  ///< With the labels.
 
 /** Returns `at` if the colour bar with its labels fits there, next to the fan; else a place outside of the picture. */
 cv::Point placeOfBar(const FanLayout& layout, cv::Point at);

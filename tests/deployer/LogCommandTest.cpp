@@ -91,13 +91,13 @@ TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
     EXPECT_THAT(
         cut({log, "--stream", "sonar.ping"}).err,
         HasSubstr("notice: sonar.ping of out/wall.0.log begins before it ends in out/wall.0.log; the copy has "));
+    const std::string before = readFile(folder / "cut.0.log");
     const Outcome nothing = cut({"--from", "7"});
     EXPECT_EQ(nothing.code, 2);
     EXPECT_THAT(nothing.err, HasSubstr("out/wall.0.log: none of its samples is in the requested part; they are from "
                                        "1.000000 s to 1.200000 s"));
     EXPECT_EQ(nothing.out, "");
-    EXPECT_EQ(callInsonify(folder, {"log", "check", "cut.0.log"}).out, "cut.0.log: valid, 3 streams, 4 samples\n")
-        << "the cut before stays";
+    EXPECT_TRUE(readFile(folder / "cut.0.log") == before) << "the cut before stays";
     EXPECT_TRUE(fs::exists(folder / "cut.0.idx"));
     for (const char* fresh : {"none.0.log", "none.mcap"}) {
         EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", fresh, "--from", "7"}).code, 2);

@@ -79,7 +79,9 @@ TEST_F(RotationTest, ALoggerThatNeverStartsLeavesTheFilesOfAnEarlierRun) {
             test::Writer<std::string> source("source");
             source.port.connectTo(*task.makeInput("text", source.port), framework::ConnPolicy::buffer(8));
             ASSERT_TRUE(task.configure()) << task.lastError();
-            if (is_cleaned_up) ASSERT_TRUE(task.cleanup());
+            if (is_cleaned_up) {
+                ASSERT_TRUE(task.cleanup());
+            }
         }
     for (const auto& [file, bytes] : before) EXPECT_TRUE(bytesOf(file) == bytes) << file;
     EXPECT_EQ(static_cast<size_t>(std::distance(std::filesystem::directory_iterator(folder.path()), {})),

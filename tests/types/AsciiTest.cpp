@@ -45,7 +45,10 @@ void expectLettersOfAscii() {
         EXPECT_EQ(lowered(c), of_upper == upper.npos ? c : lower[of_upper]) << byte;
         EXPECT_EQ(raised(c), of_lower == lower.npos ? c : upper[of_lower]) << byte;
     }
-    EXPECT_EQ(lowered("Kette_\xC4 42"), "kette_\xC4 42");
+    EXPECT_EQ(lowered("Kette_\xC4"
+                      " 42"),
+              "kette_\xC4"
+              " 42");
 }
 
 }  // namespace
@@ -56,7 +59,9 @@ TEST(AsciiTest, NamesAreTheSameInALocaleOf8Bits) {
     const LatinLocale german;
     if (!german.isThere()) GTEST_SKIP() << "SKIPPED: localedef makes no de_DE here; the Debian package locales has it";
     expectLettersOfAscii();
-    EXPECT_FALSE(isRosName("k\xE4fer"));
+    EXPECT_FALSE(
+        isRosName("k\xE4"
+                  "fer"));
     EXPECT_TRUE(isRosName("kaefer"));
 }
 
