@@ -1,17 +1,14 @@
 #include "types/DidYouMean.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
+
+#include "types/Ascii.hpp"
 
 namespace insonify::types {
 namespace {
 
-std::string lower(std::string_view text) {
-    std::string small(text);
-    std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
-    return small;
-}
+std::string lower(std::string_view text) { return lowered(std::string(text)); }
 
 /** Returns the number of letters that are missing, added, changed or swapped with a neighbour (Damerau 1964, restricted
  *  to one edit per place). */

@@ -1,14 +1,15 @@
 #include "types/RosNames.hpp"
 
 #include <algorithm>
-#include <cctype>
+
+#include "types/Ascii.hpp"
 
 namespace insonify::types {
 namespace {
 
 bool isRosWord(std::string_view word) {
-    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
-    return !word.empty() && !std::isdigit(static_cast<unsigned char>(word[0])) && std::ranges::all_of(word, fits);
+    const auto fits = [](char c) { return isLetter(c) || isDigit(c) || c == '_'; };
+    return !word.empty() && !isDigit(word[0]) && std::ranges::all_of(word, fits);
 }
 
 }  // namespace

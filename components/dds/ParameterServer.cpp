@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "components/dds/ParameterMessages.hpp"
 #include "components/ros/Cdr.hpp"
+#include "types/Ascii.hpp"
 #include "types/Reason.hpp"
 
 namespace insonify::dds {
@@ -133,7 +133,7 @@ SetParametersResult setOne(types::DeploymentControl& deployment, const std::stri
     if (parameter.name.substr(0, dot) == own)
         throw std::runtime_error("is a property of the task that serves parameters, which is read-only");
     std::string operation = parameter.name;
-    operation[dot + 1] = static_cast<char>(std::toupper(static_cast<unsigned char>(operation[dot + 1])));
+    operation[dot + 1] = types::raised(operation[dot + 1]);
     operation.insert(dot + 1, "set");
     deployment.call(operation, {yamlOf(parameter.value, info->type == "string")});
     return {true, ""};

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -22,6 +21,7 @@
 #include "components/framework/YamlText.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "components/sonar/PingTask.hpp"
+#include "types/Ascii.hpp"
 #include "types/TaskRecord.hpp"
 
 namespace insonify::deployer {
@@ -305,7 +305,7 @@ void LiveSettings::follow(Deployment& deployment) {
         if (std::exchange(applied_[i], holding) == holding) continue;
         std::string setter = property.task + ".set" + property.name;
         char& first = setter[property.task.size() + 4];
-        first = static_cast<char>(std::toupper(static_cast<unsigned char>(first)));
+        first = types::raised(first);
         deployment.call(setter, {holding == 0 ? property.start : property.changes[holding - 1].value});
     }
 }

@@ -2,17 +2,16 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <cctype>
-
 #include "components/framework/Activity.hpp"
 #include "components/framework/ConfigReader.hpp"
+#include "types/Ascii.hpp"
 
 namespace insonify::framework {
 namespace {
 
 /** "max_size" -> "setMax_size" */
 std::string setterName(std::string property) {
-    property.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(property.front())));
+    property.front() = types::raised(property.front());
     return "set" + property;
 }
 

@@ -4,9 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <memory>
+
+#include "types/Ascii.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -51,15 +52,13 @@ constexpr Synonym synonyms[] = {
     {"silt", "medium_silt"},
 };
 
-bool is(int (*kind)(int), char c) { return kind(static_cast<unsigned char>(c)) != 0; }
-
 /** Splits a name into lower-case words of letters; "traceIron" has two. */
 std::vector<std::string> wordsOf(const std::string& name) {
     std::vector<std::string> words(1);
     for (size_t i = 0; i < name.size(); ++i) {
-        const bool begins = i > 0 && is(std::isupper, name[i]) && is(std::islower, name[i - 1]);
-        if ((begins || !is(std::isalpha, name[i])) && !words.back().empty()) words.emplace_back();
-        if (is(std::isalpha, name[i])) words.back() += static_cast<char>(std::tolower(name[i]));
+        const bool begins = i > 0 && types::isUpperLetter(name[i]) && types::isLowerLetter(name[i - 1]);
+        if ((begins || !types::isLetter(name[i])) && !words.back().empty()) words.emplace_back();
+        if (types::isLetter(name[i])) words.back() += types::lowered(name[i]);
     }
     return words;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -15,6 +14,7 @@
 
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Gltf.hpp"
+#include "types/Ascii.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
 
@@ -104,11 +104,7 @@ bool isGltf(const std::filesystem::path& file) {
     return extension == ".gltf" || extension == ".glb";
 }
 
-std::string extensionOf(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension;
-}
+std::string extensionOf(const std::filesystem::path& file) { return types::lowered(file.extension().string()); }
 
 Scene readScene(const std::filesystem::path& file) {
     refuseMissing(file);

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <set>
 
 #include "components/viewer/SceneMesh.hpp"
 #include "components/viewer/Server.hpp"
+#include "types/Ascii.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -316,7 +316,7 @@ std::string Publisher::setParameter(const std::string& name, const std::string& 
     const std::string task = taskOf(name);
     if (task.empty() || task.size() + 1 >= name.size()) throw std::runtime_error("is not a property of any task");
     std::string operation = name;
-    operation.replace(task.size(), 2, std::string(".set") + static_cast<char>(std::toupper(name[task.size() + 1])));
+    operation.replace(task.size(), 2, std::string(".set") + types::raised(name[task.size() + 1]));
     Request request;
     request.operation = operation;
     request.arguments = {yaml};

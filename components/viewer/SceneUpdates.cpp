@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
 #include "components/viewer/FoxgloveMessages.hpp"
+#include "types/Ascii.hpp"
 #include "types/PosedMesh.hpp"
 
 namespace insonify::viewer {
@@ -27,8 +27,8 @@ constexpr std::array tints{Tint{"sand", {0.69, 0.60, 0.42, 1}},  Tint{"mud", {0.
 
 foxglove::Color colourOf(const types::Geometry& geometry, int material) {
     const auto number = static_cast<size_t>(material);
-    std::string name = number < geometry.materials.size() ? geometry.materials[number].name : "";
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string name =
+        types::lowered(number < geometry.materials.size() ? geometry.materials[number].name : std::string());
     const auto found = std::ranges::find(tints, name, &Tint::material);
     return found == tints.end() ? foxglove::Color{0.55, 0.58, 0.6, 1} : found->colour;
 }

@@ -1,9 +1,9 @@
 #include "components/sonar/plan/RenderPlan.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 #include "components/sonar/effects/Effects.hpp"
+#include "types/Ascii.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -37,7 +37,7 @@ std::vector<std::string> RenderPlan::featureNames() const {
 std::vector<std::string> RenderPlan::defines() const {
     std::vector<std::string> all = featureNames();
     for (std::string& name : all) {
-        std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        for (char& c : name) c = types::raised(c);
         name.insert(0, "HAVE_");
     }
     return all;
