@@ -26,6 +26,7 @@ public:
     Copier(const CopyOptions& options, const std::filesystem::path& to)
         : selection_(options.selection),
           anew_(options.anew.has_value()),
+          needs_samples_(options.needs_samples),
           out_(createLog(to, options.anew.value_or(McapConfig{}))) {}
 
     /** Copies the selected part of a log; its streams are merged with those of the same names. */
@@ -40,7 +41,7 @@ public:
     }
 
     Copied close() {
-        out_->close();
+        if (copied_.samples > 0 || !needs_samples_) out_->close();
         return std::move(copied_);
     }
 
@@ -87,7 +88,7 @@ private:
     void lose(std::string what) { copied_.lost.push_back(std::move(what)); }
 
     const Selection& selection_;
-    const bool anew_;
+    const bool anew_, needs_samples_;
     std::unique_ptr<Writer> out_;
     bool has_stream_ = false;
     std::map<std::string, std::optional<size_t>> numbers_;  ///< Stream numbers in the new log; none: its format has no

@@ -22,6 +22,7 @@ struct Selection {
 struct CopyOptions {
     AtDamage at_damage = AtDamage::Stop;
     Selection selection{};
+    bool needs_samples = false;        ///< Leaves the copy's name as it was if no sample is selected.
     std::optional<McapConfig> anew{};  ///< Writes all samples again as messages of an MCAP file; none: byte for byte.
 };
 

@@ -86,29 +86,37 @@ bool InputFile::read(uint64_t position, void* to, size_t size) const {
 }
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
-    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    created_ = file_ >= 0;
+    if (file_ < 0 && errno == EEXIST) file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
     if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
     struct stat status {};
     const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
     const bool taken = is_file && isTaken(file_);  // a device such as /dev/null may be shared
     const bool is_read = is_file && inputs().has(status);
-    if (taken || is_read || (is_file && ftruncate(file_, 0) != 0)) {
-        const std::string why = taken     ? "another logger writes it"
-                                : is_read ? "it is the log that is read; give another file"
-                                          : reason(errno);
-        ::close(std::exchange(file_, -1));
-        throw types::ConfigError(path_, "", "the log cannot be written: " + why);
-    }
+    if (!taken && !is_read) return;
+    ::close(std::exchange(file_, -1));
+    throw types::ConfigError(
+        path_, "",
+        std::string("the log cannot be written: ") +
+            (taken ? "another logger writes it" : "it is the log that is read; give another file"));
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
-    : path_(std::move(other.path_)), file_(std::exchange(other.file_, -1)), size_(other.size_) {}
+    : path_(std::move(other.path_)),
+      file_(std::exchange(other.file_, -1)),
+      created_(other.created_),
+      begun_(other.begun_),
+      size_(other.size_) {}
 
 OutputFile::~OutputFile() {
-    if (file_ >= 0) ::close(file_);
+    if (file_ < 0) return;
+    if (created_ && !begun_) ::unlink(path_.c_str());
+    ::close(file_);
 }
 
 void OutputFile::append(const char* data, size_t size) {
+    if (!std::exchange(begun_, true) && ftruncate(file_, 0) != 0 && errno != EINVAL) fail(errno);  // EINVAL: a device
     const uint64_t whole = size_ + size;
     while (size > 0) {
         const ssize_t written = ::write(file_, data, size);
@@ -131,6 +139,14 @@ void OutputFile::fail(int error_number) {
 void OutputFile::close() {
     if (::close(std::exchange(file_, -1)) != 0)
         throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(errno));
+}
+
+bool isBeingWritten(const std::filesystem::path& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return false;
+    const bool taken = isTaken(file);
+    ::close(file);
+    return taken;
 }
 
 bool removeLog(const std::filesystem::path& path) {

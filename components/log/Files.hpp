@@ -27,16 +27,17 @@ private:
 /** A log that is being written, by one writer at a time and without incomplete writes. */
 class OutputFile {
 public:
-    /** Creates or empties the file. Throws ConfigError when this fails, when another OutputFile, of any process, has it
-     *  open, or an InputFile of this process. */
+    /** Takes the name: creates the file, or leaves one that is there as it is until the first append(). Throws
+     *  ConfigError when this fails, when another OutputFile, of any process, has it open, or an InputFile of this
+     *  process. */
     explicit OutputFile(std::filesystem::path path);
-    ~OutputFile();
+    ~OutputFile();  ///< Removes a file that it has created and to which nothing was appended.
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
     OutputFile(OutputFile&& other) noexcept;
 
-    /** Writes all bytes. On failure, throws std::runtime_error with the system's reason; the file is truncated to its
-     *  previous end and closed. */
+    /** Writes all bytes, the first to an emptied file. On failure, throws std::runtime_error with the system's reason;
+     * the file is truncated to its previous end and closed. */
     void append(const char* data, size_t size);
     /** Throws std::runtime_error with the system's reason. */
     void close();
@@ -48,8 +49,12 @@ private:
 
     std::filesystem::path path_;
     int file_ = -1;
+    bool created_ = false, begun_ = false;
     uint64_t size_ = 0;
 };
+
+/** Whether a Writer of any process has this log open. */
+bool isBeingWritten(const std::filesystem::path& path);
 
 /** Removes a log and its index; false: there is none, or it cannot be removed. Throws ConfigError when a Writer of any
  *  process has it open. */

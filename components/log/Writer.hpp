@@ -23,6 +23,8 @@ namespace insonify::log {
  *  no sample until next(), and kept() is the number of samples in files. For one thread. */
 class Writer {
 public:
+    /** Closes a log with samples, and ignores a failure. One without samples that was neither flushed nor closed leaves
+     *  its file as it was before, or no file. */
     virtual ~Writer() = default;
 
     /** Declares a stream "task.port" of T and returns its number. Throws std::length_error for the 65537th stream. */
@@ -85,8 +87,8 @@ struct McapConfig : ros::MessageOptions {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Creates or empties a log; its name decides the format, *.mcap or pocolog. Throws ConfigError when this fails or a
- *  Writer of any process has it open. */
+/** Creates a log, or takes the name of one, which is emptied when the first bytes are written; the name decides the
+ *  format, *.mcap or pocolog. Throws ConfigError when this fails or a Writer of any process has it open. */
 std::unique_ptr<Writer> createLog(const std::filesystem::path& path, const McapConfig& mcap = {});
 
 }  // namespace insonify::log

@@ -230,7 +230,8 @@ bool LoggerTask::logsProperties() {
 bool LoggerTask::configureHook() {
     checkInputs();
     const std::filesystem::path path = makePath(config->file);
-    removeSequels(path);
+    refuseSequels(path);
+    log_.reset();
     log::McapConfig mcap = config->mcap;
     mcap.names = environment().names;
     mcap.names.remaps.clear();  // a log is not a node
@@ -255,6 +256,8 @@ std::map<std::string, types::PropertyValue> LoggerTask::fixedValues() const {
 bool LoggerTask::propertiesHook() { return !isRunning() || fixedValues() == configured_; }
 
 bool LoggerTask::startHook() {
+    removeSequels(log_->path());
+    has_started_ = true;
     recorded_changes_ = 0;
     recordProperties();
     constexpr double never = 1e9;  // [s]
@@ -318,6 +321,7 @@ void LoggerTask::cleanupHook() {
             task.properties_.reset();
         }
     } end{*this};
+    if (!std::exchange(has_started_, false)) return;  // the files of an earlier run stay
     inputs_.forEach([&](const auto& input) {
         if (input.kept.number) return;
         declaration(sampleOf(input), input.kept.name, metadataOf(input))(*log_);

@@ -94,6 +94,7 @@ private:
     LogHealth health_;                                        ///< As reported.
     std::map<std::string, types::PropertyValue> configured_;  ///< The property values at configure.
     size_t declared_ = 0;                                     ///< Streams in the log.
+    bool has_started_ = false;                                ///< Since it was configured.
 };
 
 /** Registers the tasks of this folder. */

@@ -1,18 +1,35 @@
 #include "components/logger/Rotation.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "components/log/Files.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::logger {
 
-void removeSequels(const std::filesystem::path& log) {
-    if (!sequenceNumber(log)) return;
+namespace {
+
+std::vector<std::filesystem::path> sequelsOf(const std::filesystem::path& log) {
     std::vector<std::filesystem::path> sequels;
+    if (!sequenceNumber(log)) return sequels;
     std::error_code failed;
     for (auto old = nextInSequence(log); std::filesystem::exists(old, failed); old = nextInSequence(old))
         sequels.push_back(old);
-    for (; !sequels.empty(); sequels.pop_back()) log::removeLog(sequels.back());
+    return sequels;
+}
+
+}  // namespace
+
+void refuseSequels(const std::filesystem::path& log) {
+    for (const auto& sequel : sequelsOf(log))
+        if (log::isBeingWritten(sequel))
+            throw types::ConfigError(sequel, "", "the log cannot be removed: another logger writes it");
+}
+
+void removeSequels(const std::filesystem::path& log) {
+    const std::vector<std::filesystem::path> sequels = sequelsOf(log);
+    std::for_each(sequels.rbegin(), sequels.rend(), log::removeLog);
 }
 
 Rotation::Rotation(const LoggerConfig& config, log::Writer& log)

@@ -6,8 +6,11 @@
 
 namespace insonify::logger {
 
-/** Removes the files that follow `log` from an earlier run, because Rock would read them as parts of this run. Throws
- *  ConfigError when another logger writes the last of them, before removing any. */
+/** Throws ConfigError when another logger writes one of the files that removeSequels() removes. */
+void refuseSequels(const std::filesystem::path& log);
+
+/** Removes the files that follow `log` from an earlier run, because Rock would read them as parts of this run. Call it
+ *  when the run starts: until then, it may still fail. Throws as refuseSequels(). */
 void removeSequels(const std::filesystem::path& log);
 
 /** Decides when a log continues in its next file: x.0.log, x.1.log... */

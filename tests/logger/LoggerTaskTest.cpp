@@ -145,8 +145,8 @@ TEST(LoggerTaskTest, TheLogHasTheDeploymentItsSeedAndTheUsersMetadata) {
     bench.task.environment().deployment_text = "tasks:\n  a: {type: \"b\"}\n";
     bench.task.environment().seed = 7;
     Source<double> source(bench.task, "depth");
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.cleanup());
+    ASSERT_TRUE(bench.task.configure() && bench.task.start());
+    ASSERT_TRUE(bench.task.stop() && bench.task.cleanup());
     const log::pocolog::Reader log(bench.path());
     const log::Metadata& metadata = log.streams().at(0).metadata;
     EXPECT_EQ(metadata.at("insonify_deployment"), "tasks:\n  a: {type: \"b\"}\n");

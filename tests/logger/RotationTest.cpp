@@ -1,6 +1,8 @@
 // Logs of several files.
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "components/log/Check.hpp"
 #include "components/log/pocolog/Index.hpp"
 #include "components/log/pocolog/Reader.hpp"
@@ -54,6 +56,32 @@ struct RotationTest : testing::Test {
     }
     const Folder folder;
 };
+
+TEST_F(RotationTest, ALoggerThatNeverStartsLeavesTheFilesOfAnEarlierRun) {
+    LoggerConfig config;
+    config.max_file_size = 1e6;
+    log(config, 25);
+    std::map<std::filesystem::path, std::vector<char>> before;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        before[entry.path()] = bytesOf(entry.path());
+    ASSERT_GT(before.size(), 5u);
+    for (const char* file : {"x.0.log", "new.0.log", "new.0.mcap"})
+        for (const bool is_cleaned_up : {true, false}) {
+            LoggerTask task("log");
+            config.file = file;
+            task.config.set(config);
+            task.environment().output_folder = folder.path();
+            test::Writer<std::string> source("source");
+            source.port.connectTo(*task.makeInput("text", source.port), framework::ConnPolicy::buffer(8));
+            ASSERT_TRUE(task.configure()) << task.lastError();
+            if (is_cleaned_up) {
+                ASSERT_TRUE(task.cleanup());
+            }
+        }
+    for (const auto& [file, bytes] : before) EXPECT_TRUE(bytesOf(file) == bytes) << file;
+    EXPECT_EQ(static_cast<size_t>(std::distance(std::filesystem::directory_iterator(folder.path()), {})),
+              before.size());
+}
 
 TEST_F(RotationTest, AFullFileIsFollowedByTheNext) {
     LoggerConfig config;

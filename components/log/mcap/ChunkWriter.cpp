@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <utility>
 
 namespace insonify::log::mcap {
 namespace {
@@ -25,6 +26,7 @@ ChunkWriter::ChunkWriter(std::filesystem::path path) {
 }
 
 ChunkWriter::~ChunkWriter() {
+    if (isEmpty()) return;
     try {
         close();
     } catch (const std::exception&) {
@@ -35,14 +37,13 @@ ChunkWriter::~ChunkWriter() {
 void ChunkWriter::open() {
     file_.emplace(summary_.path);
     crc_ = 0;
-    std::vector<char> bytes;
-    RecordWriter out(bytes);
+    head_.clear();
+    RecordWriter out(head_);
     out.raw(magic);
     out.begin(Op::Header);
     out.text("ros2");
     out.text("insonify");
     out.end();
-    append(bytes);
     openChunk();
     for (const auto& [name, texts] : metadata_) putMetadata(name, texts);
     RecordWriter records(chunk_);
@@ -51,6 +52,7 @@ void ChunkWriter::open() {
 }
 
 void ChunkWriter::append(const std::vector<char>& bytes) {
+    if (const std::vector<char> head = std::exchange(head_, {}); !head.empty()) append(head);
     file_->append(bytes.data(), bytes.size());
     crc_ = crcOf(bytes.data(), bytes.size(), crc_);
 }
@@ -105,8 +107,11 @@ void ChunkWriter::putMetadata(const std::string& name, const Texts& texts) {
     out.text(name);
     out.texts(texts);
     out.end();
-    metadata_index_.push_back({file_->size(), bytes.size(), name});
-    append(bytes);
+    metadata_index_.push_back({position(), bytes.size(), name});
+    if (head_.empty())
+        append(bytes);
+    else
+        head_.insert(head_.end(), bytes.begin(), bytes.end());
 }
 
 void ChunkWriter::write(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes,
@@ -138,7 +143,7 @@ void ChunkWriter::openChunk() {
 /** Fills in the chunk's header and appends the indices of its messages. */
 void ChunkWriter::closeChunk(ChunkIndex& index) {
     const uint64_t size = chunk_.size() - chunk_header_size;
-    index = {chunk_first_ns_, chunk_last_ns_, file_->size(), chunk_.size(), size, {}, 0};
+    index = {chunk_first_ns_, chunk_last_ns_, position(), chunk_.size(), size, {}, 0};
     std::vector<char> header;
     RecordWriter head(header);
     head.begin(Op::Chunk);

@@ -40,7 +40,7 @@ class ChunkWriter {
 public:
     /** Throws ConfigError as OutputFile. */
     explicit ChunkWriter(std::filesystem::path path);
-    ~ChunkWriter();  ///< Closes; ignores a failure.
+    ~ChunkWriter();  ///< As of log::Writer.
 
     /** Return the number of the schema, from 1, or channel, from 0. Throw std::length_error for the 65536th. */
     uint16_t addSchema(Schema schema);
@@ -61,10 +61,11 @@ public:
 
     bool isOpen() const { return file_ && file_->isOpen(); }  ///< False after a failed write.
     const std::filesystem::path& path() const { return summary_.path; }
-    uint64_t size() const { return file_->size() + chunk_.size(); }  ///< Including unflushed messages [B].
-    uint64_t kept() const { return kept_; }                          ///< Messages in all files [1].
-    const FileSummary& summary() const { return summary_; }          ///< Summary of the present file.
-    const std::vector<Schema>& schemas() const { return schemas_; }  ///< Number 1 is the first.
+    uint64_t size() const { return position() + chunk_.size(); }                 ///< Including unflushed messages [B].
+    uint64_t kept() const { return kept_; }                                      ///< Messages in all files [1].
+    bool isEmpty() const { return file_->size() == 0 && chunk_messages_ == 0; }  ///< Nor has samples.
+    const FileSummary& summary() const { return summary_; }                      ///< Summary of the present file.
+    const std::vector<Schema>& schemas() const { return schemas_; }              ///< Number 1 is the first.
     const std::vector<Channel>& channels() const { return channels_; }
 
 private:
@@ -82,6 +83,8 @@ private:
     };
 
     void open();
+    /** End of the data so far [B]. */
+    uint64_t position() const { return file_->size() + head_.size(); }
     void openChunk();
     void closeChunk(ChunkIndex& index);
     void append(const std::vector<char>& bytes);
@@ -93,6 +96,7 @@ private:
     std::vector<char> summaryBytes() const;
 
     std::optional<OutputFile> file_;
+    std::vector<char> head_;  ///< First bytes of the file, until others follow them.
     FileSummary summary_;
     uint32_t crc_ = 0;  ///< Checksum of all bytes in the file.
     uint64_t kept_ = 0;

@@ -1,7 +1,6 @@
 #include "components/log/mcap/SampleWriter.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 
 #include "components/log/TypeNames.hpp"
@@ -9,6 +8,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
+#include "types/Ascii.hpp"
 
 namespace insonify::log::mcap {
 namespace {
@@ -19,7 +19,7 @@ std::string usualTopic(const std::string& stream) {
     for (char& c : topic)
         if (c == '.')
             c = '/';
-        else if (c != '/' && !std::isalnum(static_cast<unsigned char>(c)))
+        else if (c != '/' && !types::isLetter(c) && !types::isDigit(c))
             c = '_';
     return topic;
 }
@@ -85,11 +85,10 @@ SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const M
 }
 
 SampleWriter::SampleWriter(std::filesystem::path path, const McapConfig& config)
-    : config_(config), bag_(path), out_(std::move(path)), transforms_(out_, topicsOf(config)) {
-    bag_.write(out_);
-}
+    : config_(config), bag_(path), out_(std::move(path)), transforms_(out_, topicsOf(config)) {}
 
 SampleWriter::~SampleWriter() {
+    if (out_.isEmpty()) return;
     try {
         close();
     } catch (const std::exception&) {
@@ -201,6 +200,11 @@ void SampleWriter::fail(size_t stream, const std::string& why) const {
     throw std::runtime_error(path().string() + ": a sample of " +
                              out_.channels()[channels_[stream]].metadata.at("insonify_stream") +
                              " cannot be written as a message: " + why);
+}
+
+void SampleWriter::flush() {
+    out_.flush();
+    if (!std::exchange(described_, true)) bag_.write(out_);
 }
 
 void SampleWriter::close() {

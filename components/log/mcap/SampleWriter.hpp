@@ -20,7 +20,7 @@ class SampleWriter final : public log::Writer {
 public:
     /** Throws as createLog, and ConfigError when the folder has the metadata.yaml of another bag. */
     SampleWriter(std::filesystem::path path, const McapConfig& config);
-    ~SampleWriter() override;  ///< Closes; ignores a failure.
+    ~SampleWriter() override;
 
     /** Throws ConfigError for a topic that another stream has. */
     size_t add(size_t sample, const std::string& name, const Metadata& metadata) override;
@@ -29,7 +29,7 @@ public:
     size_t addLike(const log::Reader& log, size_t stream, const Metadata& more = {}) override;
     void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
 
-    void flush() override { out_.flush(); }
+    void flush() override;  ///< The first writes metadata.yaml as well.
     void close() override;
     void next(std::filesystem::path path) override;
 
@@ -56,7 +56,7 @@ private:
     Bag bag_;
     ChunkWriter out_;
     Transforms transforms_;
-    bool closed_ = false;
+    bool closed_ = false, described_ = false;
     std::vector<uint16_t> channels_;  ///< For each stream.
     std::vector<Options> options_;    ///< For each stream.
     std::map<Schema, uint16_t> schemas_;

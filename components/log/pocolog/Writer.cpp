@@ -31,8 +31,6 @@ Writer::Writer(std::filesystem::path path) : path_(std::move(path)) { open(); }
 void Writer::open() {
     file_.emplace(path_);
     flushed_ = 0;
-    std::error_code none_there;
-    std::filesystem::remove(indexPath(path_), none_there);
     Prologue prologue;
     std::copy(magic.begin(), magic.end(), prologue.magic_bytes.begin());
     append(&prologue, sizeof prologue);
@@ -41,6 +39,7 @@ void Writer::open() {
 }
 
 Writer::~Writer() {
+    if (flushed_ == 0 && taken_ == 0) return;
     try {
         close();
     } catch (const std::exception&) {
@@ -171,6 +170,8 @@ void Writer::append(const void* data, size_t size) {
 
 void Writer::flush() {
     if (!isOpen()) return;
+    std::error_code none_there;
+    if (flushed_ == 0) std::filesystem::remove(indexPath(path_), none_there);  // of the file that is replaced
     file_->append(buffer_.data(), buffer_.size());
     flushed_ = file_->size();
     unflushed_ = 0;

@@ -16,9 +16,9 @@ namespace insonify::log::pocolog {
  *  megabyte. Memory is reused. */
 class Writer final : public log::Writer {
 public:
-    /** Creates or empties the file. Throws as createLog. */
+    /** Throws as createLog. */
     explicit Writer(std::filesystem::path path);
-    ~Writer() override;  ///< Closes; ignores a failure.
+    ~Writer() override;
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
 
