@@ -114,11 +114,13 @@ std::unique_ptr<Executor> Deployment::makeExecutor() {
                                               RealtimeExecutor::Options{spec_.lock_memory, spec_.watchdog});
 }
 
-void Deployment::warn(const std::string& text) {
+void Deployment::warn(const std::string& text) noexcept try {
     constexpr size_t at_most = 100;
     std::lock_guard lock(warning_mutex_);
     if (warnings_.size() < at_most) warnings_.push_back(text);
     if (reported_) reported_(text);
+} catch (...) {
+    // A warning that its receiver cannot take must end neither a task nor a thread.
 }
 
 // -- life cycle -------------------------------------------------------------------------------------------------------

@@ -65,7 +65,7 @@ public:
     std::vector<std::string> cleanup();
     /** Sets the receiver of warnings in realtime. Before tasks start it gets the priorities, processors and memory that
      *  were not permitted; later, tasks that hang or are in error, and their recovery. Called on any thread, one call
-     *  at a time. */
+     *  at a time, and holds up that thread; what it throws is ignored. */
     void onWarning(std::function<void(const std::string&)> reported) { reported_ = std::move(reported); }
 
     std::string call(const std::string& operation, const std::vector<std::string>& arguments) override;
@@ -83,18 +83,18 @@ private:
     void makeEnvironment(std::filesystem::path output_folder, uint64_t seed);
     std::unique_ptr<Executor> makeExecutor();
     std::vector<types::TaskRecord> records() const;
-    void warn(const std::string& text);
+    void warn(const std::string& text) noexcept;
     bool startAll(std::vector<std::string>& failures);
     void stopAll(std::vector<std::string>& failures);
     void noteFailed(std::vector<std::string>& failures) const;
 
+    std::mutex warning_mutex_;  ///< With what it protects, outlives the tasks, whose threads may warn until they end.
+    std::vector<std::string> warnings_;
+    std::function<void(const std::string&)> reported_;
     DeploymentSpec spec_;
     std::shared_ptr<Environment> environment_;
     std::unique_ptr<Executor> executor_;  ///< Outlives the tasks, which read its clock.
     Graph graph_;
-    std::mutex warning_mutex_;
-    std::vector<std::string> warnings_;
-    std::function<void(const std::string&)> reported_;
 };
 
 }  // namespace insonify::framework

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace insonify::framework {
 
@@ -26,7 +27,11 @@ Watchdog::~Watchdog() {
 void Watchdog::loop() {
     std::unique_lock lock(mutex_);
     while (!wake_.wait_for(lock, std::chrono::duration<double>(interval_), [this] { return ending_; }))
-        for (Watched& watched : watched_) look(watched);
+        for (Watched& watched : watched_) try {
+                look(watched);
+            } catch (...) {
+                // A report that cannot be made, for lack of memory or by its receiver, must not end the process.
+            }
 }
 
 void Watchdog::look(Watched& watched) const {
@@ -34,9 +39,9 @@ void Watchdog::look(Watched& watched) const {
     const TaskContext& task = *watched.limit.task;
     const TaskState state = task.state();
     const bool in_error = state == TaskState::RunTimeError;
-    if (in_error && !watched.in_error) report_(fmt::format("{}: RunTimeError: {}", task.name(), task.lastError()));
-    if (watched.in_error && state == TaskState::Running) report_(task.name() + ": has recovered");
-    watched.in_error = in_error;
+    const bool was_in_error = std::exchange(watched.in_error, in_error);
+    if (in_error && !was_in_error) report_(fmt::format("{}: RunTimeError: {}", task.name(), task.lastError()));
+    if (was_in_error && state == TaskState::Running) report_(task.name() + ": has recovered");
 }
 
 void Watchdog::lookForHang(Watched& watched) const {
@@ -44,8 +49,8 @@ void Watchdog::lookForHang(Watched& watched) const {
     const int64_t since = task.timing().workingSince().count();
     const auto seconds = [](int64_t begin) { return static_cast<double>(Timing::ticks() - begin) * 1e-9; };
     if (watched.reported != 0 && since != watched.reported) {
-        report_(fmt::format("{}: is back after {:.3g} s", task.name(), seconds(watched.reported)));
-        watched.reported = 0;
+        const int64_t begin = std::exchange(watched.reported, 0);
+        report_(fmt::format("{}: is back after {:.3g} s", task.name(), seconds(begin)));
     }
     if (since == 0 || since == watched.reported || seconds(since) <= watched.limit.seconds) return;
     watched.reported = since;

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "components/framework/Activity.hpp"
+#include "components/framework/Watchdog.hpp"
 #include "tests/framework/Tasks.hpp"
 
 namespace insonify::framework {
@@ -55,11 +56,15 @@ struct WatchdogTest : testing::Test {
         deployment_ =
             std::make_unique<Deployment>(DeploymentSpec::parse("schedule: realtime\n" + yaml, "a.yml"), registry);
         deployment_->configure();
-        deployment_->onWarning([this](const std::string& text) { reported_.add(text); });
+        deployment_->onWarning([this](const std::string& text) {
+            reported_.add(text);
+            if (throws_) throw std::runtime_error("no console");
+        });
         std::atomic<bool> stop{false};
         return deployment_->run({}, stop, [&](const Progress&) { stop = reported_.count() >= 2; });
     }
     Reported reported_;
+    bool throws_ = false;
     std::unique_ptr<Deployment> deployment_;
 };
 
@@ -71,6 +76,34 @@ TEST_F(WatchdogTest, ReportsAHangingCycleOnceAndItsEnd) {
     EXPECT_THAT(result.warnings[1], MatchesRegex("slug: is back after 0\\.[3-9].* s|slug: is back after [1-9].* s"));
     EXPECT_EQ(result.warnings, reported_.texts);
     EXPECT_GE(deployment_->task("slug")->timing().hangs, 1u);
+}
+
+TEST_F(WatchdogTest, AReceiverOfWarningsThatThrowsEndsNeitherTheWatchdogNorATask) {
+    throws_ = true;
+    const RunResult result =
+        run("tasks: {slug: {type: test::Hanging, activity: {period: 0.01, watchdog: 0.3}},\n"
+            "        ill: {type: test::Ill, activity: {period: 0.01}}}\n");
+    EXPECT_EQ(result.failures, std::vector<std::string>{});
+    EXPECT_EQ(deployment_->task("slug")->state(), TaskState::Stopped);
+    EXPECT_GE(result.warnings.size(), 2u);
+}
+
+TEST(WatchdogReportTest, AReportThatThrowsDoesNotEndTheProcess) {
+    struct Idle : TaskContext {
+        using TaskContext::TaskContext;
+    } task("slug");
+    std::atomic<int> reports = 0;
+    {
+        const Watchdog watchdog({{&task, 0.004}}, [&](const std::string&) {
+            ++reports;
+            throw std::runtime_error("no console");
+        });
+        task.timing().begin();
+        while (reports < 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        task.timing().pause();
+        while (reports < 2) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_EQ(reports, 2);
 }
 
 TEST_F(WatchdogTest, UsesTheDeploymentsWatchdogForATaskWithoutItsOwn) {
