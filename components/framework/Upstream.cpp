@@ -5,6 +5,7 @@
 
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/Properties.hpp"
 #include "components/framework/YamlText.hpp"
 
 namespace insonify::framework {
@@ -78,6 +79,21 @@ std::optional<types::Mount> upstreamMount(const InputPortBase& port) {
     types::Mount mount;
     ConfigReader reader("");
     return text && reader.readText(*text, "mount", mount) ? std::optional(mount) : std::nullopt;
+}
+
+std::string whyNoCodes(const InputPortBase& port) {
+    std::string why;
+    forEachUpstream(port, [&](const TaskContext& task) {
+        types::TaskRecord record;  // as they are now: the task's own record follows once all tasks are checked
+        for (const PropertiesBase* properties : task.properties()) record.properties.merge(properties->values());
+        const auto output = valueAt(record, "output");  // of a receiver
+        const std::string* const name = output ? std::get_if<std::string>(&*output) : nullptr;
+        const bool is_sonar = valueAt(record, "range_rounding").has_value();
+        if (name && *name != "code") why = "the output of " + task.name() + " is " + *name;
+        if (is_sonar) why = task.name() + " sends intensities";
+        return name || is_sonar;
+    });
+    return why;
 }
 
 std::vector<const OutputPortBase*> upstreamPoses(const InputPortBase& port) {

@@ -80,9 +80,10 @@ void FanImage::buildTables() {
 
 void FanImage::buildGround() {
     ground_.create(layout_->size(), CV_8UC3);
-    paintBackground(ground_, palette_, colour_bar);
-    overlay_.emplace(fanOverlay(*layout_));
-    addColourBar(*overlay_, colour_bar, config_);
+    const cv::Point bar = placeOfBar(*layout_, colour_bar);
+    paintBackground(ground_, palette_, bar);
+    overlay_.emplace(fanOverlay(*layout_, {bar, labelled_bar_size}));
+    addColourBar(*overlay_, bar, config_);
     overlay_->finish();
 }
 

@@ -42,4 +42,14 @@ cv::Point2d FanLayout::pixel(double range, double bearing) const {
     return {origin_.x - length * std::sin(bearing), origin_.y - length * std::cos(bearing)};
 }
 
+bool FanLayout::reaches(const cv::Rect& area) const {
+    for (int y = area.y; y < area.y + area.height; ++y)
+        for (int x = area.x; x < area.x + area.width; ++x) {
+            const double ahead = origin_.y - y, port = origin_.x - x, bearing = std::atan2(port, ahead);
+            const bool is_within = (bearing >= right_ && bearing <= left_) || bearing + 2 * pi <= left_;
+            if (is_within && std::hypot(ahead, port) < radius_ + 1) return true;
+        }
+    return false;
+}
+
 }  // namespace insonify::output

@@ -31,6 +31,8 @@ public:
     double left() const { return left_; }           ///< [rad]
     /** Returns the pixel coordinates of a point at `range` [m] and `bearing` [rad, positive to port]. */
     cv::Point2d pixel(double range, double bearing) const;
+    /** Returns whether the fan has a pixel in an area. */
+    bool reaches(const cv::Rect& area) const;
 
     static constexpr int title_height = 30;
 

@@ -19,6 +19,8 @@ public:
     void arc(cv::Point2d centre, double radius, double right, double left, int opacity);
     /** Draws text whose middle line runs through `at`, which is its left end, centre or right end. */
     void text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees = false);
+    /** From here on, text that would touch this area is omitted. */
+    void take(const cv::Rect& area) { taken_ = area; }
     /** Must be called after all drawing. */
     void finish();
     void blend(cv::Mat& picture) const;
@@ -30,13 +32,19 @@ private:
         uint8_t opacity;
     };
     cv::Mat cover_;
+    cv::Rect taken_;
     std::vector<Touch> touched_;
 };
 
-/** Draws range rings labelled in metres and spokes labelled in degrees, positive to port. */
-Overlay fanOverlay(const FanLayout& layout);
+/** Draws range rings labelled in metres and spokes labelled in degrees, positive to port.
+ *  @param taken where no label is drawn [px] */
+Overlay fanOverlay(const FanLayout& layout, const cv::Rect& taken = {});
 
 inline const cv::Size colour_bar_size{12, 128};
+inline const cv::Size labelled_bar_size{54, 136};  ///< With the labels.
+
+/** Returns `at` if the colour bar fits there, next to the fan; else a place outside of the picture. */
+cv::Point placeOfBar(const FanLayout& layout, cv::Point at);
 
 /** Returns whether the colour bar with its upper left corner at `at` fits in a picture of this size. */
 bool fitsColourBar(cv::Size picture, cv::Point at);

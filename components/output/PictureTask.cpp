@@ -5,6 +5,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "components/framework/Upstream.hpp"
 #include "components/output/SamplePictureTask.hpp"
 #include "components/output/ScanMosaicTask.hpp"
 #include "components/output/SideScanImageTask.hpp"
@@ -41,6 +42,12 @@ void PictureTask::take(const types::Sonar& sample) {
     else
         painter_->skip(sample);
     followFiles();
+}
+
+void PictureTask::check(types::Diagnostics& diagnostics) const {
+    if (pictureConfig().scale != BinScale::Code) return;
+    if (const std::string why = framework::whyNoCodes(ping); !why.empty())
+        diagnostics.push_back({"scale", "is code, but " + why + "; take linear for intensities, decibel for levels"});
 }
 
 std::string PictureTask::indivisible() const {

@@ -31,6 +31,7 @@ public:
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
     std::string indivisible() const override;
+    void check(types::Diagnostics& diagnostics) const override;
 
 protected:
     bool configureHook() override;

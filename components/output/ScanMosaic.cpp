@@ -49,9 +49,10 @@ void ScanMosaic::build(const types::Sonar& ping) {
     layout_.emplace(static_cast<int>(half_.width), -std::numbers::pi, std::numbers::pi, range);
     map_.emplace(static_cast<int>(layout_->radius()), range);
     ground_.create(layout_->size(), CV_8UC3);
-    paintBackground(ground_, palette_, colour_bar);
-    overlay_.emplace(fanOverlay(*layout_));
-    addColourBar(*overlay_, colour_bar, half_);
+    const cv::Point bar = placeOfBar(*layout_, colour_bar);
+    paintBackground(ground_, palette_, bar);
+    overlay_.emplace(fanOverlay(*layout_, {bar, labelled_bar_size}));
+    addColourBar(*overlay_, bar, half_);
     overlay_->finish();
 }
 

@@ -1,11 +1,20 @@
 #include "components/output/XtfTask.hpp"
 
 #include "components/framework/MayLose.hpp"
+#include "components/framework/Upstream.hpp"
 
 namespace insonify::output {
 
 void XtfConfig::check(types::Diagnostics& diagnostics) const {
     if (!file.ends_with(".xtf")) diagnostics.push_back({"file", "is " + file + "; must end in .xtf"});
+}
+
+void XtfTask::check(types::Diagnostics& diagnostics) const {
+    if (config->samples != XtfSamples::Uint16) return;
+    if (const std::string why = framework::whyNoCodes(ping); !why.empty())
+        diagnostics.push_back({"samples", "is uint16, which takes whole numbers from 0 to 65535, but " + why +
+                                              "; put a receiver with output: code and code: {bits: 16} before it, or "
+                                              "take samples: float32"});
 }
 
 bool XtfTask::startHook() {

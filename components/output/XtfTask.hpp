@@ -44,6 +44,7 @@ public:
                                                 framework::Need::Optional};
 
     std::vector<std::string> notices() const override;
+    void check(types::Diagnostics& diagnostics) const override;
 
 private:
     bool startHook() override;

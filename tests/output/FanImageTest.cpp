@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "components/output/FanImage.hpp"
+#include "components/output/Overlay.hpp"
 #include "tests/output/Pixels.hpp"
 
 namespace insonify::output {
@@ -54,6 +55,37 @@ TEST(FanImageTest, ShowsAnEchoAtItsBearingAndRange) {
             const cv::Point2d place = placeOf(fan, empty, beam, bin);
             EXPECT_LT(cv::norm(place - expected), 2.5) << beam << " " << bin;  // a bin is 3.8 pixels long
         }
+}
+
+namespace {
+
+/** The part of a fan's lines and labels that is in an area. */
+cv::Mat drawnIn(const cv::Rect& area, const FanLayout& layout, const cv::Rect& taken) {
+    Overlay overlay = fanOverlay(layout, taken);
+    overlay.finish();
+    cv::Mat picture(layout.size(), CV_8UC3, cv::Scalar(0, 0, 0));
+    overlay.blend(picture);
+    return picture(area).clone().reshape(1);
+}
+
+}  // namespace
+
+TEST(FanImageTest, NoLabelOfAFanTouchesTheColourBarOrItsLabels) {
+    const cv::Point at(14, FanLayout::title_height + 18);
+    int bars = 0, touched = 0;
+    for (const int width : {256, 320, 400, 512, 640, 1024})
+        for (double half_deg = 10; half_deg <= 180; half_deg += 10) {
+            const double half = half_deg * M_PI / 180;
+            const FanLayout layout(width, -half, half, 50);
+            if (placeOfBar(layout, at) != at) continue;
+            ++bars;
+            const cv::Rect whole({}, layout.size()), bar = cv::Rect(at, labelled_bar_size) & whole;
+            const cv::Mat lines = drawnIn(bar, layout, whole);
+            EXPECT_EQ(cv::norm(drawnIn(bar, layout, bar), lines), 0) << width << " " << half_deg;
+            touched += cv::norm(drawnIn(bar, layout, {}), lines) > 0 ? 1 : 0;
+        }
+    EXPECT_GT(bars, 50);
+    EXPECT_GT(touched, 3) << "labels would touch it";
 }
 
 TEST(FanImageTest, DrawsRingsAtRoundRanges) {
