@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "components/acoustics/SeabedBackscatter.hpp"
 #include "components/sonar/effects/Effect.hpp"
 
 namespace insonify::sonar {
@@ -18,6 +19,25 @@ std::string noFrequencyOfMatter(const Omitted& /*what*/, const BinGrid& /*grid*/
 }
 std::string noFrequency(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no frequency_khz; sediments follow Lambert's law by their lambert_db";
+}
+
+constexpr double highest_of_law_khz = 100;       // TR 9407
+constexpr double highest_of_imaging_khz = 3000;  // an ARIS 3000
+
+std::string aboveLaw(const Omitted& what, const BinGrid& /*grid*/) {
+    return fmt::format(
+        "no law was measured at {:g} kHz; that of TR 9407, for 10 to {:g} kHz, is extrapolated: levels of the floor "
+        "are "
+        "then a guess",
+        what.value, what.bound);
+}
+
+/** Whether nothing but the frequency is outside of the seabeds' law, and that because the sonar is an imaging sonar:
+ *  there is nothing better, so this is an omission, and no mistake to warn of. */
+bool isAboveLaw(const RenderPlan& plan) {
+    const double khz = plan.config.frequency_khz.value_or(0);
+    return plan.laws.has_seabeds && khz > highest_of_law_khz && khz <= highest_of_imaging_khz &&
+           acoustics::outsideSeabedModel(highest_of_law_khz, plan.config.speedOfSound()).empty();
 }
 
 /** Names in quotes, at most five of them. */
@@ -39,6 +59,12 @@ public:
         };
         omitUnless(laws.hasLobes(), "specular lobe", noLobe);
         omitUnless(laws.has_seabeds, "seabeds by TR 9407", laws.lacks_frequency ? noFrequency : noMaterial);
+        if (isAboveLaw(plan))
+            plan.omitted.push_back({.effect = "measured levels of seabeds",
+                                    .reason = Reason::Approximated,
+                                    .value = *plan.config.frequency_khz,
+                                    .bound = highest_of_law_khz,
+                                    .words = aboveLaw});
         const bool names_matter =
             std::ranges::any_of(geometry.materials, [](const auto& material) { return !material.matter.empty(); });
         omitUnless(laws.has_matter, "rough solids", names_matter ? noFrequencyOfMatter : noMatter);
@@ -62,7 +88,7 @@ public:
         if (!loud.empty())
             notices.push_back(fmt::format(
                 "Warning: a lambert_db above -4.97 dB returns more energy than it receives: {}", listed(loud)));
-        if (!plan.laws.outside_validity.empty())
+        if (!plan.laws.outside_validity.empty() && !isAboveLaw(plan))
             notices.push_back(
                 fmt::format("Warning: backscatter of seabeds is extrapolated outside its law's validity: {}",
                             plan.laws.outside_validity));
