@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "components/loader/Interface.hpp"
+#include "types/Ascii.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::loader {
@@ -49,7 +50,7 @@ fs::path ownFile() {
 }
 
 bool isName(const std::string& name) {
-    const auto fits = [](unsigned char c) { return std::islower(c) || std::isdigit(c) || c == '_'; };
+    const auto fits = [](char c) { return types::isLowerLetter(c) || types::isDigit(c) || c == '_'; };
     return !name.empty() && std::ranges::all_of(name, fits);
 }
 
@@ -194,17 +195,49 @@ const ComponentLibrary& loadFile(const fs::path& file) {
     return open(whole);
 }
 
-std::string absence(const std::string& name) {
-    const fs::path around = ownFile().parent_path().parent_path();
-    const auto has = [&](const fs::path& file) {
+Installation installationOf(const fs::path& own) {
+    const fs::path around = own.parent_path().parent_path();
+    std::error_code none;
+    if (fs::exists(around / "build.ninja", none)) return Installation::Clone;
+    if (fs::exists(around / "__init__.py", none) || fs::exists(around / "../insonify.libs", none))
+        return Installation::Wheel;
+    const std::string path = own.string();
+    return path.starts_with("/usr/") && !path.starts_with("/usr/local/") ? Installation::DebianPackage
+                                                                         : Installation::Prefix;
+}
+
+std::string absence(const std::string& name) { return absence(name, installationOf(ownFile())); }
+
+std::string absence(const std::string& name, Installation installation) {
+#if defined(__aarch64__)
+    constexpr const char* processor = "arm64";
+#else
+    constexpr const char* processor = "amd64";
+#endif
+    const std::string version = std::string(interface_version).substr(0, std::string(interface_version).find(' '));
+    const std::string package = "insonify-" + name + "_" + version + "_" + processor + ".deb";
+    const std::string library = "the component library " + name;
+    switch (installation) {
+        case Installation::Clone: return library + ", which is not here; `scripts/setup " + name + "` installs it";
+        case Installation::Wheel:
+            return library + ", which is not in wheels and archives; it is in " + package +
+                   ", which `scripts/package` makes in a clone of the repository";
+        case Installation::DebianPackage:
+            return library + ", which is not here; `apt install ./" + package +
+                   "` installs it: `scripts/package` has made that file next to the package of insonify";
+        case Installation::Prefix: break;
+    }
+    return library + ", which is not here; `scripts/setup " + name +
+           "` and then `cmake --install build` install it, in the clone that this is from";
+}
+
+fs::path sharedFolder() {
+    for (fs::path around = ownFile().parent_path(); around.has_relative_path(); around = around.parent_path()) {
         std::error_code none;
-        return fs::exists(around / file, none);
-    };
-    if (has("__init__.py") || has("../insonify.libs"))  // by pip, from a wheel or the sources; or from an archive
-        return "the component library " + name +
-               ", which is not in wheels and archives; it is in the Debian package insonify-" + name;
-    return "the component library " + name + ", which is not here; `" +
-           (has("build.ninja") ? "scripts/setup " : "apt install insonify-") + name + "` installs it";
+        if (const fs::path shared = around / "share" / "insonify"; fs::exists(shared / "deploy", none)) return shared;
+        if (fs::exists(around / "deploy" / "minimal.yml", none)) return around;
+    }
+    return {};
 }
 
 }  // namespace insonify::loader

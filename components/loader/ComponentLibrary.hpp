@@ -54,7 +54,19 @@ const ComponentLibrary& load(const std::string& name);
 /** Loads a user's library. Throws types::ConfigError as load() does. */
 const ComponentLibrary& loadFile(const std::filesystem::path& file);
 
-/** Returns "the component library dds, which is not here; `scripts/setup dds` installs it". */
+/** The installation of this program, which decides what installs a missing part. */
+enum class Installation { Clone, Wheel, DebianPackage, Prefix };
+
+/** Returns the installation that a library or program belongs to; wheels and archives are alike. */
+Installation installationOf(const std::filesystem::path& file);
+
+/** Returns "the component library dds, which is not here; `scripts/setup dds` installs it", by what installs it in this
+ *  installation or in a given one. */
 std::string absence(const std::string& name);
+std::string absence(const std::string& name, Installation installation);
+
+/** Returns the folder that has the examples, in `deploy`: the clone, or share/insonify of an installation; empty: there
+ *  is none. */
+std::filesystem::path sharedFolder();
 
 }  // namespace insonify::loader

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "components/loader/ComponentLibrary.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Needs.hpp"
 #include "tests/support/Paths.hpp"
@@ -135,9 +136,54 @@ TEST_F(ComponentLibraryTest, RefusesTwoLibrariesOfOneName) {
     EXPECT_EQ(check("one_type::CounterTask", both).code, 0) << "the same file";
 }
 
+TEST(InstallationTest, ThePartThatIsMissingIsNamedByWhatInstallsItThere) {
+    using loader::Installation;
+    const Folder folder;
+    for (const char* file : {"clone/build/build.ninja", "wheel/insonify/__init__.py", "prefix/lib/x"}) {
+        fs::create_directories((folder / file).parent_path());
+        writeFile(folder / file, "");
+    }
+    fs::create_directories(folder / "archive/insonify.libs");
+    EXPECT_EQ(loader::installationOf(folder / "clone/build/lib/libinsonify.so"), Installation::Clone);
+    EXPECT_EQ(loader::installationOf(folder / "wheel/insonify/lib/libinsonify.so"), Installation::Wheel);
+    EXPECT_EQ(loader::installationOf(folder / "archive/insonify/lib/libinsonify.so"), Installation::Wheel);
+    EXPECT_EQ(loader::installationOf(folder / "prefix/lib/libinsonify.so"), Installation::Prefix);
+    EXPECT_EQ(loader::installationOf("/usr/local/lib/libinsonify.so"), Installation::Prefix);
+    EXPECT_EQ(loader::installationOf("/usr/lib/x86_64-linux-gnu/libinsonify.so.0.1"), Installation::DebianPackage);
+    EXPECT_THAT(loader::absence("dds", Installation::Clone),
+                testing::EndsWith("not here; `scripts/setup dds` installs it"));
+    EXPECT_THAT(loader::absence("dds", Installation::DebianPackage),
+                testing::ContainsRegex("`apt install ./insonify-dds_[0-9.]+_(amd|arm)64.deb` installs it: "
+                                       "`scripts/package` has made that file"));
+    EXPECT_THAT(loader::absence("survey", Installation::Wheel),
+                testing::ContainsRegex("not in wheels and archives; it is in insonify-survey_[0-9.]+_(amd|arm)64.deb"));
+}
+
+TEST_F(ComponentLibraryTest, ExamplesAreFoundFromEveryFolder) {
+    EXPECT_THAT(call({"examples"}), isRefused(HasSubstr("examples: are not part of this installation")));
+    EXPECT_THAT(call({"check", "deploy/near.yml"}), isRefused(HasSubstr("deploy/near.yml: cannot be opened")));
+    const fs::path shared = folder_ / "share/insonify/deploy";
+    fs::create_directories(shared);
+    writeFile(shared / "near.yml", "# A wall near by: the shortest example.\n" + wall_deployment);
+    writeFile(shared / "wall.gltf", wallGltf());
+    EXPECT_THAT(call({"examples"}).out,
+                testing::AllOf(HasSubstr("deploy/near.yml                  A wall near by\n"),
+                               HasSubstr("They are in " + (folder_ / "share/insonify").string())));
+    EXPECT_THAT(call({"run", "deploy/near.yml", "--pings", "1", "--out", "out"}), succeeds());
+    EXPECT_TRUE(fs::exists(folder_ / "out/wall.0.log"));
+    EXPECT_THAT(call({"scene", "deploy/wall.gltf"}).out, HasSubstr("triangles: 2"));
+    fs::create_directories(folder_ / "deploy");
+    writeFile(folder_ / "deploy/near.yml", "tasks: {}\n");
+    EXPECT_THAT(call({"check", "deploy/near.yml"}).out + call({"check", "deploy/near.yml"}).err,
+                Not(HasSubstr("sonar::SonarTask")))
+        << "a file of the user comes first";
+}
+
 TEST_F(ComponentLibraryTest, ReportsHowToInstallAnAbsentLibrary) {
     const std::string nav =
-        "which needs the component library nav, which is not here; `apt install insonify-nav` installs it";
+        "which needs the component library nav, which is not here; `scripts/setup nav` and then `cmake --install "
+        "build` "
+        "install it, in the clone that this is from";
     EXPECT_THAT(check("nav::ImuTask"), isRefused(HasSubstr("a.yml:2:13: tasks.a.type: is nav::ImuTask, " + nav)));
     writeFile(folder_ / "b.world", "<sdf version='1.9'><world name='w'></world></sdf>\n");
     EXPECT_THAT(call({"scene", "b.world"}),
