@@ -32,10 +32,18 @@ Addresses addressesOf(const std::string& host, uint16_t port, int type) {
     return Addresses(found);
 }
 
+constexpr DriverLine::Duration max_sending{1000};
+
 bool isReady(int file, short events, DriverLine::Duration patience) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point end = Clock::now() + patience;
     pollfd ready{file, events, 0};
-    const auto wait = std::max<DriverLine::Duration::rep>(0, patience.count());  // poll waits forever below 0
-    return poll(&ready, 1, static_cast<int>(wait)) == 1;
+    int found = -1;
+    do {  // again after a signal
+        const auto left = std::chrono::ceil<DriverLine::Duration>(end - Clock::now());
+        found = poll(&ready, 1, static_cast<int>(std::max<DriverLine::Duration::rep>(0, left.count())));
+    } while (found < 0 && errno == EINTR);
+    return found == 1;
 }
 
 /** Unprocessed bytes, at 115200 baud. */
@@ -95,7 +103,16 @@ DriverLine DriverLine::broadcasts(uint16_t port) {
 }
 
 void DriverLine::send(std::span<const uint8_t> bytes) const {
-    if (::write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) fail(errno);
+    while (!bytes.empty()) {
+        ssize_t sent = ::send(file_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+        if (sent < 0 && errno == ENOTSOCK) sent = ::write(file_, bytes.data(), bytes.size());  // a serial line
+        if (sent >= 0)
+            bytes = bytes.subspan(static_cast<size_t>(sent));
+        else if (errno == EAGAIN && !isReady(file_, POLLOUT, max_sending))
+            fail(ETIMEDOUT);
+        else if (errno != EAGAIN && errno != EINTR)
+            fail(errno);
+    }
 }
 
 Bytes DriverLine::receive(Duration patience) const {

@@ -32,7 +32,7 @@ public:
     DriverLine& operator=(const DriverLine&) = delete;
     DriverLine& operator=(DriverLine&&) = delete;
 
-    /** Throws LineError. */
+    /** Sends all bytes, within 1 s. Throws LineError. */
     void send(std::span<const uint8_t> bytes) const;
     /** Returns the next bytes, at most 64 KiB; empty: nothing has arrived. Throws LineError where the line is
      *  closed. */

@@ -482,7 +482,9 @@ public:
     SerialEnd(Network::Core& core, End end, std::filesystem::path link)
         : client_{end, 1}, link_(std::move(link)), terminal_(openTerminal()) {
         std::error_code error;
-        if (std::filesystem::is_symlink(link_)) std::filesystem::remove(link_, error);
+        // The link of an emulator that was killed. Any other is the user's, as in /dev/serial/by-id.
+        if (std::filesystem::read_symlink(link_, error).string().starts_with("/dev/pts/"))
+            std::filesystem::remove(link_, error);
         std::filesystem::create_symlink(terminal_.name, link_, error);
         if (error) {
             shut();
@@ -502,8 +504,7 @@ public:
         if (session_) session_->shut();
         if (const int slave = std::exchange(terminal_.slave, -1); slave >= 0) ::close(slave);
         std::error_code ignored;
-        if (std::filesystem::is_symlink(link_) && std::filesystem::read_symlink(link_, ignored) == terminal_.name)
-            std::filesystem::remove(link_, ignored);
+        if (std::filesystem::read_symlink(link_, ignored) == terminal_.name) std::filesystem::remove(link_, ignored);
     }
 
 private:

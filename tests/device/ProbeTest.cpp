@@ -1,6 +1,10 @@
 #include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <thread>
 
 #include "components/device/DriverLine.hpp"
@@ -148,6 +152,46 @@ TEST(ProbeTest, AcceptsBroadcastsOfTheProbedDeviceOnly) {
 TEST(ProbeTest, ANegativePatienceDoesNotWait) {
     EXPECT_TRUE(DriverLine::broadcasts(0).receive(std::chrono::milliseconds(-5)).empty());
     EXPECT_TRUE(DriverLine::broadcasts(0).receiveDatagram(std::chrono::milliseconds(-5)).bytes.empty());
+}
+
+/** A peer that closes a connection after having accepted it. */
+TEST(ProbeTest, ALineThatThePeerHasClosedIsAnErrorAndNoSignal) {
+    std::signal(SIGPIPE, SIG_DFL);
+    const int listening = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ASSERT_EQ(bind(listening, reinterpret_cast<const sockaddr*>(&address), size), 0);
+    ASSERT_EQ(listen(listening, 1), 0);
+    getsockname(listening, reinterpret_cast<sockaddr*>(&address), &size);
+    const DriverLine line = DriverLine::tcp("127.0.0.1", ntohs(address.sin_port), std::chrono::milliseconds(1000));
+    close(accept(listening, nullptr, nullptr));
+    close(listening);
+    EXPECT_THROW(
+        {
+            for (int i = 0; i < 1000; ++i) line.send(Bytes(100, 0));
+        },
+        LineError);
+}
+
+TEST(ProbeTest, APeerThatDoesNotReadIsAnErrorWithinItsTime) {
+    const int listening = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ASSERT_EQ(bind(listening, reinterpret_cast<const sockaddr*>(&address), size), 0);
+    ASSERT_EQ(listen(listening, 1), 0);
+    getsockname(listening, reinterpret_cast<sockaddr*>(&address), &size);
+    const DriverLine line = DriverLine::tcp("127.0.0.1", ntohs(address.sin_port), std::chrono::milliseconds(1000));
+    try {
+        line.send(Bytes(64 << 20, 0));
+        FAIL() << "64 MiB fit nowhere";
+    } catch (const LineError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("timed out"));
+    }
+    close(listening);
 }
 
 TEST(ProbeTest, EveryProbeExplainsSilence) {
