@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "components/deployer/Json.hpp"
@@ -98,6 +100,8 @@ auto guarded(std::invoke_result_t<Work> failed, Work&& work) {
         keepError("MemoryError", error);
     } catch (const std::exception& error) {
         keepError("RuntimeError", error);
+    } catch (...) {
+        keepError("RuntimeError", std::runtime_error("an exception without a reason"));
     }
     return failed;
 }
@@ -183,9 +187,11 @@ const char* insonify_facts(const Handle* handle) {
 }
 
 size_t insonify_arrays(const Handle* handle, Array* arrays, size_t room) {
-    const std::vector<Array> all = handle->arrays();
-    std::copy_n(all.begin(), std::min(room, all.size()), arrays);
-    return all.size();
+    return guarded(std::numeric_limits<size_t>::max(), [&] {
+        const std::vector<Array> all = handle->arrays();
+        std::copy_n(all.begin(), std::min(room, all.size()), arrays);
+        return all.size();
+    });
 }
 
 Handle* insonify_simulation(const char* deployment, uint64_t seed, const char* const* overrides, size_t override_count,

@@ -16,7 +16,8 @@ const char* insonify_error();
 void insonify_free(Handle* handle);
 /** Returns a handle's facts as JSON. */
 const char* insonify_facts(const Handle* handle);
-/** Fills in the first `room` of a handle's arrays, which are valid as long as the handle, and returns their number. */
+/** Fills in the first `room` of a handle's arrays, which are valid as long as the handle, and returns their number;
+ *  SIZE_MAX: failed. */
 size_t insonify_arrays(const Handle* handle, Array* arrays, size_t room);
 
 /** Makes a simulation. Its facts: `{poses, pings, period, time}`.

@@ -95,6 +95,8 @@ class Handle:
         while True:
             found = (_Array * room)()
             count = _library.insonify_arrays(self.pointer, found, room)
+            if count == ctypes.c_size_t(-1).value:
+                _raise()
             if count <= room:
                 return [(each.name.decode(), self._view(each)) for each in found[:count]]
             room = count
