@@ -5,11 +5,13 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "components/command/Console.hpp"
+
 namespace insonify::command {
 
 std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
 
-void print(const Json& json) { fmt::print("{}\n", text(json)); }
+void print(const Json& json) { printResult("{}\n", text(json)); }
 
 void write(const Json& json, const std::string& file) {
     std::ofstream stream(file);

@@ -4,7 +4,8 @@
 
 namespace insonify::command {
 
-/** The folder of a run's files. Unless keep() is called, a folder made for the run is removed with this object. */
+/** The folder of a run's files. Unless keep() is called, a folder that this object has made is removed with it if it
+ *  holds no file and no other run uses it. Files are never removed: they may be those of another run. */
 class OutputFolder {
 public:
     /** `asked` is `--out`; empty: out/<deployment>-<UTC time> in the current folder. Throws types::ConfigError when the
@@ -20,7 +21,10 @@ public:
     void keep();
 
 private:
+    void leave();
+
     std::filesystem::path path_;
+    int file_ = -1;  ///< The open folder, with a shared lock while a run uses it.
     bool made_ = false, asked_, kept_ = false, had_files_ = false;
 };
 

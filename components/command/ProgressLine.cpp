@@ -6,34 +6,38 @@
 #include <cmath>
 #include <cstdint>
 
+#include "components/command/Console.hpp"
+
 namespace insonify::command {
 
-ProgressLine::ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)) {}
+ProgressLine::ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)) {
+    if (shown_) startPrinting();
+}
 
 ProgressLine::~ProgressLine() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
+    if (shown_) showProgress("");
 }
 
 void ProgressLine::show(double wall_s, const std::string& text) {
     if (!shown_ || wall_s < next_s_) return;
     next_s_ = wall_s + 0.1;
-    fmt::print(stderr, "\r\033[K{}", text);
-    std::fflush(stderr);
+    showProgress(text);
 }
 
-StudyProgress::StudyProgress(bool wanted, size_t total) : shown_(wanted && isatty(STDERR_FILENO)), total_(total) {}
+StudyProgress::StudyProgress(bool wanted, size_t total) : shown_(wanted && isatty(STDERR_FILENO)), total_(total) {
+    if (shown_) startPrinting();
+}
 
 void StudyProgress::operator()(const std::string& at) {
     if (!shown_) return;
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const std::string count = total_ > 0 ? fmt::format(", {} of {} done", done_, total_) : "";
     const double share = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 0;
-    fmt::print(stderr, "\r\033[K{}{}, {} so far{}", at, count, durationText(wall_s), timeLeft(share, wall_s));
-    std::fflush(stderr);
+    showProgress(fmt::format("{}{}, {} so far{}", at, count, durationText(wall_s), timeLeft(share, wall_s)));
 }
 
 void StudyProgress::end() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
+    if (shown_) showProgress("");
 }
 
 std::string durationText(double seconds) {

@@ -14,6 +14,7 @@
 #include "components/acoustics/Matter.hpp"
 #include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/scene/Acoustics.hpp"
@@ -180,18 +181,18 @@ Json backscatterReport(const BackscatterOptions& options) {
 
 void printBackscatter(const Json& report) {
     const bool has_lobe = report.contains("diffuse_db");
-    fmt::print("{}, by law {}\n", report["name"].get<std::string>(), report["law"].get<std::string>());
+    command::printResult("{}, by law {}\n", report["name"].get<std::string>(), report["law"].get<std::string>());
     for (const auto& [key, value] : report["parameters"].items())
-        fmt::print("  {:22} {:.5g}\n", key, value.get<double>());
+        command::printResult("  {:22} {:.5g}\n", key, value.get<double>());
     if (report.contains("sources"))
         for (const auto& [key, source] : report["sources"].items())
-            fmt::print("  source of {:12} {}\n", key, source.get<std::string>());
-    fmt::print("grazing [deg]   strength [dB]{}\n", has_lobe ? "   without the lobe [dB]" : "");
+            command::printResult("  source of {:12} {}\n", key, source.get<std::string>());
+    command::printResult("grazing [deg]   strength [dB]{}\n", has_lobe ? "   without the lobe [dB]" : "");
     for (size_t i = 0; i < report["grazing_deg"].size(); ++i)
-        fmt::print("  {:11g}   {:13.2f}{}\n", report["grazing_deg"][i].get<double>(),
-                   report["strength_db"][i].get<double>(),
-                   has_lobe ? fmt::format("   {:21.2f}", report["diffuse_db"][i].get<double>()) : "");
-    for (const Json& line : report["warnings"]) fmt::print("warning: {}\n", line.get<std::string>());
+        command::printResult("  {:11g}   {:13.2f}{}\n", report["grazing_deg"][i].get<double>(),
+                             report["strength_db"][i].get<double>(),
+                             has_lobe ? fmt::format("   {:21.2f}", report["diffuse_db"][i].get<double>()) : "");
+    for (const Json& line : report["warnings"]) command::printResult("warning: {}\n", line.get<std::string>());
 }
 
 int showBackscatter(const BackscatterOptions& options) {

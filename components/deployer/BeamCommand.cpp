@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
@@ -87,8 +88,9 @@ void printCut(const char* name, const Cut& cut) {
     };
     std::optional<double> first_null;
     if (cut.shape.first_null) first_null = degrees(*cut.shape.first_null);
-    fmt::print("{}, two way: {:.3f} deg at -3 dB, first null {}, highest sidelobe {}\n", name,
-               degrees(cut.shape.width_3db), shown(first_null, "deg"), shown(cut.shape.peak_sidelobe_db, "dB"));
+    command::printResult("{}, two way: {:.3f} deg at -3 dB, first null {}, highest sidelobe {}\n", name,
+                         degrees(cut.shape.width_3db), shown(first_null, "deg"),
+                         shown(cut.shape.peak_sidelobe_db, "dB"));
 }
 
 struct BeamOptions {

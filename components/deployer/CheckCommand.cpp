@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/RunCommand.hpp"
@@ -60,18 +61,19 @@ std::string activityText(const framework::ActivitySettings& activity) {
 /** Prints each task with its outgoing connections, writers before readers. */
 void printGraph(framework::Deployment& deployment) {
     const framework::DeploymentSpec& spec = deployment.spec();
-    fmt::print("{}: valid, {}, {} tasks, {} connections\n", spec.file, spec.lockstep ? "lockstep" : "realtime",
-               deployment.tasks().size(), deployment.connections().size());
-    for (const std::string& line : spec.unused()) fmt::print("warning: {}\n", line);
+    command::printResult("{}: valid, {}, {} tasks, {} connections\n", spec.file,
+                         spec.lockstep ? "lockstep" : "realtime", deployment.tasks().size(),
+                         deployment.connections().size());
+    for (const std::string& line : spec.unused()) command::printResult("warning: {}\n", line);
     for (const framework::TaskContext* task : deployment.order()) {
         const framework::TaskSpec written = *framework::DeploymentSpec(spec).task(task->name());
-        fmt::print("{} ({}, {})\n", written.name, written.type, activityText(written.activity));
+        command::printResult("{} ({}, {})\n", written.name, written.type, activityText(written.activity));
         for (const framework::Connection& connection : deployment.connections()) {
             if (&connection.from->owner() != task) continue;
             const std::string size =
                 connection.policy.type == framework::ConnPolicy::Data ? "" : fmt::format(" {}", connection.policy.size);
-            fmt::print("  {} -> {}  {}, {}{}\n", connection.from->name(), connection.to->path(),
-                       connection.from->typeName(), nameOf(connection.policy.type), size);
+            command::printResult("  {} -> {}  {}, {}{}\n", connection.from->name(), connection.to->path(),
+                                 connection.from->typeName(), nameOf(connection.policy.type), size);
         }
     }
 }

@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
-#include <iostream>
+#include <sstream>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/RosArguments.hpp"
 #include "components/framework/ConfigReader.hpp"
 #include "components/loader/ComponentLibrary.hpp"
@@ -99,20 +99,25 @@ int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
     } catch (const CLI::ParseError& error) {  // --help and --version also end here, with code 0
         if (const std::string unknown = error.get_exit_code() == 0 ? "" : unknownCommand(app, argc, argv);
             !unknown.empty()) {
-            fmt::print(stderr, "{}\n", unknown);
+            command::printDiagnostic("{}\n", unknown);
             return bad_input;
         }
         if (asksForCommand(app, argc)) {
-            fmt::print(stderr, "{}", app.help());
+            command::printDiagnostic("{}", app.help());
             return bad_input;
         }
         if (const std::string wrong = wrongValue(error.what()); !wrong.empty()) {
-            fmt::print(stderr, "{}\n", wrong);
+            command::printDiagnostic("{}\n", wrong);
             return bad_input;
         }
-        if (app.exit(error, std::cout, std::cerr) == 0) return done;
-        if (const std::string hint = settingWithoutSet(argc, argv); !hint.empty()) fmt::print(stderr, "{}\n", hint);
-        if (const std::string near = meantWord(app, argc, argv); !near.empty()) fmt::print(stderr, "{}\n", near);
+        std::ostringstream results, diagnostics;
+        const int code = app.exit(error, results, diagnostics);
+        command::addResult(results.str());
+        command::addDiagnostic(diagnostics.str());
+        if (code == 0) return done;
+        if (const std::string hint = settingWithoutSet(argc, argv); !hint.empty())
+            command::printDiagnostic("{}\n", hint);
+        if (const std::string near = meantWord(app, argc, argv); !near.empty()) command::printDiagnostic("{}\n", near);
         return bad_input;
     }
     return action();
@@ -148,7 +153,7 @@ void addLibraryCommands(CLI::App& app, Action& action, const std::string& word) 
             loader::load(name).entry<void(CLI::App&, Action&)>("insonify_add_command")(app, action);
         } catch (const types::ConfigError& error) {
             if (word == name || (other && word == other)) throw;
-            fmt::print(stderr, "notice: {}\n", error.diagnostics().front().text());
+            command::printDiagnostic("notice: {}\n", error.diagnostics().front().text());
         }
     }
 }
@@ -166,25 +171,28 @@ int guarded(CLI::App& app, Action& action, int argc, char** argv) {
         if (!isOfCore(app, word)) addLibraryCommands(app, action, word);
         return parseAndAct(app, action, argc, argv);
     } catch (const types::ConfigError& error) {
-        for (const types::Diagnostic& diagnostic : error.diagnostics()) fmt::print(stderr, "{}\n", diagnostic.text());
+        for (const types::Diagnostic& diagnostic : error.diagnostics())
+            command::printDiagnostic("{}\n", diagnostic.text());
         return bad_input;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "insonify: {}\n", types::reasonOf(error));
+        command::printDiagnostic("insonify: {}\n", types::reasonOf(error));
+        return failed;
+    } catch (...) {  // of a library of the user
+        command::printDiagnostic("insonify: failed, by an exception without a reason\n");
         return failed;
     }
 }
 
-/** Results that could not be written are an error. */
-bool flushed() { return std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout); }
-
 }  // namespace
 
 int runCommandLine(int argc, char** argv) {
+    command::prepareConsole();
     CLI::App app{"Simulates imaging sonars in real time, from a 3-D scene", "insonify"};
     app.set_version_flag("--version", INSONIFY_VERSION);
     app.require_subcommand(1);
     Action action;
     addInitCommand(app, action);
+    addExamplesCommand(app, action);
     addRunCommand(app, action);
     addCheckCommand(app, action);
     addPlanCommand(app, action);
@@ -204,9 +212,11 @@ int runCommandLine(int argc, char** argv) {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     const int code = guarded(app, action, static_cast<int>(words.size()), arguments.data());
-    if (flushed()) return code;
-    fmt::print(stderr, "insonify: the standard output cannot be written\n");
-    return code == done ? failed : code;
+    const std::string unwritten = command::flushResults();
+    if (!unwritten.empty())
+        command::printDiagnostic("insonify: the standard output cannot be written: {}\n", unwritten);
+    command::finishPrinting();
+    return code == done && !unwritten.empty() ? failed : code;
 }
 
 }  // namespace insonify::deployer

@@ -18,6 +18,7 @@ void addRunCommand(CLI::App& app, Action& action);
 void addCheckCommand(CLI::App& app, Action& action);
 void addPlanCommand(CLI::App& app, Action& action);
 void addDescribeCommand(CLI::App& app, Action& action);
+void addExamplesCommand(CLI::App& app, Action& action);
 void addInitCommand(CLI::App& app, Action& action);
 void addLogCommand(CLI::App& app, Action& action);
 void addReplayCommand(CLI::App& app, Action& action);

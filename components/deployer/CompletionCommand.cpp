@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Starter.hpp"
 #include "components/deployer/Tasks.hpp"
@@ -99,8 +100,8 @@ complete -o filenames -F _insonify insonify
 }
 
 int printCompletion(const CLI::App& app, const std::string& shell) {
-    if (shell == "zsh") fmt::print("autoload -U +X bashcompinit && bashcompinit\n");
-    fmt::print("{}", bashCompletion(app));
+    if (shell == "zsh") command::printResult("autoload -U +X bashcompinit && bashcompinit\n");
+    command::printResult("{}", bashCompletion(app));
     return 0;
 }
 
@@ -111,23 +112,23 @@ std::string escaped(const std::string& text) {
 }
 
 void printManCommand(const CLI::App& app, const std::string& path) {
-    fmt::print(".SS {}\n{}\n", escaped(path), escaped(app.get_description()));
+    command::printResult(".SS {}\n{}\n", escaped(path), escaped(app.get_description()));
     for (const CLI::Option* option : app.get_options()) {
         if (option->get_name() == "--help") continue;
         const std::string type =
             option->get_type_size() == 0 || option->get_positional() ? "" : " " + option->get_type_name();
         const std::string name = option->get_positional() ? option->get_name(true) : option->get_name(false, true);
-        fmt::print(".TP\n.B {}{}\n{}\n", escaped(name), escaped(type), escaped(option->get_description()));
+        command::printResult(".TP\n.B {}{}\n{}\n", escaped(name), escaped(type), escaped(option->get_description()));
     }
     for (const std::string& name : subcommands(app)) printManCommand(*app.get_subcommand(name), path + " " + name);
 }
 
 int printMan(const CLI::App& app) {
-    fmt::print(".TH INSONIFY 1 \"\" \"Insonify {}\" \"User Commands\"\n.SH NAME\ninsonify \\- {}\n", INSONIFY_VERSION,
-               escaped(app.get_description()));
-    fmt::print(".SH SYNOPSIS\n.B insonify\n.I COMMAND\n[options]\n.SH COMMANDS\n");
+    command::printResult(".TH INSONIFY 1 \"\" \"Insonify {}\" \"User Commands\"\n.SH NAME\ninsonify \\- {}\n",
+                         INSONIFY_VERSION, escaped(app.get_description()));
+    command::printResult(".SH SYNOPSIS\n.B insonify\n.I COMMAND\n[options]\n.SH COMMANDS\n");
     for (const std::string& name : subcommands(app)) printManCommand(*app.get_subcommand(name), name);
-    fmt::print(
+    command::printResult(
         ".SH EXIT STATUS\n0: done. 1: failed while running. 2: wrong usage, file or configuration.\n"
         ".SH ENVIRONMENT\n.TP\n.B INSONIFY_EGL_DEVICE\nThe device for rasterisation: a number, software or auto.\n"
         ".TP\n.B INSONIFY_MODEL_PATH, GAZEBO_MODEL_PATH, SDF_PATH, GZ_SIM_RESOURCE_PATH, "

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <vector>
 
+#include "components/loader/ComponentLibrary.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
@@ -24,7 +25,15 @@ bool isDeployment(const fs::path& file) {
 
 }  // namespace
 
-std::string deploymentIn(const std::string& path) {
+std::string exampleAt(const std::string& path) {
+    std::error_code unreadable;
+    if (!path.starts_with("deploy/") || fs::exists(path, unreadable)) return path;
+    const fs::path shared = loader::sharedFolder() / path;
+    return fs::exists(shared, unreadable) ? shared.string() : path;
+}
+
+std::string deploymentIn(const std::string& given) {
+    const std::string path = exampleAt(given);
     std::error_code unreadable;
     if (!fs::is_directory(path, unreadable)) return path;
     std::vector<std::string> found;

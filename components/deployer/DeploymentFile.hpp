@@ -3,8 +3,12 @@
 
 namespace insonify::deployer {
 
-/** Returns the deployment file of a path: the file itself, or in a folder its only .yml or .yaml file with `tasks`.
- *  Throws types::ConfigError, with the candidates, when a folder has none or several. */
+/** Returns the path of a file that the user names: `deploy/...`, where the current folder has no such file, is that of
+ *  the installed examples, if it is there. */
+std::string exampleAt(const std::string& path);
+
+/** Returns the deployment file of such a path: the file itself, or in a folder its only .yml or .yaml file with
+ * `tasks`. Throws types::ConfigError, with the candidates, when a folder has none or several. */
 std::string deploymentIn(const std::string& path);
 
 }  // namespace insonify::deployer

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/SceneCommand.hpp"
@@ -88,19 +89,19 @@ std::string unitText(const Json& property) {
 std::string field(const Json& json, const char* key) { return json[key].get<std::string>(); }
 
 void printTask(const Json& task) {
-    fmt::print("{}: {}\n\nports\n", field(task, "type"), field(task, "doc"));
+    command::printResult("{}: {}\n\nports\n", field(task, "type"), field(task, "doc"));
     for (const Json& port : task["ports"])
-        fmt::print("  {:3}  {}  {}\n       {}\n", field(port, "direction"), field(port, "name"), field(port, "type"),
-                   field(port, "doc"));
-    fmt::print("\nproperties\n");
+        command::printResult("  {:3}  {}  {}\n       {}\n", field(port, "direction"), field(port, "name"),
+                             field(port, "type"), field(port, "doc"));
+    command::printResult("\nproperties\n");
     for (const Json& property : task["properties"])
-        fmt::print("  {}: {}{}{}\n       {}{}\n", field(property, "name"), field(property, "type"),
-                   defaultText(property), boundsText(property), field(property, "doc"), unitText(property));
-    fmt::print("\noperations\n");
+        command::printResult("  {}: {}{}{}\n       {}{}\n", field(property, "name"), field(property, "type"),
+                             defaultText(property), boundsText(property), field(property, "doc"), unitText(property));
+    command::printResult("\noperations\n");
     for (const Json& operation : task["operations"])
-        fmt::print("  {}: {}\n       {}\n", field(operation, "name"), field(operation, "signature"),
-                   field(operation, "doc"));
-    fmt::print("\nstates\n  {}\n", fmt::join(task["states"].get<std::vector<std::string>>(), ", "));
+        command::printResult("  {}: {}\n       {}\n", field(operation, "name"), field(operation, "signature"),
+                             field(operation, "doc"));
+    command::printResult("\nstates\n  {}\n", fmt::join(task["states"].get<std::vector<std::string>>(), ", "));
 }
 
 int listTasks(const framework::Registry& registry, bool json) {
@@ -109,7 +110,7 @@ int listTasks(const framework::Registry& registry, bool json) {
     if (json)
         print(list);
     else
-        for (const auto& entry : registry.list()) fmt::print("{:28} {}\n", entry.type, entry.doc);
+        for (const auto& entry : registry.list()) command::printResult("{:28} {}\n", entry.type, entry.doc);
     return 0;
 }
 
@@ -123,10 +124,10 @@ int listMaterials(bool json) {
         print({{"sediments", namesOf<scene::Sediment>()}, {"materials", namesOf<scene::Matter>()}});
         return 0;
     }
-    fmt::print("sediments (material.extras.acoustics = {{\"sediment\": NAME}})\n  {}\n",
-               fmt::join(namesOf<scene::Sediment>(), "\n  "));
-    fmt::print("materials (material.extras.acoustics = {{\"material\": NAME}})\n  {}\n",
-               fmt::join(namesOf<scene::Matter>(), "\n  "));
+    command::printResult("sediments (material.extras.acoustics = {{\"sediment\": NAME}})\n  {}\n",
+                         fmt::join(namesOf<scene::Sediment>(), "\n  "));
+    command::printResult("materials (material.extras.acoustics = {{\"material\": NAME}})\n  {}\n",
+                         fmt::join(namesOf<scene::Matter>(), "\n  "));
     return 0;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/LoggedTrack.hpp"
 #include "components/deployer/StreamMeaning.hpp"
 #include "components/loader/ComponentLibrary.hpp"
@@ -213,7 +214,8 @@ void exportXtf(log::Reader& log, const std::string& stream, const std::string& p
     const output::XtfFormat format{codes ? output::XtfSamples::Uint16 : output::XtfSamples::Float32,
                                    frequencyOf(meaning), to.filename().string()};
     const log::Stream* const placed = posesOf(log, poses);
-    if (!placed) fmt::print(stderr, "notice: {} holds no poses: the lines have no positions\n", log.path().string());
+    if (!placed)
+        command::printDiagnostic("notice: {} holds no poses: the lines have no positions\n", log.path().string());
     const LoggedTrack track(log, placed, mountOf(meaning));
     const LoggedAltitudes altitudes(log);
     types::Sonar ping = firstPing(log, pings);

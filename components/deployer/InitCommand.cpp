@@ -2,16 +2,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <system_error>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Starter.hpp"
+#include "types/Ascii.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
@@ -33,25 +34,35 @@ void refuseOverwriting(const std::vector<NewFile>& files) {
     if (!diagnostics.empty()) throw types::ConfigError(std::move(diagnostics));
 }
 
-void write(const NewFile& file) {
-    std::ofstream stream(file.path, std::ios::binary);
-    stream << file.bytes;
-    if (!stream.flush())
-        throw types::ConfigError(file.path.string(), "", "cannot be written: " + std::system_category().message(errno));
+/** Makes a file that is not there yet, not even since it was looked for; `made` receives its name. */
+void write(const NewFile& file, std::vector<fs::path>& made) {
+    std::FILE* const stream = std::fopen(file.path.c_str(), "wbx");
+    if (stream) made.push_back(file.path);
+    bool is_written = stream && std::fwrite(file.bytes.data(), 1, file.bytes.size(), stream) == file.bytes.size();
+    if (stream) is_written = std::fclose(stream) == 0 && is_written;
+    if (!is_written)
+        throw types::ConfigError(file.path.string(), "",
+                                 "cannot be written: " + std::generic_category().message(errno));
 }
 
 /** Writes all files, or none. */
-void write(const std::vector<NewFile>& files) try {
-    for (const NewFile& file : files) write(file);
-} catch (...) {
-    std::error_code ignored;
-    for (const NewFile& file : files) fs::remove(file.path, ignored);
-    throw;
+void write(const std::vector<NewFile>& files) {
+    std::vector<fs::path> made;
+    try {
+        for (const NewFile& file : files) write(file, made);
+    } catch (...) {
+        std::error_code ignored;
+        for (const fs::path& file : made) fs::remove(file, ignored);
+        throw;
+    }
 }
 
 /** Returns a text as a word of the shell: in quotes if it has letters with a meaning there. */
 std::string shellWord(const std::string& text) {
-    const auto isPlain = [](unsigned char c) { return std::isalnum(c) || c >= 0x80 || std::strchr("/._-+,:@%", c); };
+    const auto isPlain = [](char c) {
+        return types::isLetter(c) || types::isDigit(c) || static_cast<unsigned char>(c) >= 0x80 ||
+               std::strchr("/._-+,:@%", c);
+    };
     if (!text.empty() && std::ranges::all_of(text, isPlain)) return text;
     std::string word = "'";
     for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
@@ -71,12 +82,12 @@ int init(const fs::path& folder, const std::string& sonar) {
     write(files);
     fs::permissions(folder / "make_scene.py", fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add, error);
-    for (const NewFile& file : files) fmt::print("{}\n", file.path.string());
+    for (const NewFile& file : files) command::printResult("{}\n", file.path.string());
     const std::string word = shellWord(folder.string());
-    fmt::print("next: insonify run {}\n", word);
+    command::printResult("next: insonify run {}\n", word);
     if (preset.isFan())
-        fmt::print("or:   insonify dataset {} --sweep {} --out set\n", word,
-                   shellWord((folder / "sweep.yml").string()));
+        command::printResult("or:   insonify dataset {} --sweep {} --out set\n", word,
+                             shellWord((folder / "sweep.yml").string()));
     return 0;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <set>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
@@ -42,7 +43,7 @@ std::set<std::string> neededBy(const framework::DeploymentSpec& spec) {
 
 int listLacking(const std::string& deployment) {
     for (const std::string& name : neededBy(framework::DeploymentSpec::load(deployment)))
-        if (!loader::isPresent(name)) fmt::print("{}\n", name);
+        if (!loader::isPresent(name)) command::printResult("{}\n", name);
     return 0;
 }
 
@@ -66,7 +67,8 @@ int list(bool json) {
                        {"gives", known ? known->gives : "your own components"},
                        {"wrong", wrong}});
         if (!json)
-            fmt::print("{:10} {:8} {}\n", name, state, wrong.empty() ? all.back()["gives"].get<std::string>() : wrong);
+            command::printResult("{:10} {:8} {}\n", name, state,
+                                 wrong.empty() ? all.back()["gives"].get<std::string>() : wrong);
     }
     if (json) print(all);
     return 0;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Export.hpp"
@@ -38,17 +39,19 @@ Json infoJson(const log::Reader& log) {
 }
 
 void printTable(const log::Reader& log) {
-    fmt::print("{}: {} bytes, {}\n", log.path().string(), log.bytes(), log.complete() ? "complete" : "cut off");
-    fmt::print("  {:24} {:32} {:>8} {:>26} {:>26} {:>9}\n", "stream", "type", "samples", "first", "last", "rate Hz");
+    command::printResult("{}: {} bytes, {}\n", log.path().string(), log.bytes(),
+                         log.complete() ? "complete" : "cut off");
+    command::printResult("  {:24} {:32} {:>8} {:>26} {:>26} {:>9}\n", "stream", "type", "samples", "first", "last",
+                         "rate Hz");
     for (const log::Stream& s : log.streams())
-        fmt::print("  {:24} {:32} {:>8} {:>26} {:>26} {:>9.2f}\n", s.name, s.type, s.count, log::readable(s.first),
-                   log::readable(s.last), s.rate());
+        command::printResult("  {:24} {:32} {:>8} {:>26} {:>26} {:>9.2f}\n", s.name, s.type, s.count,
+                             log::readable(s.first), log::readable(s.last), s.rate());
 }
 
 /** Opens a log, and prints a notice where it cannot be read to its end. */
 std::unique_ptr<log::Reader> opened(const std::string& file) {
     auto log = log::openLog(file);
-    if (!log->complete()) fmt::print(stderr, "notice: {}: {}\n", file, log->diagnostic());
+    if (!log->complete()) command::printDiagnostic("notice: {}: {}\n", file, log->diagnostic());
     return log;
 }
 
@@ -64,10 +67,10 @@ Json metadataJson(const log::Reader& log) {
 void printMetadata(const log::Reader& log) {
     std::set<std::pair<std::string, std::string>> reported;  // once for all streams with the same metadata
     for (const log::Stream& stream : log.streams()) {
-        fmt::print("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
+        command::printResult("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
         for (const auto& [key, value] : stream.metadata)
             if (reported.emplace(key, value).second)
-                fmt::print("{}:{}{}\n", key, value.find('\n') == value.npos ? " " : "\n", value);
+                command::printResult("{}:{}{}\n", key, value.find('\n') == value.npos ? " " : "\n", value);
     }
 }
 
@@ -106,9 +109,9 @@ void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
     readPing(log, *std::ranges::find(log.samples(), index, &log::SampleRef::stream), ping);
     const double bins = static_cast<double>(ping.bins.size()) * static_cast<double>(pings.count);
     if (bins * line > reported_from)
-        fmt::print(stderr,
-                   "notice: {} gets a line for each bin, some {:.0f} million, {:.1f} GB; an .npz takes {:.2g} GB\n",
-                   to.string(), bins / 1e6, bins * line / 1e9, bins * sizeof(float) / 1e9);
+        command::printDiagnostic(
+            "notice: {} gets a line for each bin, some {:.0f} million, {:.1f} GB; an .npz takes {:.2g} GB\n",
+            to.string(), bins / 1e6, bins * line / 1e9, bins * sizeof(float) / 1e9);
 }
 
 /** Returns the written files. */
@@ -144,7 +147,7 @@ struct Options {
 };
 
 void reportLost(const log::Copied& copied) {
-    for (const std::string& lost : copied.lost) fmt::print(stderr, "lost: {}\n", lost);
+    for (const std::string& lost : copied.lost) command::printDiagnostic("lost: {}\n", lost);
 }
 
 int exportMessages(const Options& options) {
@@ -153,7 +156,7 @@ int exportMessages(const Options& options) {
     if (!options.stream.empty()) selection.streams.insert(options.stream);
     const log::Copied copied = log::copyLog({options.file}, options.to, {.selection = selection, .anew = options.mcap});
     reportLost(copied);
-    fmt::print("{}: {} messages\n", options.to, copied.samples);
+    command::printResult("{}: {} messages\n", options.to, copied.samples);
     return 0;
 }
 
@@ -165,7 +168,7 @@ int logExport(const Options& options) {
     if (options.stream.empty())
         throw types::ConfigError("", "--stream", "is missing; only an MCAP file takes all streams");
     for (const fs::path& written : exportTo(*log, options.stream, options.poses, options.to, options.ground))
-        fmt::print("{}\n", written.string());
+        command::printResult("{}\n", written.string());
     return 0;
 }
 
@@ -219,10 +222,8 @@ void refuseOtherNames(const std::string& to) {
         throw types::ConfigError(to, "--to", "is the name of a log of properties; give another");
 }
 
-/** Throws for a copy without a sample, which leaves no file. */
+/** Throws for a copy without a sample, which is not made. */
 [[noreturn]] void refuseNothing(const Options& options) {
-    fs::remove(options.to);
-    fs::remove(fs::path(options.to).replace_extension(".idx"));
     const auto span = spanOf(options.files);
     throw types::ConfigError(options.files.front(), "",
                              span ? fmt::format("none of its samples is in the requested part; they are from {} to {}",
@@ -242,9 +243,10 @@ log::Copied copyTo(const std::string& to, const std::vector<fs::path>& files, co
 /** Copies also the log of properties, and reports what was copied. */
 int finish(const std::string& to, const fs::path& first, const log::Copied& copied) {
     if (const std::string notice = log::copyProperties(first, to); !notice.empty())
-        fmt::print(stderr, "notice: {}\n", notice);
-    fmt::print("{}: {} samples, {}\n", to, copied.samples,
-               copied.lost.empty() ? "nothing was lost" : fmt::format("lost in {} places", copied.lost.size()));
+        command::printDiagnostic("notice: {}\n", notice);
+    command::printResult(
+        "{}: {} samples, {}\n", to, copied.samples,
+        copied.lost.empty() ? "nothing was lost" : fmt::format("lost in {} places", copied.lost.size()));
     return 0;
 }
 
@@ -258,8 +260,8 @@ void reportOverlaps(const std::vector<std::string>& files) {
             const std::string& stream = log->streams()[at.stream].name;
             const auto before = ends.find(stream);
             if (seen.insert(stream).second && before != ends.end() && at.time <= before->second.first) {
-                fmt::print(stderr, "notice: {} of {} begins before it ends in {}; the copy has both\n", stream, file,
-                           before->second.second);
+                command::printDiagnostic("notice: {} of {} begins before it ends in {}; the copy has both\n", stream,
+                                         file, before->second.second);
                 break;
             }
         }
@@ -269,8 +271,8 @@ void reportOverlaps(const std::vector<std::string>& files) {
 
 int logCut(const Options& options) {
     if (options.files.size() > 1) reportOverlaps(options.files);
-    const log::Copied copied =
-        copyTo(options.to, {options.files.begin(), options.files.end()}, {.selection = selectionOf(options)});
+    const log::Copied copied = copyTo(options.to, {options.files.begin(), options.files.end()},
+                                      {.selection = selectionOf(options), .needs_samples = true});
     if (copied.samples == 0) refuseNothing(options);
     return finish(options.to, options.files.front(), copied);
 }
@@ -286,14 +288,14 @@ int logImport(const Options& options) {
     std::optional<framework::DeploymentSpec> spec;
     if (!options.deployment.empty()) spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
     const Imported made = importRecording(options.file, std::move(spec), options.to);
-    for (const std::string& notice : made.notices) fmt::print(stderr, "notice: {}: {}\n", options.file, notice);
+    for (const std::string& notice : made.notices) command::printDiagnostic("notice: {}: {}\n", options.file, notice);
     for (const std::string& property : made.properties)
-        fmt::print(stderr, "notice: as recorded: {}\n", withShortLists(property));
+        command::printDiagnostic("notice: as recorded: {}\n", withShortLists(property));
     if (made.changes > 0)
-        fmt::print(stderr, "notice: settings change {} times; {}\n", made.changes,
-                   options.deployment.empty() ? "each ping has its own range and bins"
-                                              : "properties.0.log next to the log has them");
-    fmt::print("{}: {} pings as {}\n", options.to, made.pings, made.stream);
+        command::printDiagnostic("notice: settings change {} times; {}\n", made.changes,
+                                 options.deployment.empty() ? "each ping has its own range and bins"
+                                                            : "properties.0.log next to the log has them");
+    command::printResult("{}: {} pings as {}\n", options.to, made.pings, made.stream);
     return 0;
 }
 
@@ -313,7 +315,7 @@ int logCheck(const Options& options) {
     if (const auto& found = verdict.diagnostic)
         throw types::ConfigError(found->file, fmt::format("byte {}", found->byte), found->message);
     if (!options.json)
-        fmt::print("{}: valid, {} streams, {} samples\n", options.file, verdict.streams, verdict.samples);
+        command::printResult("{}: valid, {} streams, {} samples\n", options.file, verdict.streams, verdict.samples);
     return 0;
 }
 

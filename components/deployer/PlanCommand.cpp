@@ -4,6 +4,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
@@ -22,12 +23,12 @@ using framework::Deployment;
 using framework::DeploymentSpec;
 
 void printPlan(const std::string& task, const types::Plan& plan) {
-    fmt::print("{}\n  {}\n", task, qualityText(plan));
-    for (const std::string& feature : plan.features) fmt::print("  compiled: {}\n", feature);
-    for (const std::string& pass : plan.passes) fmt::print("  run: {}\n", pass);
+    command::printResult("{}\n  {}\n", task, qualityText(plan));
+    for (const std::string& feature : plan.features) command::printResult("  compiled: {}\n", feature);
+    for (const std::string& pass : plan.passes) command::printResult("  run: {}\n", pass);
     for (const types::Omission& omission : plan.omitted)
-        fmt::print("  omitted: {}: {}\n", omission.name, omission.reason);
-    for (const std::string& notice : plan.notices) fmt::print("  {}\n", labelled(notice));
+        command::printResult("  omitted: {}: {}\n", omission.name, omission.reason);
+    for (const std::string& notice : plan.notices) command::printResult("  {}\n", labelled(notice));
 }
 
 /** A substitute for the readers of a sonar's truth: they are not part of the run, but what the sonar computes depends

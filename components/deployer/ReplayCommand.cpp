@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/RecordedSettings.hpp"
 #include "components/deployer/ReplaySpec.hpp"
@@ -31,7 +32,7 @@ struct Asked : RunOptions {
 };
 
 void notice(const Asked& options, const std::string& text) {
-    if (!options.quiet && !text.empty()) fmt::print(stderr, "notice: {}\n", text);
+    if (!options.quiet && !text.empty()) command::printDiagnostic("notice: {}\n", text);
 }
 
 /** Applies the log's own settings of tasks that run, below the user's; returns the changes during the recording. */
@@ -79,13 +80,13 @@ int printScore(log::Reader& log, const std::vector<std::string>& streams, size_t
     for (const std::string& stream : streams) scores.push_back(score(log, rendered, stream));
     write(scoreJson(scores), folder / "score.json");
     writeScorePictures(log, rendered, scores, worst, folder);
-    fmt::print("{}", scoreTable(scores, worst));
+    command::printResult("{}", scoreTable(scores, worst));
     for (const StreamScore& score : scores)
         if (const std::string rest = findOmitted(score); !rest.empty())
-            fmt::print(stderr, "warning: {}: not all pings were compared: {}\n", score.stream, rest);
+            command::printDiagnostic("warning: {}: not all pings were compared: {}\n", score.stream, rest);
     if (std::ranges::any_of(scores, [](const StreamScore& score) { return !score.pings.empty(); })) return 0;
-    fmt::print(stderr, "insonify: no ping of {} could be compared with one that was rendered again\n",
-               log.path().string());
+    command::printDiagnostic("insonify: no ping of {} could be compared with one that was rendered again\n",
+                             log.path().string());
     return 1;
 }
 
@@ -108,7 +109,7 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
             deployment.call(deployment.tasks().front()->name() + ".seek", {line.substr(seek.size())});
             return;
         } catch (const std::exception& error) {
-            fmt::print(stderr, "insonify: {}\n", types::reasonOf(error));
+            command::printDiagnostic("insonify: {}\n", types::reasonOf(error));
         }
 }
 
@@ -120,7 +121,7 @@ void followLog(Asked& options, std::vector<RecordedProperty> changed, types::Tim
         step = [start, &stop = stopOnSignals()](framework::Deployment& deployment) {
             const double place = deployment.status().tasks.front().playback.value().at_s;
             const std::string date = log::readable(start + types::Time::fromSeconds(place));
-            fmt::print(stderr, "{:.6f} s{}\n", place, date.ends_with(" s") ? "" : ", " + date);
+            command::printDiagnostic("{:.6f} s{}\n", place, date.ends_with(" s") ? "" : ", " + date);
             waitForStep(deployment, stop);
         };
     if (!options.step && live->empty()) return;

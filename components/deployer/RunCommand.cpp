@@ -10,11 +10,13 @@
 #include <filesystem>
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/RosArguments.hpp"
+#include "components/deployer/RunFiles.hpp"
 #include "components/deployer/ShardRun.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Summary.hpp"
@@ -73,7 +75,9 @@ void RunOptions::addTo(CLI::App& command) {
         ->type_name("...")
         ->allow_extra_args(false);
     command.add_option("--summary", summary, "writes the summary as JSON")->type_name("FILE");
-    command.add_flag("--quiet", quiet, "no progress, no notices, no summary");
+    auto* silent = command.add_flag("--quiet", quiet, "no progress, no notices, no summary");
+    command.add_flag("--verbose", verbose, "also the times of all tasks and stages, and what is omitted")
+        ->excludes(silent);
 }
 
 framework::DeploymentSpec loadSpec(const RunOptions& options) {
@@ -134,7 +138,7 @@ std::vector<std::string> without(std::vector<std::string> notices, const std::ve
 }
 
 void printNotices(const framework::TaskContext& task, const std::vector<std::string>& notices) {
-    for (const std::string& notice : notices) fmt::print(stderr, "{}\n", labelled(notice, task.name() + ": "));
+    for (const std::string& notice : notices) command::printDiagnostic("{}\n", labelled(notice, task.name() + ": "));
 }
 
 /** Checks without making a file. */
@@ -164,13 +168,22 @@ Notices noticesOf(const framework::Deployment& deployment) {
     return all;
 }
 
-/** Prints new notices since `reported`, and the summary. */
-void report(const framework::Deployment& deployment, const Notices& reported, const Summary& summary) {
+/** Prints new notices since `reported`. */
+void printNew(const framework::Deployment& deployment, const Notices& reported) {
     for (size_t i = 0; i < reported.size(); ++i) {
         const framework::TaskContext& task = *deployment.tasks()[i];
         printNotices(task, without(noticesOf(task), reported[i]));
     }
-    fmt::print("{}", summary.text());
+}
+
+/** Prints what the run has made. */
+void report(const framework::Deployment& deployment, const RunOptions& options, const Summary& summary,
+            const std::filesystem::path& folder, std::filesystem::file_time_type begin) {
+    if (options.verbose) command::addResult(summary.details());
+    command::addResult(summary.text());
+    if (const uint64_t dropped = command::droppedDiagnostics(); dropped > 0)
+        command::printResult("{} lines of notices and warnings could not be printed\n", dropped);
+    if (!options.shard) command::addResult(filesText(folder, begin, deployment));
 }
 
 /** Splits at commas outside of brackets. */
@@ -193,7 +206,7 @@ void callAll(framework::Deployment& deployment, const RunOptions& options) {
         const std::string result =
             deployment.call(call.substr(0, equals), equals == std::string::npos ? std::vector<std::string>{}
                                                                                 : argumentsIn(call.substr(equals + 1)));
-        if (!options.quiet && !result.empty()) fmt::print("{}: {}\n", call, result);
+        if (!options.quiet && !result.empty()) command::printResult("{}: {}\n", call, result);
     }
 }
 
@@ -201,7 +214,7 @@ framework::RunResult runAll(framework::Deployment& deployment, const RunOptions&
                             const std::atomic<bool>& stop) {
     if (!options.quiet) {
         for (const auto& task : deployment.tasks()) printNotices(*task, task->notices());
-        deployment.onWarning([](const std::string& text) { fmt::print(stderr, "warning: {}\n", text); });
+        deployment.onWarning([](const std::string& text) { command::printDiagnostic("warning: {}\n", text); });
     }
     if (options.progress)
         return deployment.run(options.limits, stop,
@@ -228,21 +241,25 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     refuseUnwritable(options.summary, deployment.spec().file);
 
     const std::atomic<bool>& stop = stopOnSignals();
+    const auto begin = runBegin();
+    command::startPrinting();
     deployment.configure();
     folder.keep();
     if (folder.hadFiles() && !options.quiet && !options.shard)
-        fmt::print(stderr, "notice: {} has files already; those with the names of this run's files are replaced\n",
-                   folder.path().string());
+        command::printDiagnostic(
+            "notice: {} has files already; those with the names of this run's files are replaced\n",
+            folder.path().string());
     callAll(deployment, options);
 
     const Notices reported = noticesOf(deployment);
     framework::RunResult result = runAll(deployment, options, stop);
     const Summary summary(deployment, result);
-    if (!options.quiet) report(deployment, reported, summary);
-    if (!options.quiet && !options.shard) fmt::print("files in {}\n", folder.path().string());
-    if (!options.summary.empty()) write(summary.json(), options.summary);
+    if (!options.quiet) printNew(deployment, reported);
     for (std::string& failure : deployment.cleanup()) result.failures.push_back(std::move(failure));
-    for (const std::string& failure : result.failures) fmt::print(stderr, "insonify: {}\n", failure);
+    // All files are closed: from here on, the console may keep the process waiting.
+    if (!options.summary.empty()) write(summary.json(), options.summary);
+    if (!options.quiet) report(deployment, options, summary, folder.path(), begin);
+    for (const std::string& failure : result.failures) command::printDiagnostic("insonify: {}\n", failure);
     return result.failed() ? 1 : 0;
 }
 

@@ -8,7 +8,9 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/RunCommand.hpp"
 #include "components/loader/ComponentLibrary.hpp"
@@ -125,9 +127,10 @@ Json warningsOf(const std::string& file, const types::Geometry& geometry, const 
 }
 
 std::string axesOf(const std::string& file) {
-    return scene::isGltf(file)
-               ? "glTF, y up in the file; turned to z up: (x, y, z) of the file is (x, -z, y) of the world"
-               : "SDF, z up: x, y, z of the file are those of the world";
+    if (scene::isGltf(file))
+        return "glTF, y up in the file; turned to z up: (x, y, z) of the file is (x, -z, y) of the world";
+    return std::string(scene::extensionOf(file) == ".urdf" ? "URDF" : "SDF") +
+           ", z up: x, y, z of the file are those of the world";
 }
 
 /** Returns the animations of a scene: [{name, duration_s, channels}]. */
@@ -176,9 +179,9 @@ std::string text(const Json& vector) {
 }
 
 void printExtent(const Json& bounds) {
-    if (bounds.is_null()) return fmt::print("bounds: none, the scene has no triangles\n");
-    fmt::print("bounds: from [{}] to [{}] m, size {} m\n", text(bounds["min"]), text(bounds["max"]),
-               text(bounds["size"]));
+    if (bounds.is_null()) return command::printResult("bounds: none, the scene has no triangles\n");
+    command::printResult("bounds: from [{}] to [{}] m, size {} m\n", text(bounds["min"]), text(bounds["max"]),
+                         text(bounds["size"]));
 }
 
 /** Returns a material's law and its source, where the numbers do not show them. */
@@ -207,7 +210,7 @@ std::string shellText(const Json& shell) {
 }
 
 void printMaterial(const Json& material) {
-    fmt::print(
+    command::printResult(
         "  {:22} {:5.1f} dB lambert_db, reflection {:.2g}, roughness_slope {}, reflectivity {:.2g}, {} "
         "triangles, {:.4g} m2{}{}{}{}{}\n",
         material["name"].get<std::string>(), material["lambert_db"].get<double>(), material["reflection"].get<double>(),
@@ -221,37 +224,39 @@ void printMaterial(const Json& material) {
 
 void printObjects(const Json& objects) {
     constexpr size_t shown = 40;
-    fmt::print("objects, {}\n", objects.size());
+    command::printResult("objects, {}\n", objects.size());
     for (size_t i = 0; i < objects.size() && i < shown; ++i)
-        fmt::print("  {:22} {}, {} triangles, size {} m at [{}]\n", objects[i]["name"].get<std::string>(),
-                   fmt::join(objects[i]["materials"].get<std::vector<std::string>>(), " and "),
-                   objects[i]["triangles"].get<size_t>(), text(objects[i]["bounds"]["size"]),
-                   text(objects[i]["bounds"]["centre"]));
-    if (objects.size() > shown) fmt::print("  and {} more, which --json names\n", objects.size() - shown);
+        command::printResult("  {:22} {}, {} triangles, size {} m at [{}]\n", objects[i]["name"].get<std::string>(),
+                             fmt::join(objects[i]["materials"].get<std::vector<std::string>>(), " and "),
+                             objects[i]["triangles"].get<size_t>(), text(objects[i]["bounds"]["size"]),
+                             text(objects[i]["bounds"]["centre"]));
+    if (objects.size() > shown) command::printResult("  and {} more, which --json names\n", objects.size() - shown);
 }
 
 void printAnimations(const Json& scene) {
     constexpr size_t shown = 20;
     const Json& animations = scene["animations"];
     if (const auto count = scene["deforming"].get<size_t>(); count > 0)
-        fmt::print("objects with a skin or morph targets, {}\n", count);
+        command::printResult("objects with a skin or morph targets, {}\n", count);
     if (animations.empty()) return;
-    fmt::print("animations, {}\n", animations.size());
+    command::printResult("animations, {}\n", animations.size());
     for (size_t i = 0; i < animations.size() && i < shown; ++i)
-        fmt::print("  {:20} {:.4g} s, {} channels\n", animations[i]["name"].get<std::string>(),
-                   animations[i]["duration_s"].get<double>(), animations[i]["channels"].get<size_t>());
-    if (animations.size() > shown) fmt::print("  and {} more, which --json names\n", animations.size() - shown);
+        command::printResult("  {:20} {:.4g} s, {} channels\n", animations[i]["name"].get<std::string>(),
+                             animations[i]["duration_s"].get<double>(), animations[i]["channels"].get<size_t>());
+    if (animations.size() > shown)
+        command::printResult("  and {} more, which --json names\n", animations.size() - shown);
 }
 
 void printScene(const Json& scene) {
-    fmt::print("{}: {}\n", scene["file"].get<std::string>(), scene["axes"].get<std::string>());
+    command::printResult("{}: {}\n", scene["file"].get<std::string>(), scene["axes"].get<std::string>());
     printExtent(scene["bounds"]);
-    fmt::print("triangles: {}\nmaterials, {}\n", scene["triangles"].get<size_t>(), scene["materials"].size());
+    command::printResult("triangles: {}\nmaterials, {}\n", scene["triangles"].get<size_t>(), scene["materials"].size());
     for (const Json& material : scene["materials"]) printMaterial(material);
     printObjects(scene["objects"]);
     printAnimations(scene);
-    for (const Json& line : scene["not_understood"]) fmt::print("omitted or repaired: {}\n", line.get<std::string>());
-    for (const Json& line : scene["warnings"]) fmt::print("warning: {}\n", line.get<std::string>());
+    for (const Json& line : scene["not_understood"])
+        command::printResult("omitted or repaired: {}\n", line.get<std::string>());
+    for (const Json& line : scene["warnings"]) command::printResult("warning: {}\n", line.get<std::string>());
 }
 
 }  // namespace
@@ -337,7 +342,7 @@ void addSceneCommand(CLI::App& app, Action& action) {
     command->callback([options, command, &action] {
         if (!command->get_subcommands().empty()) return;
         if (options->file.empty()) throw CLI::RequiredError("FILE");
-        action = [options] { return showScene(options->file, options->json); };
+        action = [options] { return showScene(exampleAt(options->file), options->json); };
     });
 }
 

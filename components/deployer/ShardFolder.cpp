@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "components/command/Console.hpp"
 #include "components/command/Sha256.hpp"
 #include "types/ConfigError.hpp"
 
@@ -128,8 +129,7 @@ std::optional<Json> ShardFolder::done() const {
     const auto manifest = manifestIn(path_);
     const std::string damage = manifest ? damageOf(path_, *manifest) : "its manifest.json is missing or broken";
     if (damage.empty()) return manifest;
-    fmt::print(stderr, "notice: {}: {}; the shard is made again\n", path_.string(), damage);
-    fs::remove_all(path_);
+    command::printDiagnostic("notice: {}: {}; the shard is made again\n", path_.string(), damage);
     return std::nullopt;
 }
 
@@ -163,13 +163,17 @@ Json ShardFolder::finish(const Json& more) {
     command::write(manifest, part_ / manifest_name);
     const Lock together(shared_, true);
     refuseOthers();  // shards that were finished meanwhile
+    if (fs::exists(path_)) {
+        const auto first = manifestIn(path_);
+        if (first && damageOf(path_, *first).empty()) return *first;
+        fs::remove_all(path_);  // damaged, and made again
+    }
     std::error_code failed;
     fs::rename(part_, path_, failed);
     if (!failed) {
         part_.clear();
         return manifest;
     }
-    if (const auto first = manifestIn(path_)) return *first;
     throw std::runtime_error(fmt::format("{}: cannot become {}: {}", part_.string(), path_.string(), failed.message()));
 }
 

@@ -25,7 +25,7 @@ public:
 
     const std::filesystem::path& path() const { return path_; }  ///< Exists once the shard is done.
     /** Returns the manifest of a finished shard. None: the shard is not done, or differs from its manifest; then it is
-     *  reported on stderr and removed. Reads all files. */
+     *  reported on stderr, and finish() replaces it. Reads all files. */
     std::optional<command::Json> done() const;
     /** Returns an empty folder to write to; it is removed unless finish() is called. */
     const std::filesystem::path& begin();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "components/command/Console.hpp"
 #include "components/command/Sha256.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/ShardFolder.hpp"
@@ -89,9 +90,9 @@ void removeIndices(const std::filesystem::path& folder) {
 
 void report(const RunOptions& options, const Json& manifest, const std::filesystem::path& folder, const char* how) {
     if (options.quiet) return;
-    fmt::print("shard {}: {} pings from {} on, of {}; {} files {} {}\n", options.shard->text(),
-               manifest["pings"].dump(), manifest["first_ping"].dump(), manifest["pings_of_run"].dump(),
-               manifest["files"].size(), how, folder.string());
+    command::printResult("shard {}: {} pings from {} on, of {}; {} files {} {}\n", options.shard->text(),
+                         manifest["pings"].dump(), manifest["first_ping"].dump(), manifest["pings_of_run"].dump(),
+                         manifest["files"].size(), how, folder.string());
 }
 
 }  // namespace

@@ -18,7 +18,6 @@ const std::atomic<bool>& stopOnSignals() {
     action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
-    std::signal(SIGXFSZ, SIG_IGN);
     return stop;
 }
 

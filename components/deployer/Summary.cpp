@@ -115,19 +115,30 @@ Json Summary::json() const {
 std::string Summary::text() const {
     std::string text = fmt::format("{} pings in {:.2f} s: {:.1f} per second\n", pings, wall_s,
                                    wall_s > 0 ? static_cast<double>(pings) / wall_s : 0.0);
-    text += fmt::format("  {:20} {:14} {:>8} {:>10} {:>10} {:>10}\n", "task", "state", "cycles", "median ms", "p99 ms",
-                        "max ms");
+    for (const Task& task : tasks) {
+        if (plans.contains(task.name) && task.update.cycles > 0)
+            text += fmt::format("{}: {:.1f} ms per ping, the median; {:.1f} ms at most\n", task.name,
+                                task.update.median_ms, task.update.max_ms);
+        if (task.state == "Exception") text += task.name + ": Exception\n";
+        if (task.overruns + task.late + task.errors + task.hangs > 0)
+            text += fmt::format("{}: {} overruns, {} cycles late, {} errors, {} hangs\n", task.name, task.overruns,
+                                task.late, task.errors, task.hangs);
+    }
+    if (const std::string lost = countsText(losses); !lost.empty()) text += "lost samples\n" + lost;
+    return text;
+}
+
+std::string Summary::details() const {
+    std::string text = fmt::format("  {:20} {:14} {:>8} {:>10} {:>10} {:>10}\n", "task", "state", "cycles", "median ms",
+                                   "p99 ms", "max ms");
     for (const Task& task : tasks) {
         text += timesLine(task.name, task.state, task.update);
         for (const auto& [name, times] : task.stages) text += timesLine("  " + name, "", times);
     }
     if (realtime) text += realtimeText();
     for (const auto& [task, plan] : plans) text += fmt::format("{}: {}\n", task, qualityText(plan));
-    const std::string lost = countsText(losses), skipped = countsText(passed_over);
-    const bool has_failed = std::ranges::any_of(tasks, [](const Task& task) { return task.state == "Exception"; });
-    if (!lost.empty()) text += "lost samples\n" + lost;
-    if (lost.empty() && !has_failed) text += "lost samples: none\n";  // a failed task may have lost some inside of it
-    if (!skipped.empty()) text += "skipped for newer samples\n" + skipped;
+    if (const std::string skipped = countsText(passed_over); !skipped.empty())
+        text += "skipped for newer samples\n" + skipped;
     return text + omittedText(omitted);
 }
 

@@ -34,7 +34,10 @@ struct Summary {
 
     Summary(const framework::Deployment& deployment, const framework::RunResult& result);
     Json json() const;
+    /** Returns pings, time per ping, and what went wrong. */
     std::string text() const;
+    /** Returns the times of all tasks and stages, the quality, and what is omitted. */
+    std::string details() const;
 
 private:
     std::string realtimeText() const;

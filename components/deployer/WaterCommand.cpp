@@ -7,6 +7,7 @@
 
 #include "components/acoustics/Absorption.hpp"
 #include "components/acoustics/SoundSpeed.hpp"
+#include "components/command/Console.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
 
@@ -68,21 +69,21 @@ Json waterReport(const WaterOptions& options) {
 }
 
 void printWater(const Json& report) {
-    fmt::print("speed of sound [m/s]\n");
+    command::printResult("speed of sound [m/s]\n");
     for (const auto& [law, speed] : report["sound_speed_m_s"].items())
-        fmt::print("  {:18} {:.3f}\n", law, speed.get<double>());
+        command::printResult("  {:18} {:.3f}\n", law, speed.get<double>());
     if (!report["frequency_khz"].empty()) {
-        fmt::print("absorption, one way [dB/m]\n  {:18}", "");
+        command::printResult("absorption, one way [dB/m]\n  {:18}", "");
         for (const Json& frequency : report["frequency_khz"])
-            fmt::print(" {:>11}", fmt::format("{:g} kHz", frequency.get<double>()));
-        fmt::print("\n");
+            command::printResult(" {:>11}", fmt::format("{:g} kHz", frequency.get<double>()));
+        command::printResult("\n");
         for (const auto& [law, values] : report["absorption_db_per_m"].items()) {
-            fmt::print("  {:18}", law);
-            for (const Json& value : values) fmt::print(" {:>11.5g}", value.get<double>());
-            fmt::print("\n");
+            command::printResult("  {:18}", law);
+            for (const Json& value : values) command::printResult(" {:>11.5g}", value.get<double>());
+            command::printResult("\n");
         }
     }
-    for (const Json& line : report["warnings"]) fmt::print("warning: {}\n", line.get<std::string>());
+    for (const Json& line : report["warnings"]) command::printResult("warning: {}\n", line.get<std::string>());
 }
 
 int showWater(const WaterOptions& options) {

@@ -11,9 +11,9 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <iostream>
 #include <stdexcept>
 
+#include "components/command/Console.hpp"
 #include "components/command/Sha256.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "types/ConfigError.hpp"
@@ -96,8 +96,7 @@ Outcome runWith(const std::string& python, const std::vector<std::string>& optio
     std::vector<std::string> words = {python, "-m", package_name};
     words.insert(words.end(), options.begin(), options.end());
     std::vector<std::string> environment = environmentWith(folder);
-    std::cout.flush();
-    std::fflush(stdout);
+    command::flushResults();
     pid_t process = -1;
     const int error = posix_spawnp(&process, python.c_str(), &actions, nullptr, pointersTo(words).data(),
                                    pointersTo(environment).data());
@@ -144,7 +143,7 @@ void generate(const std::vector<std::string>& options) {
         if (outcome.code != 0)
             throw std::runtime_error(
                 fmt::format("{} ended with {}: {}", python, outcome.code, withoutLineEnd(outcome.errors)));
-        std::cerr << outcome.errors;
+        command::addDiagnostic(outcome.errors);
         return;
     }
     throw types::ConfigError("", "scene make",

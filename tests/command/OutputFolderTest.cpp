@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <set>
+#include <vector>
+
 #include "components/command/OutputFolder.hpp"
 #include "tests/support/Folder.hpp"
 #include "types/ConfigError.hpp"
@@ -18,6 +22,56 @@ TEST(OutputFolderTest, RemovesAFolderMadeForARunUnlessKept) {
     EXPECT_TRUE(std::filesystem::is_directory(folder / "kept"));
     { const OutputFolder found(folder / "kept", "x.yml"); }
     EXPECT_TRUE(std::filesystem::is_directory(folder / "kept")) << "it was there before";
+}
+
+TEST(OutputFolderTest, KeepsTheFilesOfAnotherRunInTheFolderThatItHasMade) {
+    const Folder folder;
+    const std::filesystem::path shared = folder / "dive7";
+    auto first = std::make_unique<OutputFolder>(shared, "auv1.yml");
+    {
+        OutputFolder second(shared, "auv2.yml");
+        second.keep();
+        writeBytes(shared / "auv2.0.log", {'a'});
+    }
+    first.reset();  // its start has failed
+    EXPECT_EQ(bytesOf(shared / "auv2.0.log"), std::vector<char>{'a'});
+}
+
+TEST(OutputFolderTest, KeepsAnEmptyFolderThatAnotherRunIsStartingIn) {
+    const Folder folder;
+    const std::filesystem::path shared = folder / "dive7";
+    auto first = std::make_unique<OutputFolder>(shared, "auv1.yml");
+    const OutputFolder second(shared, "auv2.yml");
+    first.reset();
+    EXPECT_TRUE(std::filesystem::is_directory(shared));
+}
+
+TEST(OutputFolderTest, RemovesEmptyFoldersThatTasksHaveMadeInIt) {
+    const Folder folder;
+    {
+        const OutputFolder made(folder / "gone/", "x.yml");
+        std::filesystem::create_directories(folder / "gone/pictures/fan");
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "gone"));
+    {
+        const OutputFolder made(folder / "kept", "x.yml");
+        std::filesystem::create_directories(folder / "kept/pictures");
+        writeBytes(folder / "kept/pictures/fan.png", {});
+    }
+    EXPECT_TRUE(std::filesystem::exists(folder / "kept/pictures/fan.png"));
+}
+
+TEST(OutputFolderTest, RunsThatStartInOneSecondGetFoldersOfTheirOwn) {
+    const Folder folder;
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(folder.path());
+    std::vector<std::unique_ptr<OutputFolder>> runs;
+    std::set<std::filesystem::path> names;
+    for (int i = 0; i < 20; ++i) names.insert(runs.emplace_back(std::make_unique<OutputFolder>("", "x.yml"))->path());
+    EXPECT_EQ(names.size(), runs.size());
+    runs.clear();
+    EXPECT_TRUE(std::filesystem::is_empty("out"));
+    std::filesystem::current_path(before);
 }
 
 TEST(OutputFolderTest, ReportsFilesOfAnEarlierRun) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <map>
 
 #include "tests/deployer/Wall.hpp"
 
@@ -13,6 +14,35 @@ TEST(CheckCommandTest, AValidDeploymentIsPrintedAsAGraph) {
                 prints(AllOf(HasSubstr("wall.yml: valid, lockstep, 5 tasks, 6 connections\n"),
                              HasSubstr("vehicle (pose::TrajectoryTask, every 0.1 s)\n"),
                              HasSubstr("  noisy -> log.noisy  /base/samples/Sonar, buffer 64\n"))));
+}
+
+TEST(CheckCommandTest, RefusesCodesOfTasksThatSendNone) {
+    const std::string receiver = "  receiver: {type: receiver::ReceiverTask, properties: {}}\n",
+                      xtf = "  xtf: {type: output::XtfTask, properties: {}}\n",
+                      fan = "  fan: {type: output::FanImageTask, properties: {file: fan_%06d.png, scale: code}}\n";
+    const std::string placed = "  - {from: sonar.pose, to: xtf.pose}\n";
+    const auto deployment = [&](const std::string& from, const std::string& output) {
+        return replaced(wall_deployment, "  log:\n", replaced(receiver, "{}", output) + xtf + fan + "  log:\n") +
+               "  - {from: noise.noisy, to: receiver.intensity}\n" + placed + "  - {from: " + from +
+               ", to: xtf.ping}\n" + "  - {from: " + from + ", to: fan.ping}\n";
+    };
+    const std::map<std::string, std::string> refused = {
+        {deployment("sonar.ping", "{output: code}"), "sonar sends intensities"},
+        {deployment("noise.noisy", "{output: code}"), "sonar sends intensities"},
+        {deployment("receiver.ping", "{output: level_db}"), "the output of receiver is level_db"},
+        {deployment("receiver.ping", "{}"), "the output of receiver is intensity"}};
+    for (const auto& [text, why] : refused) {
+        const WallFolder folder(text);
+        const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
+        EXPECT_THAT(outcome, isRefused(AllOf(HasSubstr("tasks.xtf.properties.samples: is uint16, which takes whole "
+                                                       "numbers from 0 to 65535, but " +
+                                                       why),
+                                             HasSubstr("tasks.fan.properties.scale: is code, but " + why))));
+        EXPECT_EQ(folder.run().code, 2);
+        EXPECT_FALSE(fs::exists(folder / "out"));
+    }
+    const WallFolder coded(deployment("receiver.ping", "{output: code, code: {bits: 16}}"));
+    EXPECT_THAT(callInsonify(coded, {"check", "wall.yml"}), succeeds());
 }
 
 TEST(CheckCommandTest, JsonHasTasksAndConnections) {

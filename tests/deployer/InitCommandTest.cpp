@@ -96,6 +96,32 @@ TEST_P(InitPresetTest, IsValidRunsAtOnceAndReceivesEchoes) {
     EXPECT_THAT(callInsonify(folder, {"check", GetParam()}), prints(testing::Not(HasSubstr("warning"))));
 }
 
+TEST_P(InitPresetTest, PrintsNoWarningBeforeAnybodyHasChangedIt) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
+    for (const char* command : {"run", "check", "plan"}) {
+        std::vector<std::string> words{command, "."};
+        if (words[0] == "run") words.insert(words.end(), {"--pings", "1", "--out", "out"});
+        const Outcome outcome = callInsonify(folder, words);
+        EXPECT_EQ(outcome.code, 0);
+        EXPECT_THAT(outcome.err + outcome.out, testing::Not(HasSubstr("arning"))) << command;
+        if (words[0] != "plan") continue;
+        EXPECT_THAT(outcome.out, HasSubstr("omitted: measured levels of seabeds: no law was measured at"));
+        EXPECT_THAT(outcome.out, HasSubstr("levels of the floor are then a guess"));
+    }
+}
+
+TEST(InitCommandTest, AFrequencyThatNoImagingSonarHasIsAWarning) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", "."}).code, 0);
+    for (const char* khz : {"5", "75000"})  // 75000: in Hz by mistake
+        EXPECT_THAT(callInsonify(folder, {"run", ".", "--pings", "1", "--out", "out", "--set",
+                                          std::string("sonar.frequency_khz=") + khz})
+                        .err,
+                    HasSubstr("warning: sonar: backscatter of seabeds is extrapolated outside its law's validity"))
+            << khz;
+}
+
 TEST_P(InitPresetTest, MakesAPictureOfTheScene) {
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);

@@ -91,12 +91,18 @@ TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
     EXPECT_THAT(
         cut({log, "--stream", "sonar.ping"}).err,
         HasSubstr("notice: sonar.ping of out/wall.0.log begins before it ends in out/wall.0.log; the copy has "));
+    const std::string before = readFile(folder / "cut.0.log");
     const Outcome nothing = cut({"--from", "7"});
     EXPECT_EQ(nothing.code, 2);
     EXPECT_THAT(nothing.err, HasSubstr("out/wall.0.log: none of its samples is in the requested part; they are from "
                                        "1.000000 s to 1.200000 s"));
     EXPECT_EQ(nothing.out, "");
-    EXPECT_FALSE(fs::exists(folder / "cut.0.log"));
+    EXPECT_TRUE(readFile(folder / "cut.0.log") == before) << "the cut before stays";
+    EXPECT_TRUE(fs::exists(folder / "cut.0.idx"));
+    for (const char* fresh : {"none.0.log", "none.mcap"}) {
+        EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", fresh, "--from", "7"}).code, 2);
+        EXPECT_FALSE(fs::exists(folder / fresh)) << fresh;
+    }
     EXPECT_THAT(cut({"--samples", "2:1"}).err, HasSubstr("--samples: is 2:1; FIRST must be less than LAST"));
     EXPECT_THAT(cut({"--from", "0.1", "--until", "0.05"}).err, HasSubstr("--until: is 0.05; must be after --from"));
     EXPECT_THAT(callInsonify(folder, {"log", "cut", log, "--to", "cut.txt"}).err,

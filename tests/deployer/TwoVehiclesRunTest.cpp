@@ -62,12 +62,12 @@ TEST(TwoVehiclesRunTest, ReportsPosesReplacedByNewerPosesAndLosses) {
                                  "blue: {type: pose::TrajectoryTask, activity: {period: 0.05}");
     often = replaced(often, "to: red_scene.blue.pose}", "to: red_scene.blue.pose, policy: {type: buffer, size: 8}}");
     writeFile(folder / "two.yml", often);
-    const Outcome run =
-        callInsonify(folder, {"run", "two.yml", "--pings", "3", "--out", "out", "--summary", "summary.json"});
+    const Outcome run = callInsonify(
+        folder, {"run", "two.yml", "--pings", "3", "--out", "out", "--summary", "summary.json", "--verbose"});
     ASSERT_EQ(run.code, 0) << run.err;
     // Two poses of blue arrive between two of red, each of which uses the newer one.
     EXPECT_THAT(run.out, testing::HasSubstr("skipped for newer samples\n       2  blue.pose>red_scene.blue.pose\n"));
-    EXPECT_THAT(run.out, testing::HasSubstr("lost samples: none\n"));
+    EXPECT_THAT(run.out, testing::Not(testing::HasSubstr("lost samples")));
     EXPECT_THAT(run.out, testing::ContainsRegex("\n  not configured: [a-z_]+, [a-z_]+"));
     EXPECT_THAT(run.out, testing::Not(testing::HasSubstr(": not configured")));
     const json summary = json::parse(readFile(folder / "summary.json"));

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
 #include "components/dataset/Collection.hpp"
@@ -65,20 +66,22 @@ int makeDataset(const DatasetOptions& options) {
     Store store(folder.path(), run.digest());
     const Made done = makeMissing(run, store, options);
     if (!options.quiet)
-        fmt::print("{} of {} samples in {}, {} of them new{}\n", done.made + done.found, run.samples().count(),
-                   folder.path().string(), done.made, done.stopped ? "; the same command makes the others" : "");
+        command::printResult("{} of {} samples in {}, {} of them new{}\n", done.made + done.found,
+                             run.samples().count(), folder.path().string(), done.made,
+                             done.stopped ? "; the same command makes the others" : "");
     if (done.stopped) return 1;
     const Title title{fs::path(run.deployment()).filename(), fs::path(options.sweep).filename(), INSONIFY_VERSION,
                       run.format(), run.sweep().trajectory.has_value() && !run.sweep().lines};
     Collection collection(title, run.samples().count(), run.classes(), store);
     if (!collection.isWhole(false)) {
-        if (!options.quiet) fmt::print("others are missing; the run that makes the last one writes manifest.json\n");
+        if (!options.quiet)
+            command::printResult("others are missing; the run that makes the last one writes manifest.json\n");
         return 0;
     }
     if (!collection.isWhole(true))
         throw std::runtime_error("a sample of another shard is damaged; run that shard again");
     collection.write();
-    if (!options.quiet) fmt::print("all are there: manifest.json, statistics.html\n");
+    if (!options.quiet) command::printResult("all are there: manifest.json, statistics.html\n");
     return 0;
 }
 

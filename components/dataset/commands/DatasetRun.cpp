@@ -137,7 +137,7 @@ const std::string& onlyOf(const std::vector<std::string>& names, const std::stri
 DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, Format format, Changes changes)
     : deployment_(deployer::deploymentIn(deployment)),
       changes_(std::move(changes)),
-      sweep_(withMadeScenes(seeded(readSweep(sweep), changes_.seed))),
+      sweep_(withMadeScenes(seeded(readSweep(deployer::exampleAt(sweep)), changes_.seed))),
       format_(format),
       spec_(loaded()) {
     framework::Registry registry = deployer::coreTasks();

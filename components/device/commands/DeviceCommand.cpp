@@ -9,6 +9,7 @@
 #include <memory>
 #include <tuple>
 
+#include "components/command/Console.hpp"
 #include "components/command/Json.hpp"
 #include "components/device/DeviceTask.hpp"
 #include "components/device/Probe.hpp"
@@ -48,9 +49,10 @@ int listDevices(bool json) {
         return 0;
     }
     for (const Json& device : devices)
-        fmt::print("{:22} {}\n{:22} {}\n", device["type"].get<std::string>(), device["doc"].get<std::string>(), "",
-                   textOf(device["ports"]));
-    fmt::print("\nproperties: insonify describe TYPE; how to start and connect each: components/device/README.md\n");
+        command::printResult("{:22} {}\n{:22} {}\n", device["type"].get<std::string>(),
+                             device["doc"].get<std::string>(), "", textOf(device["ports"]));
+    command::printResult(
+        "\nproperties: insonify describe TYPE; how to start and connect each: components/device/README.md\n");
     return 0;
 }
 
@@ -64,7 +66,7 @@ Json jsonOf(const ProbeOutcome& outcome) {
 
 void printDevices(const std::vector<ProbeOutcome>& outcomes) {
     for (const ProbeOutcome& outcome : outcomes)
-        if (!outcome.device.empty()) fmt::print("{}: {}\n", outcome.asked, outcome.device);
+        if (!outcome.device.empty()) command::printResult("{}: {}\n", outcome.asked, outcome.device);
 }
 
 /** Groups lines that failed for the same reason before the reason and its remedy. */
@@ -76,8 +78,8 @@ void printFailures(std::vector<ProbeOutcome> outcomes) {
             return reason(outcome) == reason(first);
         });
         for (auto outcome = outcomes.begin(); outcome != others; ++outcome)
-            fmt::print("{}: {}\n", outcome->asked, outcome->protocol);
-        fmt::print("  {}: {}\n", first.failure, first.advice);
+            command::printResult("{}: {}\n", outcome->asked, outcome->protocol);
+        command::printResult("  {}: {}\n", first.failure, first.advice);
         outcomes.erase(outcomes.begin(), others);
     }
 }
@@ -96,7 +98,7 @@ int probeDevice(const std::string& address, double timeout, bool json) {
     } else {
         printFailures(outcomes);
     }
-    if (!any) fmt::print(stderr, "insonify: nothing answers at {}\n", address);
+    if (!any) command::printDiagnostic("insonify: nothing answers at {}\n", address);
     return any ? answered : silent;
 }
 

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <memory>
 #include <thread>
 
+#include "components/command/Console.hpp"
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
@@ -14,6 +14,7 @@
 #include "components/study/ErrorEffects.hpp"
 #include "components/study/ErrorReport.hpp"
 #include "components/study/commands/StudyCommand.hpp"
+#include "types/Ascii.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {
@@ -61,7 +62,7 @@ std::vector<std::string> sceneNames() {
 std::string nameOf(const std::string& file) {
     std::string name = std::filesystem::path(file).stem().string();
     for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+        if (!types::isLetter(c) && !types::isDigit(c) && c != '-' && c != '.') c = '_';
     return std::ranges::count(sceneNames(), name) == 0 ? name : "deployment_" + name;
 }
 
@@ -174,11 +175,13 @@ int runStudy(Options options, const FindSonar& sonarAt) {
     for (const Claim& claim : claims(result)) {
         all = all && !claim.fails();
         open = open || (!claim.fails() && !claim.holds());
-        fmt::print("{}  {}: {:.4g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
-                   claim.at_most ? "at most" : "at least", claim.bound);
+        command::printResult("{}  {}: {:.4g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
+                             claim.at_most ? "at most" : "at least", claim.bound);
     }
-    if (open) fmt::print("open: --levels or --reference-rays are too few to decide; nothing is wrong with the scene\n");
-    fmt::print("{} points; report in {}\n", result.measurements.size(), sheet.string());
+    if (open)
+        command::printResult(
+            "open: --levels or --reference-rays are too few to decide; nothing is wrong with the scene\n");
+    command::printResult("{} points; report in {}\n", result.measurements.size(), sheet.string());
     return all ? 0 : 1;
 }
 

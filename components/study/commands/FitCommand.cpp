@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/command/ProgressLine.hpp"
 #include "components/study/FitReport.hpp"
 #include "components/study/RecordingFit.hpp"
@@ -40,8 +41,8 @@ void refuseFiles(const FitOptions& options) {
 }
 
 void printFindings(const RecordingFit& fit) {
-    for (const Finding& finding : fit.findings) fmt::print("{:<20} {}\n", finding.name, finding.text());
-    fmt::print("{:<20} {:.1f} dB rms\n", "levels unexplained", fit.levels.rms_db);
+    for (const Finding& finding : fit.findings) command::printResult("{:<20} {}\n", finding.name, finding.text());
+    command::printResult("{:<20} {:.1f} dB rms\n", "levels unexplained", fit.levels.rms_db);
 }
 
 int runFit(const FitOptions& options, const FindChain& chainAt, const WriteDeployment& write, const ReadLog& readLog) {
@@ -64,7 +65,7 @@ int runFit(const FitOptions& options, const FindChain& chainAt, const WriteDeplo
         throw types::ConfigError(options.out, "--out", "cannot be written");
     const fs::path page = writePage(fit, recorded, options.out);
     printFindings(fit);
-    fmt::print("deployment in {}, page in {}\n", options.out, page.string());
+    command::printResult("deployment in {}, page in {}\n", options.out, page.string());
     return 0;
 }
 

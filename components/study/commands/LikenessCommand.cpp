@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/study/CodedPing.hpp"
@@ -34,14 +35,14 @@ Json toJson(const LikenessResult& result) {
 }
 
 void printTable(const LikenessResult& result) {
-    fmt::print("{:<18}", "");
-    for (const LikenessRow& row : result.rows) fmt::print(" {:>15}", row.name);
+    command::printResult("{:<18}", "");
+    for (const LikenessRow& row : result.rows) command::printResult(" {:>15}", row.name);
     const auto first = figuresOf(result.rows.front());
     for (size_t i = 0; i < first.size(); ++i) {
-        fmt::print("\n{:<18}", first[i].name);
-        for (const LikenessRow& row : result.rows) fmt::print(" {:>15.4g}", figuresOf(row)[i].value);
+        command::printResult("\n{:<18}", first[i].name);
+        for (const LikenessRow& row : result.rows) command::printResult(" {:>15.4g}", figuresOf(row)[i].value);
     }
-    fmt::print("\n");
+    command::printResult("\n");
 }
 
 /** Prints the claims; returns whether none fails. */
@@ -52,10 +53,11 @@ bool printClaims(const LikenessResult& result) {
                              uniform = claims(result.row("uniform")->apart, result.recorded),
                              cosine = claims(result.row("cosine")->apart, result.recorded);
     for (size_t i = 0; i < all.size(); ++i)
-        fmt::print("{}  {}: {:.3g}, at most {:.3g} (a uniform picture {:.3g}, a cosine {:.3g})\n", all[i].verdict(),
-                   all[i].text, all[i].measured, all[i].bound, uniform[i].measured, cosine[i].measured);
+        command::printResult("{}  {}: {:.3g}, at most {:.3g} (a uniform picture {:.3g}, a cosine {:.3g})\n",
+                             all[i].verdict(), all[i].text, all[i].measured, all[i].bound, uniform[i].measured,
+                             cosine[i].measured);
     if (std::ranges::any_of(all, [](const Claim& claim) { return !claim.holds() && !claim.fails(); }))
-        fmt::print("open: the recordings show no arc to compare with\n");
+        command::printResult("open: the recordings show no arc to compare with\n");
     return std::ranges::none_of(all, &Claim::fails);
 }
 
@@ -125,7 +127,7 @@ int runStudy(const LikenessOptions& options, const FindPings& pingsAt, const Fin
     command::write(toJson(result), (folder.path() / "likeness.json").string());
     printTable(result);
     const bool all_hold = printClaims(result);
-    fmt::print("report in {}\n", folder.path().string());
+    command::printResult("report in {}\n", folder.path().string());
     return all_hold ? 0 : 1;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "components/command/Console.hpp"
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/study/MultipathStudy.hpp"
@@ -45,8 +46,9 @@ int runStudy(const std::string& out) {
     write(folder.path() / "multipath.csv", csvOf(result));
     command::write(toJson(result), (folder.path() / "multipath.json").string());
     for (const Claim& claim : result.claims)
-        fmt::print("{}  {}: {:.3g}, at most {:.3g}\n", claim.verdict(), claim.text, claim.measured, claim.bound);
-    fmt::print("report in {}\n", folder.path().string());
+        command::printResult("{}  {}: {:.3g}, at most {:.3g}\n", claim.verdict(), claim.text, claim.measured,
+                             claim.bound);
+    command::printResult("report in {}\n", folder.path().string());
     return std::ranges::any_of(result.claims, &Claim::fails) ? 1 : 0;
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "components/command/Console.hpp"
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
@@ -79,7 +80,7 @@ int runStudy(const Options& options, const FindSonar& sonarAt) {
     Json json = Json::array();
     for (const OmissionRow& row : rows) json.push_back(toJson(row));
     command::write(json, (folder.path() / "omission.json").string());
-    fmt::print("{}", text);
+    command::printResult("{}", text);
     return std::ranges::all_of(rows, &OmissionRow::holds) ? 0 : 1;
 }
 

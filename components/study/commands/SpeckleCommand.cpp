@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/sonar/EchoRenderer.hpp"
@@ -36,24 +37,24 @@ Json toJson(const std::vector<SpeckleRow>& rows, const std::vector<Claim>& claim
 }
 
 void printTable(const std::vector<SpeckleRow>& rows) {
-    fmt::print("{:<22}", "where it is loudest");
-    for (const SpeckleRow& row : rows) fmt::print(" {:>16}", row.name);
+    command::printResult("{:<22}", "where it is loudest");
+    for (const SpeckleRow& row : rows) command::printResult(" {:>16}", row.name);
     const auto names = figuresOf(SpeckleSlice{});
     for (size_t i = 0; i < names.size(); ++i) {
-        fmt::print("\n{:<22}", names[i].name);
+        command::printResult("\n{:<22}", names[i].name);
         for (const SpeckleRow& row : rows) {
             const SpeckleSlice* loud = row.loudestSlice();
-            fmt::print(" {:>16}", loud ? fmt::format("{:.4g}", figuresOf(*loud)[i].value) : "too few bins");
+            command::printResult(" {:>16}", loud ? fmt::format("{:.4g}", figuresOf(*loud)[i].value) : "too few bins");
         }
     }
-    fmt::print("\n");
+    command::printResult("\n");
 }
 
 /** Prints the claims; returns whether none fails. */
 bool printClaims(const std::vector<Claim>& claims) {
     for (const Claim& claim : claims)
-        fmt::print("{}  {}: {:.3g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
-                   claim.at_most ? "at most" : "at least", claim.bound);
+        command::printResult("{}  {}: {:.3g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
+                             claim.at_most ? "at most" : "at least", claim.bound);
     return std::ranges::none_of(claims, &Claim::fails);
 }
 
@@ -91,7 +92,7 @@ int runStudy(const RecordingOptions& options, const FindSonar& sonarAt, const Re
     command::write(toJson(rows, claims), (folder.path() / "speckle.json").string());
     printTable(rows);
     const bool all_hold = printClaims(claims);
-    fmt::print("report in {}\n", folder.path().string());
+    command::printResult("report in {}\n", folder.path().string());
     return all_hold ? 0 : 1;
 }
 

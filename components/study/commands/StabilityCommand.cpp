@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "components/command/Console.hpp"
 #include "components/command/ProgressLine.hpp"
 #include "components/study/StabilityStudy.hpp"
 #include "components/study/commands/StudyCommand.hpp"
@@ -22,11 +23,12 @@ void makeFolder(const std::filesystem::path& folder) {
 
 void printRow(const StabilityRow& row) {
     const Outcome& outcome = row.outcome;
-    fmt::print("{:>3}  {:<7}  {:>8}  {}\n", row.number, nameOf(outcome.verdict),
-               isEvaluated(outcome) ? fmt::format("{:.1e}", outcome.deviation) : "", row.name);
-    if (outcome.verdict == Verdict::Fail) fmt::print("     expected: {}\n     got: {}\n", row.expected, outcome.got);
-    if (outcome.verdict == Verdict::NotRun) fmt::print("     {}\n", outcome.got);
-    std::fflush(stdout);
+    command::printResult("{:>3}  {:<7}  {:>8}  {}\n", row.number, nameOf(outcome.verdict),
+                         isEvaluated(outcome) ? fmt::format("{:.1e}", outcome.deviation) : "", row.name);
+    if (outcome.verdict == Verdict::Fail)
+        command::printResult("     expected: {}\n     got: {}\n", row.expected, outcome.got);
+    if (outcome.verdict == Verdict::NotRun) command::printResult("     {}\n", outcome.got);
+    command::flushResults();
 }
 
 /** Returns the cases whose names contain `text`; all if it is empty. */
@@ -40,7 +42,7 @@ std::vector<StabilityCase> casesWith(const std::string& text) {
 int runStudy(const std::filesystem::path& folder, const std::string& only) {
     std::vector<StabilityCase> cases = casesWith(only);
     makeFolder(folder);
-    fmt::print("case  verdict    deviation\n");
+    command::printResult("case  verdict    deviation\n");
     command::StudyProgress progress(true, cases.size());
     const std::vector<StabilityRow> rows = studyStability(std::move(cases), [&](const StabilityRow& row) {
         progress.end();
@@ -50,7 +52,7 @@ int runStudy(const std::filesystem::path& folder, const std::string& only) {
     });
     progress.end();
     writeStability(rows, folder);
-    fmt::print("{}; {} and stability.json\n", tally(rows), (folder / "stability.md").string());
+    command::printResult("{}; {} and stability.json\n", tally(rows), (folder / "stability.md").string());
     const auto failed = [](const StabilityRow& row) { return row.outcome.verdict == Verdict::Fail; };
     return std::ranges::any_of(rows, failed) ? 1 : 0;
 }

@@ -1,0 +1,106 @@
+#include "components/deployer/RunFiles.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <vector>
+
+#include "components/framework/StreamNames.hpp"
+#include "types/Ascii.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::deployer {
+namespace fs = std::filesystem;
+namespace {
+
+using Files = std::vector<fs::path>;
+
+/** Returns the files of a folder that were written since `begin`, by name; without the indices of logs. */
+Files writtenIn(const fs::path& folder, fs::file_time_type begin) {
+    Files files;
+    std::error_code failed;
+    for (const auto& entry : fs::recursive_directory_iterator(folder, failed))
+        if (entry.is_regular_file(failed) && entry.path().extension() != ".idx" &&
+            entry.last_write_time(failed) >= begin)
+            files.push_back(entry.path().lexically_relative(folder));
+    std::ranges::sort(files);
+    return files;
+}
+
+/** Returns a name without the number at its end: fan_.png for fan_000012.png. */
+std::string kindOf(const fs::path& file) {
+    std::string stem = file.stem().string();
+    while (!stem.empty() && types::isDigit(stem.back())) stem.pop_back();
+    return (file.parent_path() / (stem + file.extension().string())).string();
+}
+
+bool hasExtension(const fs::path& file, std::initializer_list<const char*> extensions) {
+    return std::ranges::count(extensions, file.extension().string()) > 0;
+}
+
+/** Returns the last picture of the first series, or else a video: scanning sonars and waterfalls fill their pictures.
+ */
+fs::path firstPicture(const std::map<std::string, Files>& kinds) {
+    for (const auto& [kind, files] : kinds)
+        if (hasExtension(files.back(), {".png"})) return files.back();
+    for (const auto& [kind, files] : kinds)
+        if (hasExtension(files.back(), {".avi", ".mp4"})) return files.back();
+    return {};
+}
+
+/** Returns the last stream of pings that a logger records; empty: there is none. */
+std::string loggedPings(const framework::Deployment& deployment) {
+    std::string stream;
+    for (const framework::Connection& connection : deployment.connections()) {
+        const framework::TaskSpec* const reader = deployment.spec().task(connection.to->owner().name());
+        if (reader && reader->type == "logger::LoggerTask" &&
+            connection.from->typeName() == types::typeName<types::Sonar>())
+            stream = framework::streamNameOf(*connection.from).path();
+    }
+    return stream;
+}
+
+/** Returns the command that draws the pings of the run's log; empty: it has none. */
+std::string drawingCommand(const fs::path& folder, const Files& files, const framework::Deployment& deployment) {
+    const std::string pings = loggedPings(deployment);
+    const auto log = std::ranges::find_if(files, [](const fs::path& file) {
+        return hasExtension(file, {".log", ".mcap"}) && file.filename() != "properties.0.log";
+    });
+    if (pings.empty() || log == files.end()) return {};
+    return fmt::format("insonify log export {} --stream {} --to {}", (folder / *log).string(), pings,
+                       (folder / "ping.png").string());
+}
+
+}  // namespace
+
+fs::file_time_type runBegin() {
+    constexpr std::chrono::milliseconds step{20};  // of the clock by which the system stamps files
+    return fs::file_time_type::clock::now() - step;
+}
+
+std::string filesText(const fs::path& folder, fs::file_time_type begin, const framework::Deployment& deployment) {
+    constexpr size_t shown = 10;
+    const Files files = writtenIn(folder, begin);
+    std::map<std::string, Files> kinds;
+    for (const fs::path& file : files) kinds[kindOf(file)].push_back(file);
+    std::string text = fmt::format("files in {}{}\n", folder.string(), files.empty() ? ": none" : "");
+    size_t lines = 0;
+    for (const auto& [kind, of_kind] : kinds) {
+        if (lines++ == shown) {
+            text += "  and others\n";
+            break;
+        }
+        const std::string last = of_kind.size() > 1
+                                     ? fmt::format(" to {}, {} files", of_kind.back().string(), of_kind.size())
+                                     : std::string();
+        text += fmt::format("  {}{}\n", of_kind.front().string(), last);
+    }
+    if (const fs::path picture = firstPicture(kinds); !picture.empty())
+        return text + fmt::format("open first: {}\n", (folder / picture).string());
+    const std::string drawing = drawingCommand(folder, files, deployment);
+    return drawing.empty() ? text : text + "no pictures; this draws the pings: " + drawing + "\n";
+}
+
+}  // namespace insonify::deployer

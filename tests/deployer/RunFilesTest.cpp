@@ -1,0 +1,82 @@
+// What a run prints at its end.
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+/** The wall with a picture of every ping. */
+std::string pictured() {
+    const std::string text =
+        replaced(wall_deployment, "  log:\n",
+                 "  fan: {type: output::FanImageTask, properties: {file: pictures/fan_%06d.png}}\n  log:\n");
+    return text + "  - {from: noise.noisy, to: fan.ping, policy: {type: buffer, size: 64}}\n";
+}
+
+std::vector<std::string> linesOf(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+}  // namespace
+
+TEST(RunFilesTest, TheEndOfARunIsShortAndNamesThePictureToOpenFirst) {
+    const WallFolder folder(pictured());
+    const Outcome outcome = folder.run({"--pings", "3"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const std::vector<std::string> lines = linesOf(outcome.out);
+    ASSERT_EQ(lines.size(), 7u) << outcome.out;
+    EXPECT_THAT(lines[0], testing::MatchesRegex("3 pings in .* s: .* per second"));
+    EXPECT_THAT(lines[1], testing::MatchesRegex("sonar: .* ms per ping, the median; .* ms at most"));
+    EXPECT_EQ(lines[2], "files in out");
+    EXPECT_EQ(lines[3], "  pictures/fan_000000.png to pictures/fan_000002.png, 3 files");
+    EXPECT_EQ(lines[4], "  properties.0.log");
+    EXPECT_EQ(lines[5], "  wall.0.log");
+    EXPECT_EQ(lines[6], "open first: out/pictures/fan_000002.png");
+    EXPECT_TRUE(fs::exists(folder / "out/pictures/fan_000002.png"));
+}
+
+TEST(RunFilesTest, StagesQualityAndOmissionsAreVerbose) {
+    const WallFolder folder(pictured());
+    const Outcome brief = folder.run({"--pings", "2"}), verbose = folder.run({"--pings", "2", "--verbose"});
+    for (const char* detail :
+         {"median ms", "deposit", "cull", "sonar: quality: 32 rows", "not configured: ", "omitted"}) {
+        EXPECT_THAT(brief.out, Not(HasSubstr(detail)));
+        EXPECT_THAT(verbose.out, HasSubstr(detail));
+    }
+    EXPECT_THAT(verbose.out, EndsWith("open first: out/pictures/fan_000001.png\n"));
+    EXPECT_THAT(folder.run({"--quiet", "--verbose"}), isRefused(HasSubstr("--verbose")));
+}
+
+TEST(RunFilesTest, FilesOfAnEarlierRunAreNotThoseOfThisOne) {
+    const WallFolder folder(pictured());
+    ASSERT_EQ(folder.run({"--pings", "4"}).code, 0);
+    fs::last_write_time(folder / "out/pictures/fan_000003.png",
+                        fs::file_time_type::clock::now() - std::chrono::seconds(5));
+    writeFile(folder / "out/notes.txt", "mine");
+    fs::last_write_time(folder / "out/notes.txt", fs::file_time_type::clock::now() - std::chrono::seconds(5));
+    EXPECT_THAT(folder.run({"--pings", "2"}).out,
+                AllOf(HasSubstr("fan_000000.png to pictures/fan_000001.png, 2 files"), Not(HasSubstr("notes.txt")),
+                      EndsWith("open first: out/pictures/fan_000001.png\n")));
+}
+
+TEST(RunFilesTest, WithoutAPictureTheLastLineIsACommandThatDrawsTheLog) {
+    const WallFolder folder;
+    const std::string out = folder.run({"--pings", "2"}).out, begin = "no pictures; this draws the pings: insonify ";
+    const size_t at = out.find(begin);
+    ASSERT_NE(at, out.npos) << out;
+    const Outcome drawn =
+        Process({"bash", "-c", insonify::test::program("insonify") + " " + out.substr(at + begin.size())},
+                folder.path())
+            .wait();
+    EXPECT_EQ(drawn.code, 0) << drawn.err;
+    EXPECT_THAT(drawn.out, HasSubstr(".png"));
+}
