@@ -50,7 +50,7 @@ fs::path firstPicture(const std::map<std::string, Files>& kinds) {
     return {};
 }
 
-/** Returns the last stream of pings that goes to a logger; empty: there is none. */
+/** Returns the last stream of pings that a logger records; empty: there is none. */
 std::string loggedPings(const framework::Deployment& deployment) {
     std::string stream;
     for (const framework::Connection& connection : deployment.connections()) {

@@ -29,8 +29,8 @@ types::ReturnRules upstreamReturnRules(const InputPortBase& port);
 /** As upstreamValue, for the property `mount`: the pose on its body of the sensor that made the samples. */
 std::optional<types::Mount> upstreamMount(const InputPortBase& port);
 
-/** Returns why the pings of a port are no codes, by the properties of the tasks that they come from: no receiver makes
- *  them, or one with another output. Empty: they are codes, or nothing is known, as in a replay. */
+/** Returns why the samples of a port are no codes, by the properties of the tasks upstream: none codes them, or one has
+ *  another output. Empty: they are codes, or nothing is known. */
 std::string whyNoCodes(const InputPortBase& port);
 
 /** The output ports of poses that a port's samples depend on, nearest first. */

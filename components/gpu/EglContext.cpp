@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
@@ -15,7 +16,6 @@
 #include <vector>
 
 #include "components/gpu/Program.hpp"
-#include "types/Ascii.hpp"
 
 namespace insonify::gpu {
 namespace {
@@ -178,7 +178,8 @@ void GLAPIENTRY remember(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLc
 bool isSoftwareRenderer(std::string_view renderer) {
     constexpr std::string_view words[] = {"llvmpipe", "lavapipe",    "softpipe",    "software",
                                           "swrast",   "swiftshader", "basic render"};
-    const std::string name = types::lowered(std::string(renderer));
+    std::string name(renderer);
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return std::ranges::any_of(words, [&](std::string_view word) { return name.find(word) != std::string::npos; });
 }
 

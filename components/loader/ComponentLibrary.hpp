@@ -54,7 +54,7 @@ const ComponentLibrary& load(const std::string& name);
 /** Loads a user's library. Throws types::ConfigError as load() does. */
 const ComponentLibrary& loadFile(const std::filesystem::path& file);
 
-/** Where this program comes from, which decides what installs a missing part. */
+/** The installation of this program, which decides what installs a missing part. */
 enum class Installation { Clone, Wheel, DebianPackage, Prefix };
 
 /** Returns the installation that a library or program belongs to; wheels and archives are alike. */

@@ -88,12 +88,13 @@ void Overlay::arc(cv::Point2d centre, double radius, double right, double left, 
 }
 
 void Overlay::text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees) {
-    constexpr int ring_width = 6;
+    constexpr int ring_width = 6, margin = 2;
     int baseline = 0;
     const cv::Size size = cv::getTextSize(text, font, font_scale, 1, &baseline);
     const double back = anchor == Anchor::Left ? 0 : anchor == Anchor::Centre ? size.width / 2.0 : size.width;
     const cv::Point start(cvRound(at.x - back), cvRound(at.y + size.height / 2.0));
-    const cv::Rect box(start.x, start.y - size.height, size.width + (degrees ? ring_width : 0), size.height + baseline);
+    const cv::Rect box(start.x - margin, start.y - size.height - margin,
+                       size.width + 2 * margin + (degrees ? ring_width : 0), size.height + baseline + 2 * margin);
     if ((box & taken_).area() > 0) return;
     cv::putText(cover_, text, start, font, font_scale, full, 1, cv::LINE_AA);
     if (degrees)
@@ -127,8 +128,7 @@ Overlay fanOverlay(const FanLayout& layout, const cv::Rect& taken) {
 }
 
 cv::Point placeOfBar(const FanLayout& layout, cv::Point at) {
-    const cv::Rect area(at, labelled_bar_size);
-    const bool fits = (area & cv::Rect({}, layout.size())) == area && !layout.reaches(area);
+    const bool fits = fitsColourBar(layout.size(), at) && !layout.reaches(cv::Rect(at, colour_bar_size));
     return fits ? at : cv::Point(-labelled_bar_size.width, -labelled_bar_size.height);
 }
 

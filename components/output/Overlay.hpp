@@ -19,7 +19,7 @@ public:
     void arc(cv::Point2d centre, double radius, double right, double left, int opacity);
     /** Draws text whose middle line runs through `at`, which is its left end, centre or right end. */
     void text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees = false);
-    /** From here on, text that would touch this area is left out. */
+    /** From here on, text that would touch this area is omitted. */
     void take(const cv::Rect& area) { taken_ = area; }
     /** Must be called after all drawing. */
     void finish();
@@ -43,7 +43,7 @@ Overlay fanOverlay(const FanLayout& layout, const cv::Rect& taken = {});
 inline const cv::Size colour_bar_size{12, 128};
 inline const cv::Size labelled_bar_size{54, 136};  ///< With the labels.
 
-/** Returns `at` if the colour bar with its labels fits there, next to the fan; else a place outside of the picture. */
+/** Returns `at` if the colour bar fits there, next to the fan; else a place outside of the picture. */
 cv::Point placeOfBar(const FanLayout& layout, cv::Point at);
 
 /** Returns whether the colour bar with its upper left corner at `at` fits in a picture of this size. */
