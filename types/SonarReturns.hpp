@@ -50,7 +50,8 @@ struct SonarReturns {
         visit({"first_range", "m", "slant range of the nearest bin that shows an object"}, self.first_range);
         visit({"first_level", "dB", "10 log10 of that bin"}, self.first_level);
         visit({"first_elevation", "rad", "from which its echo comes, positive up"}, self.first_elevation);
-        visit({"strongest_range", "m", "slant range of the strongest return, without spreading, ring-down and water"}, self.strongest_range);
+        visit({"strongest_range", "m", "slant range of the strongest return, without spreading, ring-down and water"},
+              self.strongest_range);
         visit({"strongest_level", "dB", "10 log10 of that bin"}, self.strongest_level);
         visit({"strongest_elevation", "rad", "from which its echo comes; NaN: of no object in the beam"},
               self.strongest_elevation);

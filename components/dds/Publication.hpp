@@ -131,7 +131,8 @@ public:
             type + " cannot be made of the samples of port " + topic.port + "; they can be " + messagesOf<Sample>());
     }
 
-    /** Sets the device's frequency [kHz], which is used if the topic does not name one, and what is known of its bins. */
+    /** Sets the device's frequency [kHz], which is used if the topic does not name one, and what is known of its
+     *  bins. */
     void takeSonar(double khz, const types::ReturnRules& returns) {
         if (!names_frequency_) options_.messages.frequency_khz = khz;
         options_.messages.returns = returns;

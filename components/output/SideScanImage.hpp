@@ -17,7 +17,8 @@ struct GroundRangeConfig {
         visit({"altitude", "m",
                "height above the bottom; absent: that of port altitude, else the range of the first return", 0, 1e5},
               self.altitude);
-        visit({"threshold_db", "dB", "min level of the first return without spreading, relative to the strongest of the ping", -300, 0},
+        visit({"threshold_db", "dB",
+               "min level of the first return without spreading, relative to the strongest of the ping", -300, 0},
               self.threshold_db);
     }
 };

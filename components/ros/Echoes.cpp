@@ -119,9 +119,10 @@ DetectionThreshold::DetectionThreshold(const types::Sonar& ping, const SonarOpti
     }
     double reference = is_absolute_ ? std::pow(10, *options.reference_db / 10) : 0;
     for (size_t i = 0; !is_absolute_ && i < ping.bins.size(); ++i)
-        reference = std::max(reference, levels_.at(i % ping.bin_count, static_cast<double>(ping.bins[i])));
-    minimum_ = std::max(std::min(reference, std::numeric_limits<double>::max()) * std::pow(10, options.threshold_db / 10),
-                        std::numeric_limits<double>::denorm_min());
+        reference = std::max(reference, levels_.unblanked(i % ping.bin_count, static_cast<double>(ping.bins[i])));
+    reference = std::min(reference, std::numeric_limits<double>::max());
+    minimum_ =
+        std::max(reference * std::pow(10, options.threshold_db / 10), std::numeric_limits<double>::denorm_min());
 }
 
 std::optional<uint32_t> DetectionThreshold::firstOf(uint32_t beam) const {

@@ -23,7 +23,8 @@ public:
     DetectionThreshold(const types::Sonar& ping, const SonarOptions& options);
     /** Whether bin `k` of a beam, which has this value, is a return. */
     bool isReturn(size_t k, float bin) const {
-        if (is_linear_) return levels_.at(k, static_cast<double>(bin)) >= minimum_ * (is_absolute_ ? levels_.gain(k) : 1);
+        const double gain = is_absolute_ ? levels_.gain(k) : 1;
+        if (is_linear_) return levels_.at(k, static_cast<double>(bin)) >= minimum_ * gain;
         return k >= levels_.first() && bin >= static_cast<float>(minimum_);
     }
     /** Returns the first bin of a beam that is a return. */

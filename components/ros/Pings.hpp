@@ -28,10 +28,10 @@ void convert(const types::Sonar& ping, const SonarOptions& options, SonarRanges&
 /** Writes every bin at or above the threshold as a point: x, y, z [m], intensity: the bin. */
 void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2& message);
 
-/** Writes first returns as above, infinite where there is none (REP 117), -infinite where
- *  there is only an echo nearer than `range_min`. Rays are ordered from starboard to port for any order
- *  of beams; angles exceed pi across +-180 degrees. If beams are at multiples of the min angle between two of them, the
- *  rays in gaps have range NaN. Throws std::invalid_argument for beams at other angles. */
+/** Writes first returns as above, infinite where there is none (REP 117), -infinite where there is only an echo nearer
+ *  than `range_min`. Rays are ordered from starboard to port for any order of beams; angles exceed pi across +-180
+ *  degrees. If beams are at multiples of the min angle between two of them, the rays in gaps have range NaN. Throws
+ *  std::invalid_argument for beams at other angles. */
 void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& message);
 
 /** The order and the axes of an image to read. */
@@ -40,10 +40,10 @@ struct ImageLayout {
     SensorFrame frame = SensorFrame::ZForward;
 };
 
-/** Reads the ping of an image. Float bins are taken unchanged; integers are divided by their max value. Bins have
- *  the width of the ranges, see types::RangeBins. Times are truncated to microseconds. Throws std::invalid_argument with a diagnostic for: lists of unequal lengths, types other than uint8,
- *  uint16, uint32, float32 and float64, big-endian numbers, no speed of sound, and ranges that are not the centres of
- *  equal bins from 0 on. */
+/** Reads the ping of an image. Float bins are taken unchanged; integers are divided by their max value. Bins have the
+ *  width of the ranges, see types::RangeBins. Times are truncated to microseconds. Throws std::invalid_argument with a
+ *  diagnostic for: lists of unequal lengths, types other than uint8, uint16, uint32, float32 and float64, big-endian
+ *  numbers, no speed of sound, and ranges that are not the centres of equal bins from 0 on. */
 void convert(const ProjectedSonarImage& message, const ImageLayout& layout, types::Sonar& ping);
 
 }  // namespace insonify::ros

@@ -29,8 +29,8 @@ struct AltimeterConfig {
  *
  *  The beam looks along x of the sonar frame. It is `beam_width_deg` wide about z and `beam_height_deg` about y: a
  *  mount with `pitch_deg: 90` looks straight down. In addition to the ping it writes `range`: the middle of the first
- *  bin that reaches the threshold, in the noiseless ping without spreading, ring-down and water. Where no bin does, it is
- *  types::Range::too_near if there is a surface in the beam nearer than `range_min`, else NaN. */
+ *  bin that reaches the threshold, in the noiseless ping without spreading, ring-down and water. Where no bin does, it
+ *  is types::Range::too_near if there is a surface in the beam nearer than `range_min`, else NaN. */
 class AltimeterTask final : public PingTask {
 public:
     using PingTask::PingTask;

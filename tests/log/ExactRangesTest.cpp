@@ -49,7 +49,7 @@ void expectSame(const std::filesystem::path& path, const Written& made) {
 }
 
 TEST(ExactRangesTest, LogsOfEitherFormatKeepWidthAndSpeedOfSound) {
-    const Folder folder;
+    const Folder folder, copies;  // a bag has a folder of its own
     std::mt19937 random(2);
     std::uniform_real_distribution<double> exponent(-4, 0), speed(1400, 1600);
     for (int i = 0; i < 30; ++i) {
@@ -60,8 +60,8 @@ TEST(ExactRangesTest, LogsOfEitherFormatKeepWidthAndSpeedOfSound) {
             expectSame(folder / name, made);
             for (const char* copy : {"copy.0.log", "copy.mcap"}) {
                 if (std::string_view(copy).ends_with("mcap") != std::string_view(name).ends_with("mcap")) {
-                    copyLog({folder / name}, folder / copy);
-                    expectSame(folder / copy, made);
+                    copyLog({folder / name}, copies / copy);
+                    expectSame(copies / copy, made);
                 }
             }
         }

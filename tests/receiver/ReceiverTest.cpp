@@ -242,5 +242,20 @@ TEST(ReceiverTest, KeepsEverythingExceptTheBins) {
     EXPECT_EQ(out.beam_count, 2u);
 }
 
+TEST(ReceiverTest, GainAndBlankingAreAtExactRanges) {
+    ReceiverConfig config;
+    config.tvg.emplace().log_coefficient = 40;
+    config.blanking.emplace().range_min = 0.5;
+    types::Sonar ping, out;
+    ping.setBins(0.001, 1500);  // 0.67 us
+    ping.resize(1000, 1);
+    ping.bins.assign(1000, 1);
+    Receiver(config).receive(ping, out);
+    EXPECT_EQ(out.bins[499], 0);
+    EXPECT_NEAR(10 * std::log10(out.bins[500]), 40 * std::log10(0.5005), 1e-4);
+    EXPECT_NEAR(10 * std::log10(out.bins[750]), 40 * std::log10(0.7505), 1e-4);
+    EXPECT_EQ(out.binWidth(), 0.001);
+}
+
 }  // namespace
 }  // namespace insonify::receiver

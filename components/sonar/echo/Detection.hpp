@@ -23,7 +23,8 @@ struct DetectionConfig {
     }
     /** Describes the properties that an altimeter has as well. */
     static void describeThreshold(auto& self, auto& visit) {
-        visit({"threshold_db", "dB", "min level of a return without spreading, relative to the strongest of the ping", -300, 0},
+        visit({"threshold_db", "dB", "min level of a return without spreading, relative to the strongest of the ping",
+               -300, 0},
               self.threshold_db);
         visit({"floor_db", "dB", "absolute min level of a return, as 10 log10 of a bin; absent: none", -3000, 3000},
               self.floor_db);
@@ -47,8 +48,8 @@ struct DetectionRules {
     static DetectionRules of(const RenderPlan& plan);
 };
 
-/** Finds the returns in the beams of one ping as devices do (ACOUSTICS.md 5.16): spreading and absorption are removed, and
- *  so are blanked bins, the ring-down, and what is no stronger than the water. */
+/** Finds the returns in the beams of one ping as devices do (ACOUSTICS.md 5.16): spreading and absorption are removed,
+ *  and so are blanked bins, the ring-down, and what is no stronger than the water. */
 class Detector {
 public:
     /** Computes the levels of a ping, which must live on. Allocates nothing for the shape of the last ping. */

@@ -50,7 +50,8 @@ struct ImperfectionsConfig {
         visit({"dead_beams", "1", "further dead beams, in the ping's order, the first is 0", 0, 4095}, self.dead_beams);
         visit({"crosstalk_db", "dB", "power of a beam that leaks into each of its neighbours; absent: none", -200, 0},
               self.crosstalk_db);
-        visit({"clock_jitter_us", "us", "standard deviation of the receiver's times at which bins are sampled, there and back", 0, 1e5},
+        visit({"clock_jitter_us", "us",
+               "standard deviation of the receiver's times at which bins are sampled, there and back", 0, 1e5},
               self.clock_jitter_us);
     }
 };
