@@ -81,7 +81,7 @@ public:
         }
         lookAtWaiting();
         if (!std::isfinite(found_)) return {};
-        return {static_cast<double>(found_), std::sqrt(static_cast<double>(farthestOf(corners2)))};
+        return {static_cast<double>(found_), std::sqrt(static_cast<double>(*std::ranges::max_element(corners2)))};
     }
 
     double farthest() const {
@@ -170,13 +170,6 @@ private:
             most2 = std::max(most2, glm::dot(at, at));
         }
         return std::sqrt(most2);
-    }
-
-    /** Returns the greatest of the corners' squared distances, of corners that triangles have. */
-    float farthestOf(const std::vector<float>& corners2) const {
-        float most2 = 0;
-        for (const uint32_t corner : mesh_.indices) most2 = std::max(most2, corners2[corner]);
-        return most2;
     }
 
     void look(const types::Cluster& cluster) {
