@@ -81,30 +81,25 @@ public:
         }
         lookAtWaiting();
         if (!std::isfinite(found_)) return {};
-        return {static_cast<double>(found_), std::sqrt(static_cast<double>(farthestOf(corners2)))};
+        return {static_cast<double>(found_), std::sqrt(static_cast<double>(*std::ranges::max_element(corners2)))};
     }
 
     double farthest() const {
-        float found = 0;
+        const types::Cluster* first = nullptr;
+        float maximum = -1;
+        forEachFarther([&](const types::Cluster& cluster, float at_most) {
+            if (at_most > maximum) maximum = at_most, first = &cluster;
+            return maximum;
+        });
+        if (!first) return 0;
+        float found = farthestIn(*first);
         uint32_t looked_at = 0;
-        for (size_t i = 0; i < std::max<size_t>(1, mesh_.cluster_nodes.size());) {
-            const bool all = mesh_.cluster_nodes.empty();
-            if (!all && atMost(mesh_.cluster_nodes[i].centre, mesh_.cluster_nodes[i].half) <= found) {
-                i = mesh_.cluster_nodes[i].next;
-                continue;
-            }
-            const bool is_leaf = all || mesh_.cluster_nodes[i].next == i + 1;
-            const size_t first = all ? 0 : mesh_.cluster_nodes[i].first_cluster,
-                         count = all ? mesh_.clusters.size() : mesh_.cluster_nodes[i].cluster_count;
-            for (size_t k = first; is_leaf && k < first + count; ++k) {
-                const types::Cluster& cluster = mesh_.clusters[k];
-                const float at_most = atMost(cluster.centre, cluster.half);
-                if (at_most <= found) continue;
-                looked_at += cluster.index_count / 3;
-                found = looked_at > max_triangles ? at_most : std::max(found, farthestIn(cluster));
-            }
-            ++i;
-        }
+        forEachFarther([&](const types::Cluster& cluster, float at_most) {
+            if (at_most <= found || &cluster == first) return found;
+            looked_at += cluster.index_count / 3;
+            found = looked_at > max_triangles ? at_most : std::max(found, farthestIn(cluster));
+            return found;
+        });
         return static_cast<double>(found);
     }
 
@@ -157,10 +152,32 @@ private:
         return distance - glm::dot(glm::abs(at / distance * linear_), half);
     }
 
-    /** Returns an upper bound of the distance to any point of such a box. */
+    /** Calls farther = use(cluster, upper bound of its distance), except for clusters in patches that are no farther.
+     */
+    void forEachFarther(const auto& use) const {
+        float farther = -1;
+        const auto useAll = [&](std::span<const types::Cluster> clusters) {
+            for (const types::Cluster& cluster : clusters) farther = use(cluster, atMost(cluster.centre, cluster.half));
+        };
+        if (mesh_.cluster_nodes.empty()) return useAll(mesh_.clusters);
+        for (size_t i = 0; i < mesh_.cluster_nodes.size();) {
+            const types::ClusterNode& node = mesh_.cluster_nodes[i];
+            if (atMost(node.centre, node.half) <= farther)
+                i = node.next;
+            else if (++i == node.next)
+                useAll(std::span(mesh_.clusters).subspan(node.first_cluster, node.cluster_count));
+        }
+    }
+
+    /** Returns the distance to the farthest corner of a box along the mesh's axes. */
     float atMost(const glm::vec3& centre, const glm::vec3& half) const {
-        return glm::length(fromSonar(centre)) + glm::length(linear_[0]) * half.x + glm::length(linear_[1]) * half.y +
-               glm::length(linear_[2]) * half.z;
+        const glm::vec3 at = fromSonar(centre), u = linear_[0] * half.x, v = linear_[1] * half.y,
+                        w = linear_[2] * half.z;
+        float most2 = 0;
+        for (const glm::vec3& edge : {u + v, u - v, v - u, -u - v})
+            for (const glm::vec3& corner : {at + edge + w, at + edge - w})
+                most2 = std::max(most2, glm::dot(corner, corner));
+        return std::sqrt(most2);
     }
 
     float farthestIn(const types::Cluster& cluster) const {
@@ -170,13 +187,6 @@ private:
             most2 = std::max(most2, glm::dot(at, at));
         }
         return std::sqrt(most2);
-    }
-
-    /** Returns the greatest of the corners' squared distances, of corners that triangles have. */
-    float farthestOf(const std::vector<float>& corners2) const {
-        float most2 = 0;
-        for (const uint32_t corner : mesh_.indices) most2 = std::max(most2, corners2[corner]);
-        return most2;
     }
 
     void look(const types::Cluster& cluster) {
