@@ -10,7 +10,7 @@ namespace insonify::sonar {
 namespace {
 
 constexpr int max_rows = 2048, max_columns = 256, rungs_per_doubling = 8;
-constexpr int max_steps = 12;
+constexpr int max_steps = 12, max_lowerings = 3;
 constexpr double step_of_samples = 4, worth_a_step = 0.95, worth_lowering = 0.8;
 constexpr double margin = 1.25, margin_of_means = 1.5;  ///< Predicted error over the measured difference [1].
 constexpr double least_part = 0.2;                      ///< Smallest part of rows or columns in an error [1].
@@ -169,18 +169,28 @@ public:
     }
     /** Returns the next quality to measure; none: the search is over. */
     std::optional<Quality> next() const {
-        const ErrorModel& last = measured_.back();
-        if (!hasReached(last) && hasReached(best())) return {};
-        const Quality other = hasReached(last) ? coarser(last) : finer(last);
+        const bool has_reached = hasReached(best());
+        const ErrorModel& from = has_reached ? best() : measured_.back();
+        const auto since = std::ranges::find_if(measured_, [&](const ErrorModel& m) { return hasReached(m); });
+        if (has_reached && measured_.end() - since > max_lowerings) return {};
+        const Quality other = has_reached ? coarser(from) : finer(from);
         const bool is_new = std::ranges::none_of(measured_, [&](const ErrorModel& m) { return m.at == other; });
         return is_new && static_cast<int>(measured_.size()) < max_steps ? std::optional(other) : std::nullopt;
     }
 
 private:
+    /** Goes where the parts of the error lead, or to finer rows and columns alike where they led nowhere. */
     Quality finer(const ErrorModel& from) const {
         const double limit = std::min(goal_.max_samples, step_of_samples * from.at.samples());
-        const Quality other = ladder_.choose(from, target_share * goal_.target, limit, goal_.minimum);
-        return other.error <= worth_a_step * from.at.error && other.samples() <= limit ? other : from.at;
+        const auto choose = [&](const ErrorModel& model) {
+            const Quality other = ladder_.choose(model, target_share * goal_.target, limit, goal_.minimum);
+            return other.error <= worth_a_step * from.at.error && other.samples() <= limit ? other : from.at;
+        };
+        const ErrorModel balanced{from.at, from.at.error / std::sqrt(2), from.at.error / std::sqrt(2)};
+        const bool led_nowhere =
+            measured_.size() > 1 && from.at.error > worth_lowering * measured_[measured_.size() - 2].at.error;
+        const Quality other = choose(led_nowhere ? balanced : from);
+        return other == from.at ? choose(balanced) : other;
     }
     /** Lets the error grow as fast as it fell since the last quality that had not reached the target. */
     Quality coarser(const ErrorModel& from) const {
