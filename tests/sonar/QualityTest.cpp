@@ -62,7 +62,7 @@ TEST(QualityLadderTest, RungsForABudgetAreAtMostATenthApart) {
         EXPECT_GE(ladder.choose(model, 0, samples).samples(), samples / 1.12) << samples;
 }
 
-TEST(ClimbTest, TakesLessThanFortyPingsAndRendersThePingAtItsQuality) {
+TEST(ClimbTest, TakesLessThanEightyPingsAndRendersThePingAtItsQuality) {
     const auto scene = floorAndWall();
     SonarConfig config = small();
     config.quality.target_error = 0.03;
@@ -75,7 +75,7 @@ TEST(ClimbTest, TakesLessThanFortyPingsAndRendersThePingAtItsQuality) {
         climb(estimator, QualityLadder(config), renderer, outwards(scene), Quality(), {0.03}, ping);
     EXPECT_LE(model.at.error, 0.03);
     EXPECT_GT(model.at.samples(), 8 * Quality().samples());
-    EXPECT_LT(estimator.rendered(), 40 * model.at.samples()) << "trials cost more than the pings they evaluate";
+    EXPECT_LT(estimator.rendered(), 80 * model.at.samples()) << "trials cost more than the pings they evaluate";
     types::Sonar same;
     renderer.setQuality(model.at.rows, model.at.columns_per_beam);
     renderer.render(outwards(scene), same);
@@ -208,7 +208,7 @@ TEST(QualityTaskTest, ThePlanStatesTheQualityOfThePingThatIsWritten) { expectThe
 
 TEST(QualityTaskTest, ThePlanStatesTheQualityOfThePingThatIsWrittenWithABudget) {
     SonarConfig config = small();
-    config.quality.budget_ms = 1e4;
+    config.quality.budget_ms = 10;
     expectThePlansQuality(config);
 }
 
@@ -231,8 +231,10 @@ TEST(QualityTaskTest, ASwayingSonarDoesNotAlternateBetweenQualities) {
     Fed<SonarTask> sonar(small());
     std::vector<double> samples;
     for (int i = 0; i < 300; ++i) {
-        sonar.ping(test::snapshotOf(scene, {0.05 * std::sin(0.11 * i), 0, 0.02 * std::sin(0.3 * i)}, 0.02 * std::sin(0.17 * i), 0.14));
-        if (samples.empty() || samples.back() != sonar.quality().samples()) samples.push_back(sonar.quality().samples());
+        const glm::dvec3 at(0.05 * std::sin(0.11 * i), 0, 0.02 * std::sin(0.3 * i));
+        sonar.ping(test::snapshotOf(scene, at, 0.02 * std::sin(0.17 * i), 0.14));
+        const double now = sonar.quality().samples();
+        if (samples.empty() || samples.back() != now) samples.push_back(now);
     }
     EXPECT_LE(samples.size(), 3u) << testing::PrintToString(samples);
     EXPECT_TRUE(std::ranges::is_sorted(samples)) << testing::PrintToString(samples);
