@@ -107,7 +107,7 @@ void evaluatePredictions(const ErrorResult& result, std::vector<Claim>& all) {
         const bool settled = reference->error_tvg * reference_margin <= p.target_error;
         const std::string text = fmt::format("{}, target_error {}: error over target, {} rows, {} columns per beam",
                                              p.scene, p.target_error, p.rows, p.columns_per_beam);
-        all.push_back({text, p.error / p.target_error, 2, true, settled});
+        all.push_back({text, p.error / p.target_error, 1, true, settled});
         const bool is_coarsest = sonar::Quality{p.rows, p.columns_per_beam} == sonar::Quality();
         if (reference->rays == 0 && !is_coarsest)
             all.push_back({text, p.error / p.target_error, 0.1, false});  // not wasteful either

@@ -52,9 +52,8 @@ struct Received {
     types::SonarElements signals;
 };
 
-Received received(const SonarConfig& config) {
+Received received(const SonarConfig& config, const types::Snapshot& snapshot = twoTargets()) {
     Received result;
-    const types::Snapshot snapshot = twoTargets();
     SonarRenderer renderer(config, snapshot.geometry);
     renderer.setElements(result.ping, &result.signals);
     renderer.render(snapshot, result.ping);
@@ -202,6 +201,13 @@ TEST_F(ElementPortTest, SignalsBelongToTheirPingWhileTheQualityIsChosenAndWatche
         ASSERT_TRUE(ping && signals_.port.readNew(signals));
         const Received both{*ping, *signals};
         EXPECT_NEAR(off(both.ping, beamformed(both, acoustics::Taper(Weighting::Hann))).energy_db, 0, 0.2) << i;
+        SonarConfig same = config;
+        same.quality = {};
+        same.quality.rows = task_.plan()->rows;
+        same.quality.columns_per_beam = task_.plan()->columns_per_beam;
+        const Received expected = received(same, snapshot);
+        EXPECT_EQ(both.ping.bins, expected.ping.bins) << i;
+        EXPECT_EQ(both.signals.in_phase, expected.signals.in_phase) << i << ": signals of another quality";
     }
 }
 

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarTask.hpp"
@@ -60,21 +62,22 @@ TEST(QualityLadderTest, RungsForABudgetAreAtMostATenthApart) {
         EXPECT_GE(ladder.choose(model, 0, samples).samples(), samples / 1.12) << samples;
 }
 
-TEST(ClimbTest, TakesLessThanTenPingsAndRendersThePingAtItsQuality) {
+TEST(ClimbTest, TakesLessThanEightyPingsAndRendersThePingAtItsQuality) {
     const auto scene = floorAndWall();
     SonarConfig config = small();
     config.quality.target_error = 0.03;
     SonarRenderer renderer(config, scene);
-    ErrorEstimator estimator(config);
+    ErrorEstimator estimator(config, least_share * 0.03);
     types::Sonar ping;
     renderer.setQuality(64, 2);
     renderer.render(outwards(scene), ping);
     const ErrorModel model =
         climb(estimator, QualityLadder(config), renderer, outwards(scene), Quality(), {0.03}, ping);
-    EXPECT_LE(model.error(), 0.03);
+    EXPECT_LE(model.at.error, 0.03);
     EXPECT_GT(model.at.samples(), 8 * Quality().samples());
-    EXPECT_LT(2 * estimator.rendered(), 10 * model.at.samples()) << "trials cost more than the pings they evaluate";
+    EXPECT_LT(estimator.rendered(), 80 * model.at.samples()) << "trials cost more than the pings they evaluate";
     types::Sonar same;
+    renderer.setQuality(model.at.rows, model.at.columns_per_beam);
     renderer.render(outwards(scene), same);
     EXPECT_EQ(ping.bins, same.bins);
 }
@@ -172,8 +175,69 @@ TEST(QualityTaskTest, IsChosenAgainWhenTheEchoesHaveChangedAndLoweredLater) {
     EXPECT_THAT(sonar.notices(), Contains(AllOf(HasSubstr("from 0."), HasSubstr(" s on quality: "))));
     for (int i = 0; i < 60; ++i) sonar.ping(toTheWall(scene));
     EXPECT_EQ(sonar.quality(), outside) << "not yet";
-    for (int i = 0; i < 12; ++i) sonar.ping(toTheWall(scene));
-    EXPECT_EQ(sonar.quality(), Quality());
+    for (int i = 0; i < 90; ++i) sonar.ping(toTheWall(scene));
+    EXPECT_EQ(sonar.quality(), Quality()) << "once all of 64 pings and the checks after them were of the wall";
+}
+
+/** Returns the bins of a ping of this quality. */
+std::vector<float> binsAt(const types::Snapshot& snapshot, const Quality& quality) {
+    SonarConfig config = small();
+    config.quality.rows = quality.rows;
+    config.quality.columns_per_beam = quality.columns_per_beam;
+    types::Sonar ping;
+    SonarRenderer(config, snapshot.geometry).render(snapshot, ping);
+    return ping.bins;
+}
+
+/** Renders pings while a sonar turns, and expects each to be of the quality that the plan states then. */
+void expectThePlansQuality(const SonarConfig& config) {
+    const auto scene = floorAndWall();
+    Fed<SonarTask> sonar(config);
+    std::set<double> samples;
+    for (int i = 0; i < 40; ++i) {
+        const types::Snapshot snapshot = test::snapshotOf(scene, {}, 3.14 - 0.1 * i, 0.14);
+        const types::SonarPtr ping = sonar.ping(snapshot);
+        ASSERT_TRUE(ping);
+        EXPECT_EQ(ping->bins, binsAt(snapshot, sonar.quality())) << i << ": the plan is of another ping";
+        samples.insert(sonar.quality().samples());
+    }
+    EXPECT_GT(samples.size(), 1u) << "or nothing was compared";
+}
+
+TEST(QualityTaskTest, ThePlanStatesTheQualityOfThePingThatIsWritten) { expectThePlansQuality(small()); }
+
+TEST(QualityTaskTest, ThePlanStatesTheQualityOfThePingThatIsWrittenWithABudget) {
+    SonarConfig config = small();
+    config.quality.budget_ms = 10;
+    expectThePlansQuality(config);
+}
+
+TEST(QualityTaskTest, AStillSceneKeepsItsBitsAndItsPrediction) {
+    const auto scene = floorAndWall();
+    for (const double yaw : {0.0, 0.7, 1.4, 3.14}) {
+        Fed<SonarTask> sonar(small());
+        const types::SonarPtr first = sonar.ping(test::snapshotOf(scene, {}, yaw, 0.14));
+        const double error = sonar.quality().error;
+        for (int i = 0; i < 150; ++i) {
+            EXPECT_EQ(sonar.ping(test::snapshotOf(scene, {}, yaw, 0.14))->bins, first->bins) << yaw << ", " << i;
+            EXPECT_EQ(sonar.quality().error, error) << yaw << ", " << i;
+        }
+        EXPECT_EQ(sonar.notices().size(), 1u) << yaw;
+    }
+}
+
+TEST(QualityTaskTest, ASwayingSonarDoesNotAlternateBetweenQualities) {
+    const auto scene = floorAndWall();
+    Fed<SonarTask> sonar(small());
+    std::vector<double> samples;
+    for (int i = 0; i < 300; ++i) {
+        const glm::dvec3 at(0.05 * std::sin(0.11 * i), 0, 0.02 * std::sin(0.3 * i));
+        sonar.ping(test::snapshotOf(scene, at, 0.02 * std::sin(0.17 * i), 0.14));
+        const double now = sonar.quality().samples();
+        if (samples.empty() || samples.back() != now) samples.push_back(now);
+    }
+    EXPECT_LE(samples.size(), 3u) << testing::PrintToString(samples);
+    EXPECT_TRUE(std::ranges::is_sorted(samples)) << testing::PrintToString(samples);
 }
 
 TEST(QualityTaskTest, ARepeatedRunHasTheSamePingsBitForBit) {
@@ -225,7 +289,8 @@ struct Kept {
     void pings(int count, double ms_per_sample, double period_ms = 0) {
         for (int i = 0; i < count; ++i) {
             renderer.render(outwards(scene), ping);
-            ms = 16 * keeper.quality().samples() * ms_per_sample;
+            const SonarConfig& at = renderer.renderPlan().config;
+            ms = 16.0 * at.rows() * at.columnsPerBeam() * ms_per_sample;
             keeper.follow(renderer, outwards(scene), ping, ms, period_ms);
         }
     }

@@ -1,4 +1,4 @@
-// Qualities chosen for a target error, compared with the truth: at most twice the target, and not far below it.
+// Qualities chosen for a target error, compared with the truth: at most what is predicted, and not far below it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST_P(QualityTest, ReachesTheTargetWithoutWaste) {
     const sonar::Quality chosen = sonar::chooseQuality(config, scene.snapshot);
     const double error = achieved(scene, chosen);
     EXPECT_LE(chosen.error, target);
-    EXPECT_LE(error, 2 * target) << chosen.rows << " x " << chosen.columns_per_beam;
+    EXPECT_LE(error, chosen.error) << chosen.rows << " x " << chosen.columns_per_beam;
     const bool is_coarsest = chosen == sonar::Quality();
     EXPECT_TRUE(is_coarsest || error >= target / 10) << chosen.rows << " x " << chosen.columns_per_beam;
 }
@@ -101,8 +101,8 @@ std::vector<StudyScene> unseenScenes() {
     return scenes;
 }
 
-TEST(UnseenQualityTest, ThePredictionHoldsWithinAFactorOfTwo) {
-    int within = 0, all = 0;
+TEST(UnseenQualityTest, ThePredictionHolds) {
+    int holds = 0, all = 0;
     std::string reported;
     for (StudyScene scene : unseenScenes())
         for (const int maximum : {20'000, 400'000}) {
@@ -110,15 +110,17 @@ TEST(UnseenQualityTest, ThePredictionHoldsWithinAFactorOfTwo) {
             scene.config.quality.target_error = 0.05;
             scene.config.quality.max_samples = maximum;
             const sonar::Quality chosen = sonar::chooseQuality(scene.config, scene.snapshot);
-            const double error = difference(scene, chosen, {2048, 16});
-            const bool holds = error <= 2 * std::max(chosen.error, 0.05);
-            const bool waste = chosen.error > 0.05 && error < chosen.error / 3;
-            within += holds && !waste;
+            const double error = difference(scene, chosen, {2048, 24});
+            EXPECT_LE(error, 1.5 * chosen.error) << scene.name;
+            if (chosen.error > 0.011) {  // above the smallest that is predicted
+                EXPECT_GE(error, 0.3 * chosen.error) << scene.name << ": a waste of samples, or of trust";
+            }
+            holds += error <= chosen.error;
             reported += fmt::format("{}: {} x {}, predicted {:.3f}, {:.3f}\n", scene.name, chosen.rows,
                                     chosen.columns_per_beam, chosen.error, error);
             ++all;
         }
-    EXPECT_GE(within, 0.95 * all) << reported;
+    EXPECT_GE(holds, 0.95 * all) << reported;
 }
 
 }  // namespace

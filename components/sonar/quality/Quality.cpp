@@ -10,9 +10,9 @@ namespace insonify::sonar {
 namespace {
 
 constexpr int max_rows = 2048, max_columns = 256, rungs_per_doubling = 8;
-constexpr int max_steps = 12;
-constexpr double step_of_samples = 4, worth_a_step = 0.95, worth_lowering = 0.8;
-constexpr double margin = 1.25, margin_of_means = 1.5;  ///< Predicted error over the measured difference [1].
+constexpr int max_steps = 12, max_lowerings = 2;
+constexpr double step_of_samples = 4, worth_a_step = 0.95, worth_lowering = 0.8, worth_halving = 1.5;
+constexpr double margin = 1.2, margin_of_means = 1.5;  ///< Predicted error over the measured difference [1].
 constexpr double least_part = 0.2;                      ///< Smallest part of rows or columns in an error [1].
 
 /** Returns whether a device can rasterise this number of columns per beam. */
@@ -39,9 +39,8 @@ double ErrorModel::error(int rows, int columns_per_beam) const {
 
 ErrorModel ErrorModel::movedTo(const Quality& other) const {
     const auto& [rows, columns, unused] = other;
-    return {{rows, columns, error(rows, columns)},
-            of_rows * at.rows / rows,
-            of_columns * at.columns_per_beam / columns};
+    return {
+        {rows, columns, error(rows, columns)}, of_rows * at.rows / rows, of_columns * at.columns_per_beam / columns};
 }
 
 ErrorModel ErrorModel::scaled(double factor) const {
@@ -169,20 +168,33 @@ public:
     }
     /** Returns the next quality to measure; none: the search is over. */
     std::optional<Quality> next() const {
-        const ErrorModel& last = measured_.back();
-        if (!hasReached(last) && hasReached(best())) return {};
-        const Quality other = hasReached(last) ? coarser(last) : finer(last);
-        const bool is_new = std::ranges::none_of(measured_, [&](const ErrorModel& m) { return m.at == other; });
-        return is_new && static_cast<int>(measured_.size()) < max_steps ? std::optional(other) : std::nullopt;
+        const bool has_reached = hasReached(best());
+        const ErrorModel& from = has_reached ? best() : measured_.back();
+        const auto since = std::ranges::find_if(measured_, [&](const ErrorModel& m) { return hasReached(m); });
+        if (has_reached && measured_.end() - since > max_lowerings) return {};
+        const Quality other = has_reached ? coarser(from) : finer(from);
+        return isNew(other) && static_cast<int>(measured_.size()) < max_steps ? std::optional(other) : std::nullopt;
     }
 
 private:
+    bool isNew(const Quality& quality) const {
+        return std::ranges::none_of(measured_, [&](const ErrorModel& model) { return model.at == quality; });
+    }
+    /** Goes where the parts of the error lead, or to finer rows and columns alike where they led nowhere. */
     Quality finer(const ErrorModel& from) const {
         const double limit = std::min(goal_.max_samples, step_of_samples * from.at.samples());
-        const Quality other = ladder_.choose(from, target_share * goal_.target, limit, goal_.minimum);
-        return other.error <= worth_a_step * from.at.error && other.samples() <= limit ? other : from.at;
+        const auto choose = [&](const ErrorModel& model) {
+            const Quality other = ladder_.choose(model, target_share * goal_.target, limit, goal_.minimum);
+            return other.error <= worth_a_step * from.at.error && other.samples() <= limit ? other : from.at;
+        };
+        const ErrorModel balanced{from.at, from.at.error / std::sqrt(2), from.at.error / std::sqrt(2)};
+        const bool led_nowhere =
+            measured_.size() > 1 && from.at.error > worth_lowering * measured_[measured_.size() - 2].at.error;
+        const Quality other = choose(led_nowhere ? balanced : from);
+        return other == from.at ? choose(balanced) : other;
     }
-    /** Lets the error grow as fast as it fell since the last quality that had not reached the target. */
+    /** Lets the error grow as fast as it fell since the qualities that had not reached the target, or goes halfway to
+     *  these. */
     Quality coarser(const ErrorModel& from) const {
         double target = target_share * goal_.target;
         for (const ErrorModel& failed : measured_) {
@@ -191,9 +203,14 @@ private:
             const double power = std::clamp(std::log(failed.at.error / from.at.error) / std::log(predicted), 1.0, 4.0);
             target = std::min(target, from.at.error * std::pow(target_share * goal_.target / from.at.error, 1 / power));
         }
-        const Quality other =
-            ladder_.choose(from, target, worth_lowering * from.at.samples(), goal_.minimum);
-        return other.error <= target ? other : from.at;
+        const Quality other = ladder_.choose(from, target, worth_lowering * from.at.samples(), goal_.minimum);
+        if (other.error <= target && isNew(other)) return other;
+        double below = 0;
+        for (const ErrorModel& failed : measured_)
+            if (!hasReached(failed) && failed.at.samples() < from.at.samples())
+                below = std::max(below, failed.at.samples());
+        if (below == 0 || from.at.samples() <= worth_halving * below) return from.at;
+        return ladder_.choose(from, 0, std::sqrt(below * from.at.samples()), goal_.minimum);
     }
 
     const QualityLadder& ladder_;

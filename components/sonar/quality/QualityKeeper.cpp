@@ -18,7 +18,7 @@ constexpr double watched_share = 0.2618034;  ///< Share of the pings; irrational
 constexpr int rarely = 16;  ///< One of this number of due pings is evaluated where the budget is used up.
 constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, has_fallen = 0.67, near_limit = 0.8;
 constexpr double least_look = 0.25;  ///< Least share of the worst error by which a target is lowered [1].
-constexpr double overhead = 0.15, pings_to_choose = 40;  ///< Max total cost of new choices [share of the pings, pings].
+constexpr double overhead = 0.15, pings_to_choose = 100;  ///< Max total cost of new choices [share of the pings, pings].
 constexpr double min_per_change = 1.5;  ///< Least growth of the error with the difference to a coarser ping [1].
 constexpr double pings_to_measure = 15, max_delay = 4;     ///< Max time to measure for a budget [pings, budgets].
 constexpr double off_measure = 1.2;  ///< Margin where the error of another quality is taken from one comparison [1].
@@ -100,7 +100,9 @@ bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene
         }
     }
     const Quality& next = next_ ? *next_ : model_.at;
-    renderer.setQuality(next.rows, next.columns_per_beam);
+    const SonarConfig& set = renderer.renderPlan().config;
+    if (set.rows() != next.rows || set.columnsPerBeam() != next.columns_per_beam)
+        renderer.setQuality(next.rows, next.columns_per_beam);
     return chosen_ && !(before == model_.at && before.error == model_.at.error);
 }
 
