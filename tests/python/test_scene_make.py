@@ -1,6 +1,7 @@
 """The command `insonify scene make`: bad recipes and options, pings of its scenes, and sweeps of recipes."""
 
 import json
+import os
 import random
 import re
 import subprocess
@@ -195,6 +196,27 @@ def test_a_sweep_makes_its_scenes_by_recipe(tmp_path):
     done = insonify("dataset", ROOT / "deploy/truth.yml", "--sweep", tmp_path / "sweep.yml", "--out", tmp_path / "bad", **cache)
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
     assert "bay.yml:2:18: things[0].thing: is tyre; did you mean tire?" in done.stderr
+
+
+def test_a_cache_among_the_files_of_all_users_must_be_ones_own(tmp_path):
+    (tmp_path / "bay.yml").write_text("things: [{thing: tire}]")
+    (tmp_path / "sweep.yml").write_text("scenes: [{make: bay.yml, seeds: [1]}]\nposes: {grid: {z: -6}}\n")
+    folder = tmp_path / f"insonify-{os.geteuid()}"
+
+    def dataset():
+        words = ("dataset", ROOT / "deploy/truth.yml", "--sweep", tmp_path / "sweep.yml", "--out", tmp_path / "out")
+        return insonify(*words, HOME="", XDG_CACHE_HOME="", TMPDIR=str(tmp_path))
+
+    elsewhere = tmp_path / "of_another"
+    elsewhere.mkdir()
+    for prepare in (lambda: folder.symlink_to(elsewhere), lambda: (folder.mkdir(), folder.chmod(0o777))):
+        prepare()
+        done = dataset()
+        assert done.returncode == 2 and f"{folder}: is not a folder that only this user may write to" in done.stderr
+        folder.unlink() if folder.is_symlink() else folder.rmdir()
+    done = dataset()
+    assert done.returncode == 0, done.stderr
+    assert folder.stat().st_mode & 0o777 == 0o700 and len(list(folder.rglob("*.glb"))) == 1
 
 
 @pytest.mark.parametrize(
