@@ -12,7 +12,7 @@ class OthersReceived {
 public:
     static constexpr double memory = 10;  ///< Time for which a pulse is kept: sound travels 15 km [s].
 
-    /** Keeps a pulse, and forgets those that are older, or of before the clock was set back. */
+    /** Keeps a pulse, and forgets pulses that are too old, or from before the clock was set back. */
     void add(types::TransmissionPtr sent) {
         if (!sent || !sent->radiation) return;
         forget(sent->time);
