@@ -285,7 +285,7 @@ void Sonar3dEmulator::ask(types::Time now) {
 
 types::Time Sonar3dEmulator::follow(types::Time clock) {
     const types::Time now = steady_.read(clock);
-    if (steady_.jumpedBack() && !asked_.empty()) ask(now);
+    if (steady_.jumpedBack() && state_.acoustics && !asked_.empty()) ask(now);
     return now;
 }
 
