@@ -106,10 +106,11 @@ TEST(ElementSignalsTest, BeamsFormedFromTheElementsMatchThePingsBins) {
         Weighting weighting;
         double above_mean, all;  ///< For the bins above the mean at their range, and for bins to 20 dB below it.
     };
-    // The far sidelobes of elements differ from those of a continuous line, which matters without weights.
+    // The far sidelobes of elements differ from those of a continuous line, which matters without weights. Shares vary
+    // with the scatterers that an object happens to have, by about a percent of the bins.
     for (const auto& [weighting, above_mean, all] :
          {Bound{Weighting::Uniform, 0.03, 0.15}, Bound{Weighting::Hann, 0.002, 0.01},
-          Bound{Weighting::Taylor, 0.002, 0.03}}) {
+          Bound{Weighting::Taylor, 0.002, 0.05}}) {
         const Received both = received(arrayOf(weighting));
         const std::vector<double> bins = beamformed(both, acoustics::Taper(weighting));
         EXPECT_LT(off(both.ping, bins, 1).share, above_mean) << static_cast<int>(weighting);
