@@ -150,10 +150,10 @@ Json animationsOf(const scene::Scene& scene) {
  *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, shell as above,
  *  mirror, triangles, area_m2}], objects: [{name, materials: [names], triangles, bounds}], nodes: [names that a
  *  connection may move], animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets,
- *  omitted: [{name, reason}] of what is not heard, not_understood: [], warnings: []}. Throws types::ConfigError for a
+ *  omitted: [{name, reason}] of what is omitted, not_understood: [], warnings: []}. Throws types::ConfigError for a
  * file that cannot be read. */
-Json sceneReport(const std::string& file, const scene::Unheard& unheard) {
-    const scene::Scene scene = scene::withoutUnheard(scene::readScene(file), unheard);
+Json sceneReport(const std::string& file, const scene::OmitRules& rules) {
+    const scene::Scene scene = scene::withoutOmitted(scene::readScene(file), rules);
     const types::GeometryPtr named = scene::takeNames(scene.geometry);
     const types::Geometry& geometry = *named;
     const types::Extent extent = types::extentOf(geometry);
@@ -268,7 +268,7 @@ void printScene(const Json& scene) {
     printObjects(scene["objects"]);
     printAnimations(scene);
     for (const Json& each : scene["omitted"])
-        command::printResult("not heard: {}: {}\n", each["name"].get<std::string>(), each["reason"].get<std::string>());
+        command::printResult("omitted: {}: {}\n", each["name"].get<std::string>(), each["reason"].get<std::string>());
     for (const Json& line : scene["not_understood"])
         command::printResult("omitted or repaired: {}\n", line.get<std::string>());
     for (const Json& line : scene["warnings"]) command::printResult("warning: {}\n", line.get<std::string>());
@@ -281,8 +281,8 @@ bool isSceneName(const std::string& name) {
     return scene::isGltf(name) || extension == ".world" || extension == ".sdf" || extension == ".urdf";
 }
 
-int showScene(const std::string& file, bool json, const scene::Unheard& unheard) {
-    const Json scene = sceneReport(file, unheard);
+int showScene(const std::string& file, bool json, const scene::OmitRules& rules) {
+    const Json scene = sceneReport(file, rules);
     json ? print(scene) : printScene(scene);
     return 0;
 }
@@ -347,7 +347,7 @@ void addSceneCommand(CLI::App& app, Action& action) {
     struct Options {
         std::string file;
         bool json = false;
-        scene::Unheard unheard;
+        scene::OmitRules rules;
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command =
@@ -355,17 +355,17 @@ void addSceneCommand(CLI::App& app, Action& action) {
     command->add_option("FILE", options->file, "a .gltf, .glb, .world, .sdf or .urdf file");
     command->add_flag("--json", options->json, "for machines");
     command
-        ->add_option("--omit", options->unheard.names,
-                     "as `omit` of scene::SceneTask: a name that is not heard, * is any text; may be repeated")
+        ->add_option("--omit", options->rules.names,
+                     "as `omit` of scene::SceneTask: a name that is omitted, * is any text; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false);
-    command->add_option("--water-surface", options->unheard.water_surface, "as `water_surface` of scene::SceneTask [m]")
+    command->add_option("--water-surface", options->rules.water_surface, "as `water_surface` of scene::SceneTask [m]")
         ->type_name("Z");
     addMakeCommand(*command, action);
     command->callback([options, command, &action] {
         if (!command->get_subcommands().empty()) return;
         if (options->file.empty()) throw CLI::RequiredError("FILE");
-        action = [options] { return showScene(exampleAt(options->file), options->json, options->unheard); };
+        action = [options] { return showScene(exampleAt(options->file), options->json, options->rules); };
     });
 }
 

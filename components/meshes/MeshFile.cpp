@@ -153,7 +153,7 @@ types::GeometryPtr readGltfMesh(const std::filesystem::path& file, MeshAxes axes
     const Scene scene = readGltf(file);
     types::Geometry geometry = *scene.geometry;
     for (const types::Omission& omission : scene.omitted)
-        geometry.notices.push_back(fmt::format("not heard: {}: {}", omission.name, omission.reason));
+        geometry.notices.push_back(fmt::format("omitted: {}: {}", omission.name, omission.reason));
     if (axes == MeshAxes::AsStored)
         for (types::Object& object : geometry.objects)
             object.world_from_object = glm::transpose(z_up_from_y_up) * object.world_from_object;

@@ -14,7 +14,7 @@ namespace insonify::pose {
 namespace {
 
 constexpr double max_wait = 3600;  ///< Before the first stamp [s].
-constexpr double max_time = 1e9;   ///< Of a stamp in the run [s].
+constexpr double max_time = 1e9;   ///< Max time of a stamp in the run [s].
 
 /** Returns "12.5 s", or "1403636580.84 s (44.5 years)" for long times. */
 std::string spoken(double seconds) {

@@ -32,7 +32,7 @@ public:
 
     void check(types::Diagnostics& diagnostics) const override;
     bool finished() const override { return finished_; }
-    /** Returns the time until which the vehicle stands at its first pose, how many quaternions of the file have an odd
+    /** Returns the time until which the vehicle stays at its first pose, how many quaternions of the file have an odd
      *  length, and how many poses after the last stamp were that of the last stamp. */
     std::vector<std::string> notices() const override;
     /** Returns the trajectory of the properties, configured or not. Throws types::ConfigError as

@@ -74,11 +74,10 @@ types::Extent placed(const types::Extent& box, const glm::dmat4& world_from_box)
     return around;
 }
 
-/** Decides which objects of a scene are not heard. */
+/** Decides which objects of a scene are omitted. */
 class Sorting {
 public:
-    Sorting(const Scene& scene, const Unheard& unheard)
-        : scene_(scene), unheard_(unheard), matched_(unheard.names.size()) {
+    Sorting(const Scene& scene, const OmitRules& rules) : scene_(scene), rules_(rules), matched_(rules.names.size()) {
         std::vector<types::Extent> meshes;
         for (const types::Mesh& mesh : scene.geometry->meshes) meshes.push_back(types::extentOf(mesh, glm::dmat4(1)));
         types::Extent all;
@@ -90,29 +89,29 @@ public:
         for (const Node& node : scene.nodes) node_patterns_.push_back(patternOf(node.name));
     }
 
-    /** Returns why an object is not heard; empty: it is. */
+    /** Returns why an object is omitted; empty: it is. */
     std::string reasonAgainst(size_t object) {
         for (int node = scene_.object_nodes[object]; node >= 0; node = scene_.nodes[static_cast<size_t>(node)].parent)
             if (const auto pattern = node_patterns_[static_cast<size_t>(node)]) return byPattern(*pattern);
         if (const auto pattern = patternOf(objects()[object].name)) return byPattern(*pattern);
-        return unheard_.drawings && !isSolid(object) ? drawnReason(object) : "";
+        return rules_.drawings && !isSolid(object) ? drawnReason(object) : "";
     }
 
-    /** Returns warnings of patterns without a match, and of a large level object that is heard at the water surface. */
-    std::vector<std::string> warnings(const std::vector<size_t>& heard) const {
+    /** Returns warnings of patterns without a match, and of a large level object that stays at the water surface. */
+    std::vector<std::string> warnings(const std::vector<size_t>& kept) const {
         std::vector<std::string> all, names;
         for (const Node& node : scene_.nodes) names.push_back(node.name);
         for (const types::Object& object : objects()) names.push_back(object.name);
         for (size_t i = 0; i < matched_.size(); ++i) {
             if (matched_[i]) continue;
-            std::string plain = unheard_.names[i];
+            std::string plain = rules_.names[i];
             std::erase(plain, '*');
             all.push_back(
                 fmt::format("omit: \"{}\" matches no node or visual of the scene; {}insonify scene lists them",
-                            unheard_.names[i], types::didYouMean(plain, names)));
+                            rules_.names[i], types::didYouMean(plain, names)));
         }
-        for (const size_t i : heard)
-            if (const std::string text = surfaceWarning(i, heard); !text.empty()) all.push_back(text);
+        for (const size_t i : kept)
+            if (const std::string text = surfaceWarning(i, kept); !text.empty()) all.push_back(text);
         return all;
     }
 
@@ -123,8 +122,8 @@ private:
     }
     std::optional<size_t> patternOf(const std::string& name) {
         std::optional<size_t> first;
-        for (size_t i = 0; i < unheard_.names.size(); ++i) {
-            const std::string& pattern = unheard_.names[i];
+        for (size_t i = 0; i < rules_.names.size(); ++i) {
+            const std::string& pattern = rules_.names[i];
             const bool by_part = pattern.find("::") == std::string::npos && matches(pattern, lastPart(name));
             if (!by_part && !matches(pattern, name)) continue;
             matched_[i] = true;
@@ -132,15 +131,15 @@ private:
         }
         return first;
     }
-    std::string byPattern(size_t pattern) const { return fmt::format("omit: \"{}\"", unheard_.names[pattern]); }
+    std::string byPattern(size_t pattern) const { return fmt::format("omit: \"{}\"", rules_.names[pattern]); }
 
     /** Whether an object has acoustic values, of the file or the task. */
     bool isSolid(size_t object) const {
         for (int node = scene_.object_nodes[object]; node >= 0; node = scene_.nodes[static_cast<size_t>(node)].parent)
-            if (unheard_.solid.contains(scene_.nodes[static_cast<size_t>(node)].name)) return true;
+            if (rules_.solid.contains(scene_.nodes[static_cast<size_t>(node)].name)) return true;
         return std::ranges::any_of(meshOf(object).clusters, [&](const types::Cluster& cluster) {
             const types::Material& material = scene_.geometry->materials[static_cast<size_t>(cluster.material)];
-            return material.has_acoustics || unheard_.solid.contains(material.name);
+            return material.has_acoustics || rules_.solid.contains(material.name);
         });
     }
     Drawing drawingOf(size_t object) const {
@@ -189,7 +188,7 @@ private:
         if (drawing.is_for_some) marks.push_back("for some cameras only");
         if (!drawing.casts_shadow) marks.push_back("without a shadow");
         if (marks.size() >= 2) return fmt::format("it is level, {}", fmt::join(marks, ", "));
-        if (!unheard_.water_surface || !isAt(object, *unheard_.water_surface)) return "";
+        if (!rules_.water_surface || !isAt(object, *rules_.water_surface)) return "";
         if (isOfSea(object)) marks.push_back("of a model named as a sea");
         if (!marks.empty()) return fmt::format("it is level at the water surface, {}", marks.front());
         const glm::dvec3 size = boxes_[object].size();
@@ -198,15 +197,15 @@ private:
         return "";
     }
 
-    std::string surfaceWarning(size_t object, const std::vector<size_t>& heard) const {
+    std::string surfaceWarning(size_t object, const std::vector<size_t>& kept) const {
         const glm::dvec3 size = boxes_[object].size();
-        if (!unheard_.drawings || isSolid(object) || !isLevel(object) || std::min(size.x, size.y) < large) return "";
-        const bool is_at = unheard_.water_surface && isAt(object, *unheard_.water_surface);
-        const bool lies_above_all =
-            !unheard_.water_surface && heard.size() > 1 && std::ranges::all_of(heard, [&](size_t other) {
+        if (!rules_.drawings || isSolid(object) || !isLevel(object) || std::min(size.x, size.y) < large) return "";
+        const bool is_at = rules_.water_surface && isAt(object, *rules_.water_surface);
+        const bool is_above_all =
+            !rules_.water_surface && kept.size() > 1 && std::ranges::all_of(kept, [&](size_t other) {
                 return other == object || boxes_[other].high.z < boxes_[object].low.z - 1;
             });
-        if (!is_at && !lies_above_all) return "";
+        if (!is_at && !is_above_all) return "";
         return fmt::format(
             "{} is level, {:.3g} x {:.3g} m wide, and a solid {} If it is drawn water, omit it: omit: [{}]; a material "
             "with "
@@ -217,11 +216,11 @@ private:
     }
 
     const Scene& scene_;
-    const Unheard& unheard_;
+    const OmitRules& rules_;
     std::vector<bool> matched_;                         ///< For each pattern, whether a name matches.
     std::vector<std::optional<size_t>> node_patterns_;  ///< For each node, the first pattern that matches it.
     std::vector<types::Extent> boxes_;                  ///< For each object, about the box of its mesh, in the world.
-    double area_ = 0;                                   ///< Of the scene's box, seen from above [m^2].
+    double area_ = 0;                                   ///< Area of the box of the scene, seen from above [m^2].
 };
 
 /** Returns the scene with only these objects. */
@@ -243,7 +242,7 @@ Scene restrictedTo(const Scene& scene, const std::vector<size_t>& kept) {
         for (DeformingObject& object : animations.objects) object.object = static_cast<size_t>(index[object.object]);
         result.animations = std::make_shared<const Animations>(std::move(animations));
     }
-    if (geometry->objects.empty()) geometry->notices.push_back("nothing of the scene is heard: an empty sea");
+    if (geometry->objects.empty()) geometry->notices.push_back("nothing of the scene is left: an empty sea");
     result.geometry = std::move(geometry);
     return result;
 }
@@ -265,8 +264,8 @@ bool matches(std::string_view pattern, std::string_view name) {
     return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
-Scene withoutUnheard(const Scene& scene, const Unheard& unheard) {
-    Sorting sorting(scene, unheard);
+Scene withoutOmitted(const Scene& scene, const OmitRules& rules) {
+    Sorting sorting(scene, rules);
     std::vector<size_t> kept;
     std::vector<types::Omission> omitted = scene.omitted;
     for (size_t i = 0; i < scene.geometry->objects.size(); ++i) {
@@ -289,7 +288,7 @@ void addOmissions(const Scene& scene, std::vector<std::string>& notices) {
     for (auto& [reason, all] : names) {
         const size_t more = all.size() > shown ? all.size() - shown : 0;
         all.resize(all.size() - more);
-        notices.push_back(fmt::format("not heard: {}{}: {}", fmt::join(all, ", "),
+        notices.push_back(fmt::format("omitted: {}{}: {}", fmt::join(all, ", "),
                                       more > 0 ? fmt::format(" and {} more", more) : "", reason));
     }
     for (const std::string& warning : scene.warnings) notices.push_back("Warning: " + warning);

@@ -8,20 +8,20 @@
 
 namespace insonify::scene {
 
-/** Parts of a scene that are not heard. */
-struct Unheard {
+/** Parts of a scene that are omitted. */
+struct OmitRules {
     std::vector<std::string> names;       ///< Patterns of nodes and objects; `*` is any text.
-    bool drawings = true;                 ///< Whether drawn water and invisible drawings are not heard.
+    bool drawings = true;                 ///< Whether drawn water and invisible drawings are omitted.
     std::optional<double> water_surface;  ///< Its height in the world [m].
     std::set<std::string> solid;          ///< Materials and nodes that are bodies, however they are drawn.
 
-    bool operator==(const Unheard&) const = default;
+    bool operator==(const OmitRules&) const = default;
 };
 
 /** Whether a name matches a pattern, in which each `*` is any text. */
 bool matches(std::string_view pattern, std::string_view name);
 
-/** Returns the scene without the objects that are not heard, each in Scene::omitted with the reason. Nodes stay, and
+/** Returns the scene without the objects that are omitted, each in Scene::omitted with the reason. Nodes stay, and
  * meshes are shared.
  *
  *  A pattern omits nodes with all that is below them, and objects. Without "::" it is also compared with the last part
@@ -33,7 +33,7 @@ bool matches(std::string_view pattern, std::string_view name);
  * m and cover half of the scene. Materials named as a matter, such as steel, are bodies unless they are invisible.
  * Level: the height of the box is at most 1/50 of its shorter side. Objects with acoustic values are never drawings.
  * Large level objects at the water surface that stay are a warning. */
-Scene withoutUnheard(const Scene& scene, const Unheard& unheard);
+Scene withoutOmitted(const Scene& scene, const OmitRules& rules);
 
 /** Adds the scene's omissions, one sentence for each reason, and its warnings to notices. */
 void addOmissions(const Scene& scene, std::vector<std::string>& notices);

@@ -360,7 +360,7 @@ private:
     std::vector<std::pair<size_t, std::future<types::Mesh>>> building_;
     std::map<size_t, int> mesh_indices_;
     UniqueNames names_;
-    Drawing drawn_;  ///< Of the objects of the present node.
+    Drawing drawn_;  ///< How the objects of the present node are drawn.
     size_t flat_objects_ = 0;
     std::array<size_t, 3> not_animated_{};     ///< Channels of other paths, outside of the scene, doubled.
     std::vector<int> node_in_scene_;           ///< One per node of the file, -1 if it is not in the scene.

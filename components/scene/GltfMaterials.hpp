@@ -18,7 +18,7 @@ struct NormalMapping {
 
 /** The maps of a material, how they are placed on meshes, and how the material is drawn. */
 struct MaterialMaps {
-    float opacity = 1;                     ///< Of its drawing: 0 is invisible [1].
+    float opacity = 1;                     ///< Opacity of its drawing: 0 is invisible [1].
     std::optional<NormalMapping> normals;  ///< None: no normal map.
     NormalMapping on_surface;
     std::shared_ptr<const types::SurfaceMap> surface;  ///< Null: no surface map.

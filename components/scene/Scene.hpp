@@ -35,8 +35,8 @@ struct Scene {
     glm::dmat4 z_up_from_file{1};                       ///< The turn of the file's axes to the world's.
     std::shared_ptr<const Animations> animations = {};  ///< Null: nothing moves by itself, nor is deformed.
     std::vector<Drawing> drawings = {};                 ///< Empty, or one for each object.
-    std::vector<types::Omission> omitted = {};  ///< Objects and materials of the file that are not heard, and why.
-    std::vector<std::string> warnings = {};     ///< Of what is omitted or may have to be, a sentence each.
+    std::vector<types::Omission> omitted = {};  ///< Objects and materials of the file that are omitted, and why.
+    std::vector<std::string> warnings = {};     ///< About omissions and objects to omit, a sentence each.
 };
 
 /** An object that moves with a node. */

@@ -112,13 +112,13 @@ struct SceneConfig {
         visit({"mount", "", "the sonar in the body"}, self.mount);
         visit({"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
         visit({"omit", "",
-               "names of nodes, models, links and visuals that are not heard, with all below them; * is any text; "
+               "names of nodes, models, links and visuals that are omitted, with all below them; * is any text; "
                "absent: "
                "none"},
               self.omit);
         visit({"omit_drawings", "",
-               "whether drawn water and invisible visuals are not heard, unless they have acoustics; false: all is "
-               "heard"},
+               "whether drawn water and invisible visuals are omitted, unless they have acoustics; false: all is "
+               "kept"},
               self.omit_drawings);
         visit({"pose_timeout", "s",
                "max age of the newest pose, of the body and of each connected node; absent: 1 in realtime, else "

@@ -64,18 +64,19 @@ std::shared_ptr<const Scene> SceneTask::loadModels() const {
             throw types::ConfigError(*gazebo_failure_);
         }
     }
+    read_ = models;
     if (models && config->placement) models = std::make_shared<const Scene>(placed(*models, *config->placement));
     if (!models) return models;
     types::Diagnostics diagnostics;
     if (!config->scale.empty()) models = std::make_shared<const Scene>(scaled(*models, config->scale, diagnostics));
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
-    return std::make_shared<const Scene>(withoutUnheard(*models, unheard()));
+    return std::make_shared<const Scene>(withoutOmitted(*models, omitRules()));
 }
 
-Unheard SceneTask::unheard() const {
-    Unheard unheard{config->omit, config->omit_drawings, config->water_surface, {}};
-    for (const auto& [name, acoustics] : config->materials) unheard.solid.insert(name);
-    return unheard;
+OmitRules SceneTask::omitRules() const {
+    OmitRules rules{config->omit, config->omit_drawings, config->water_surface, {}};
+    for (const auto& [name, acoustics] : config->materials) rules.solid.insert(name);
+    return rules;
 }
 
 std::shared_ptr<const Scene> SceneTask::load() const {
@@ -84,7 +85,7 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     const std::optional<MosaicConfig> map = has_survey ? config->bathymetry->map : std::nullopt;
     if (scene_ && scene_file_ == file && scene_gazebo_ == config->gazebo && scene_has_survey_ == has_survey &&
         scene_map_ == map && scene_placement_ == config->placement && scene_scale_ == config->scale &&
-        scene_unheard_ == unheard())
+        scene_rules_ == omitRules())
         return scene_;
     if (config->file.empty() && !config->gazebo && !has_survey)
         throw types::ConfigError(
@@ -104,7 +105,7 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     scene_map_ = map;
     scene_placement_ = config->placement;
     scene_scale_ = config->scale;
-    scene_unheard_ = unheard();
+    scene_rules_ = omitRules();
     return scene_;
 }
 
@@ -445,6 +446,7 @@ void SceneTask::cleanupHook() {
     geometry_.reset();
     bathymetry_.reset();
     scene_.reset();
+    read_.reset();
     animator_.reset();
     pool_ = {};
 }

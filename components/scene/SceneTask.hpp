@@ -96,8 +96,8 @@ private:
     std::shared_ptr<const Scene> load() const;
     /** Returns the models of the file or of Gazebo, placed and scaled; null if neither is configured. */
     std::shared_ptr<const Scene> loadModels() const;
-    /** Returns what of the models is not heard. */
-    Unheard unheard() const;
+    /** Returns what of the models is omitted. */
+    OmitRules omitRules() const;
     /** Loads the scene again if Gazebo has not answered before. */
     std::shared_ptr<const Scene> loadToRun();
     std::string layText(const Scene& scene) const;
@@ -116,13 +116,14 @@ private:
     void readTimes(types::Time time);
 
     mutable std::shared_ptr<const Scene> scene_;  ///< Read once for check, ports and configure.
+    mutable std::shared_ptr<const Scene> read_;   ///< As read: while it lives, tasks of one file share its meshes.
     mutable std::string scene_file_;
     mutable std::optional<GazeboConfig> scene_gazebo_;
     mutable std::optional<types::ConfigError>
         gazebo_failure_;  ///< Why scene_gazebo_ could not be loaded. It is kept because asking again would wait again.
     mutable std::optional<Placement> scene_placement_;
     mutable std::map<std::string, double> scene_scale_;
-    mutable Unheard scene_unheard_;
+    mutable OmitRules scene_rules_;
     std::string lay_;                                ///< How the scene is oriented; empty if it need not be reported.
     std::string side_;                               ///< Warning of a scene on its side; empty: it is not.
     mutable bool scene_has_survey_ = false;          ///< Whether scene_ has the floor's material.

@@ -112,9 +112,9 @@ TEST_F(WorldTest, TransparencyAndShadowsAreRead) {
     EXPECT_EQ(world.scene.drawings[1].transparency, 0.25);
     EXPECT_FALSE(world.scene.drawings[1].casts_shadow);
     EXPECT_TRUE(world.scene.drawings[2].casts_shadow);
-    const scene::Scene heard = scene::withoutUnheard(world.scene, {{"m::c"}, true, {}, {}});
-    ASSERT_EQ(heard.geometry->objects.size(), 1u);
-    EXPECT_EQ(heard.geometry->objects[0].name, "m::b::visual");
+    const scene::Scene kept = scene::withoutOmitted(world.scene, {{"m::c"}, true, {}, {}});
+    ASSERT_EQ(kept.geometry->objects.size(), 1u);
+    EXPECT_EQ(kept.geometry->objects[0].name, "m::b::visual");
 }
 
 TEST_F(WorldTest, FindsAMeshOfAnotherMachineByTheEndOfItsPath) {

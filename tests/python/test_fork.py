@@ -55,7 +55,7 @@ def test_a_simulation_of_the_parent_is_refused_in_a_forked_child(simulation, ste
         simulation.step(HERE)
     call = {"step": lambda: simulation.step(HERE), "reset": simulation.reset, "time": lambda: simulation.time}[work]
     assert refused(in_fork(call))
-    simulation.step(HERE)  # the parent goes on
+    simulation.step(HERE)  # the parent continues
 
 
 def test_a_reset_simulation_is_refused_in_a_forked_child(simulation):

@@ -1,4 +1,4 @@
-// Drawn water, invisible visuals and names that the configuration omits are not heard.
+// Drawn water, invisible visuals and names that the configuration omits are omitted.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -49,18 +49,19 @@ struct Boxes {
         scene.node_from_object.push_back(glm::dmat4(1));
         scene.drawings.push_back(drawing);
     }
-    Scene heard(const Unheard& unheard) {
+    Scene kept(const OmitRules& rules) {
         scene.geometry = std::make_shared<const types::Geometry>(geometry);
-        return withoutUnheard(scene, unheard);
+        return withoutOmitted(scene, rules);
     }
-    std::vector<std::string> namesHeard(const Unheard& unheard) {
+    std::vector<std::string> namesKept(const OmitRules& rules) {
         std::vector<std::string> names;
-        for (const types::Object& object : heard(unheard).geometry->objects) names.push_back(object.name);
+        const Scene scene_kept = kept(rules);
+        for (const types::Object& object : scene_kept.geometry->objects) names.push_back(object.name);
         return names;
     }
 };
 
-const Unheard at_zero{{}, true, 0.0, {}};
+const OmitRules at_zero{{}, true, 0.0, {}};
 
 TEST(DrawingsTest, PatternsMatchAnyTextForEachStar) {
     for (const char* name : {"water", "sea water", "water_2", "waterwater"})
@@ -86,15 +87,13 @@ TEST(DrawingsTest, PatternsMatchAnyTextForEachStar) {
 TEST(DrawingsTest, NamesOmitModelsLinksAndVisualsWithAllBelow) {
     Boxes boxes;
     for (const char* model : {"rov", "rov_helper", "pier"}) boxes.add(model, "hull", {1, 1, 1}, {0, 0, -5});
-    const auto heard = [&](std::vector<std::string> names) {
-        return boxes.namesHeard({std::move(names), true, {}, {}});
-    };
-    EXPECT_THAT(heard({"rov"}), ElementsAre("rov_helper::link::hull", "pier::link::hull"));
-    EXPECT_THAT(heard({"rov*"}), ElementsAre("pier::link::hull"));
-    EXPECT_THAT(heard({"rov::link", "pier::link::hull"}), ElementsAre("rov_helper::link::hull"));
-    EXPECT_THAT(heard({"*::hull"}), IsEmpty());
-    EXPECT_THAT(heard({"hull"}), IsEmpty()) << "a name without :: is that of any visual, link or model";
-    const Scene scene = boxes.heard({{"rov", "rof", "*pire*"}, true, {}, {}});
+    const auto kept = [&](std::vector<std::string> names) { return boxes.namesKept({std::move(names), true, {}, {}}); };
+    EXPECT_THAT(kept({"rov"}), ElementsAre("rov_helper::link::hull", "pier::link::hull"));
+    EXPECT_THAT(kept({"rov*"}), ElementsAre("pier::link::hull"));
+    EXPECT_THAT(kept({"rov::link", "pier::link::hull"}), ElementsAre("rov_helper::link::hull"));
+    EXPECT_THAT(kept({"*::hull"}), IsEmpty());
+    EXPECT_THAT(kept({"hull"}), IsEmpty()) << "a name without :: is that of any visual, link or model";
+    const Scene scene = boxes.kept({{"rov", "rof", "*pire*"}, true, {}, {}});
     EXPECT_EQ(scene.nodes.size(), 6u) << "nodes stay: they have ports";
     ASSERT_EQ(scene.omitted.size(), 1u);
     EXPECT_EQ(scene.omitted[0].name, "rov::link::hull");
@@ -104,27 +103,27 @@ TEST(DrawingsTest, NamesOmitModelsLinksAndVisualsWithAllBelow) {
                             HasSubstr("\"*pire*\" matches no")));
 }
 
-TEST(DrawingsTest, AnInvisibleDrawingIsNotHeardUnlessItHasAcoustics) {
+TEST(DrawingsTest, AnInvisibleDrawingIsOmittedUnlessItHasAcoustics) {
     Boxes boxes;
     boxes.add("ghost", "v", {1, 4, 1}, {8, 0, -3}, {.transparency = 1});
     boxes.add("for_none", "v", {1, 4, 1}, {8, 0, -3}, {.is_for_none = true});
     boxes.add("window", "v", {1, 4, 1}, {8, 0, -3}, {.transparency = 0.9});
     boxes.add("steel_ghost", "v", {1, 4, 1}, {8, 0, -3}, {.transparency = 1}, "steel");
-    boxes.add("only_heard", "v", {1, 4, 1}, {8, 0, -3}, {.transparency = 1}, "own", true);
+    boxes.add("acoustic", "v", {1, 4, 1}, {8, 0, -3}, {.transparency = 1}, "own", true);
     boxes.add("given", "v", {1, 4, 1}, {8, 0, -3}, {.transparency = 1}, "paint");
-    EXPECT_THAT(boxes.namesHeard({{}, true, {}, {"given"}}),
-                ElementsAre("window::link::v", "only_heard::link::v", "given::link::v"));
-    EXPECT_THAT(boxes.namesHeard({{}, true, {}, {"paint"}}), Contains("given::link::v"));
-    EXPECT_EQ(boxes.namesHeard({{}, false, {}, {}}).size(), 6u);
+    EXPECT_THAT(boxes.namesKept({{}, true, {}, {"given"}}),
+                ElementsAre("window::link::v", "acoustic::link::v", "given::link::v"));
+    EXPECT_THAT(boxes.namesKept({{}, true, {}, {"paint"}}), Contains("given::link::v"));
+    EXPECT_EQ(boxes.namesKept({{}, false, {}, {}}).size(), 6u);
 }
 
-TEST(DrawingsTest, DrawnWaterIsNotHeardAndBodiesAtTheSurfaceAre) {
+TEST(DrawingsTest, DrawnWaterIsOmittedAndBodiesAtTheSurfaceAreNot) {
     struct Case {
         const char *model, *visual, *material;
         glm::vec3 size;
         double z;
         Drawing drawing;
-        bool without_surface, at_surface;  ///< Whether it is heard.
+        bool without_surface, at_surface;  ///< Whether it is kept.
     };
     const Drawing plain, clear{.transparency = 0.6}, shadowless{.casts_shadow = false}, some{.is_for_some = true};
     const std::vector<Case> cases{
@@ -158,7 +157,7 @@ TEST(DrawingsTest, DrawnWaterIsNotHeardAndBodiesAtTheSurfaceAre) {
             boxes.add("ground", "rocks", {210, 210, 3}, {0, 0, -25});
             boxes.add(one.model, one.visual, one.size, {0, 0, one.z}, one.drawing, one.material);
             const size_t expected = (at_surface ? one.at_surface : one.without_surface) ? 2 : 1;
-            EXPECT_EQ(boxes.namesHeard(at_surface ? at_zero : Unheard{}).size(), expected) << at_surface;
+            EXPECT_EQ(boxes.namesKept(at_surface ? at_zero : OmitRules{}).size(), expected) << at_surface;
         }
     }
 }
@@ -167,20 +166,20 @@ TEST(DrawingsTest, ALargeLevelBodyAtTheSurfaceIsAWarningWithTheWayOut) {
     Boxes boxes;
     boxes.add("ground", "rocks", {210, 210, 3}, {0, 0, -25});
     boxes.add("lid", "v", {20, 30, 0.2f}, {0, 0, 0});
-    for (const Unheard& unheard : {at_zero, Unheard{}})
-        EXPECT_THAT(boxes.heard(unheard).warnings, ElementsAre(HasSubstr("omit: [lid::link::v]")));
-    EXPECT_THAT(boxes.heard({{"lid"}, true, 0.0, {}}).warnings, IsEmpty());
-    EXPECT_THAT(boxes.heard({{}, true, 0.0, {"lid"}}).warnings, IsEmpty()) << "it has a material";
-    EXPECT_THAT(boxes.heard({{}, false, 0.0, {}}).warnings, IsEmpty());
-    EXPECT_THAT(boxes.heard({{}, true, -10.0, {}}).warnings, IsEmpty());
+    for (const OmitRules& rules : {at_zero, OmitRules{}})
+        EXPECT_THAT(boxes.kept(rules).warnings, ElementsAre(HasSubstr("omit: [lid::link::v]")));
+    EXPECT_THAT(boxes.kept({{"lid"}, true, 0.0, {}}).warnings, IsEmpty());
+    EXPECT_THAT(boxes.kept({{}, true, 0.0, {"lid"}}).warnings, IsEmpty()) << "it has a material";
+    EXPECT_THAT(boxes.kept({{}, false, 0.0, {}}).warnings, IsEmpty());
+    EXPECT_THAT(boxes.kept({{}, true, -10.0, {}}).warnings, IsEmpty());
 }
 
 TEST(DrawingsTest, NoticesListOmissionsByReason) {
     Boxes boxes;
     for (int i = 0; i < 7; ++i) boxes.add("ghost" + std::to_string(i), "v", {1, 1, 1}, {0, 0, -3}, {.transparency = 1});
     std::vector<std::string> notices;
-    addOmissions(boxes.heard({{"x"}, true, {}, {}}), notices);
-    EXPECT_THAT(notices, ElementsAre(testing::AllOf(testing::StartsWith("not heard: ghost0::link::v, "),
+    addOmissions(boxes.kept({{"x"}, true, {}, {}}), notices);
+    EXPECT_THAT(notices, ElementsAre(testing::AllOf(testing::StartsWith("omitted: ghost0::link::v, "),
                                                     HasSubstr(" and 2 more: its drawing is wholly transparent")),
                                      testing::StartsWith("Warning: omit: \"x\"")));
 }
@@ -198,7 +197,7 @@ struct GltfDrawingsTest : SceneFiles {
     }
 };
 
-TEST_F(GltfDrawingsTest, AMaterialOfAlphaZeroIsNotHeard) {
+TEST_F(GltfDrawingsTest, AMaterialOfAlphaZeroIsOmitted) {
     const std::string clear = R"("pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0]})";
     for (const char* mode : {R"(,"alphaMode":"BLEND")", R"(,"alphaMode":"MASK")"}) {
         const Scene scene = two(clear + mode);
@@ -226,8 +225,8 @@ TEST_F(GltfDrawingsTest, TheOpacityOfAnObjectIsThatOfItsMostOpaqueMaterial) {
         "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],)" +
                                                        triangle(bytesOf<float>({0, 0, 0, 90, 0, 0, 0, 0, 90})))));
     EXPECT_EQ(water.drawings.at(0).transparency, 0.75);
-    EXPECT_EQ(withoutUnheard(water, at_zero).geometry->objects.size(), 0u);
-    EXPECT_EQ(withoutUnheard(water, {}).geometry->objects.size(), 1u);
+    EXPECT_EQ(withoutOmitted(water, at_zero).geometry->objects.size(), 0u);
+    EXPECT_EQ(withoutOmitted(water, {}).geometry->objects.size(), 1u);
 }
 
 /** A file of two nodes with a triangle each, "hull" and "wall". */
@@ -247,7 +246,7 @@ TEST_F(OmitTaskTest, TheSnapshotLacksWhatIsOmitted) {
     ASSERT_TRUE(snapshot);
     ASSERT_EQ(snapshot->geometry->objects.size(), 1u);
     EXPECT_EQ(snapshot->geometry->objects[0].name, "wall");
-    EXPECT_THAT(task_.notices(), Contains(HasSubstr("not heard: hull: omit: \"hu*\"")));
+    EXPECT_THAT(task_.notices(), Contains(HasSubstr("omitted: hull: omit: \"hu*\"")));
     EXPECT_THAT(task_.notices(), Contains(testing::AllOf(testing::StartsWith("Warning: omit: \"wal\""),
                                                          HasSubstr("did you mean wall"))));
     ASSERT_TRUE(task_.stop() && task_.cleanup());

@@ -202,26 +202,26 @@ TEST_F(SdfVisualsTest, MarksOfDrawingsAreRead) {
     EXPECT_TRUE(scene.drawings[3].is_for_some && !scene.drawings[3].is_for_none);
     EXPECT_TRUE(scene.drawings[4].is_for_none);
     EXPECT_FALSE(scene.drawings[5].casts_shadow);
-    const Scene heard = withoutUnheard(scene, {});
-    EXPECT_EQ(heard.geometry->objects.size(), 4u);
-    ASSERT_EQ(heard.omitted.size(), 2u);
-    EXPECT_EQ(heard.omitted[0].name, "m::l::ghost");
-    EXPECT_EQ(heard.omitted[1].name, "m::l::none");
+    const Scene kept = withoutOmitted(scene, {});
+    EXPECT_EQ(kept.geometry->objects.size(), 4u);
+    ASSERT_EQ(kept.omitted.size(), 2u);
+    EXPECT_EQ(kept.omitted[0].name, "m::l::ghost");
+    EXPECT_EQ(kept.omitted[1].name, "m::l::none");
 }
 
-TEST_F(SdfVisualsTest, ADrawnSeaIsNotHeardAndItsFloorIs) {
+TEST_F(SdfVisualsTest, ADrawnSeaIsOmittedAndItsFloorIsNot) {
     const std::string plain = "<box><size>200 200 0.01</size></box>";
     const Scene scene = world("<model name='ocean'><link name='link'>" +
                               visual("water_surface", plain,
                                      "<cast_shadows>false</cast_shadows><transparency>0.6</"
                                      "transparency><visibility_flags>2</visibility_flags>") +
                               visual("floor", plain, pose("0 0 -20 0 0 0")) + "</link></model>");
-    for (const Unheard& unheard : {Unheard{{}, true, 0.0, {}}, Unheard{}}) {
-        const Scene heard = withoutUnheard(scene, unheard);
-        ASSERT_EQ(heard.geometry->objects.size(), 1u);
-        EXPECT_EQ(heard.geometry->objects[0].name, "ocean::link::floor");
+    for (const OmitRules& rules : {OmitRules{{}, true, 0.0, {}}, OmitRules{}}) {
+        const Scene kept = withoutOmitted(scene, rules);
+        ASSERT_EQ(kept.geometry->objects.size(), 1u);
+        EXPECT_EQ(kept.geometry->objects[0].name, "ocean::link::floor");
     }
-    EXPECT_EQ(withoutUnheard(scene, {{"ocean"}, true, {}, {}}).geometry->objects.size(), 0u);
+    EXPECT_EQ(withoutOmitted(scene, {{"ocean"}, true, {}, {}}).geometry->objects.size(), 0u);
 }
 
 }  // namespace
