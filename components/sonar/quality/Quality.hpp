@@ -50,7 +50,7 @@ private:
 /** Measures the error of pings by comparing them with other pings of the same snapshot.
  *
  *  A ping's error is the larger of its differences to two finer pings, of about 2 and 3 times its rows and columns,
- *  with a margin of a quarter; for `cerqueira2017` of a half, as a bin on an edge is any mean of two surfaces. Two,
+ *  with a margin of a fifth; for `cerqueira2017` of a half, as a bin on an edge is any mean of two surfaces. Two,
  *  because samples at multiples of each other may miss the same thing. Where no finer ping can be rasterised, the
  *  difference to a coarser one is added. */
 class ErrorEstimator {
@@ -95,7 +95,7 @@ struct QualityGoal {
  *  within the max samples, from `start`, at which `ping` has been rendered.
  *
  *  Each step goes where the parts of the last measured error lead, to at most four times its samples. All steps
- *  together take about the time of 25 pings at the last quality. Leaves `ping` rendered at the quality that it returns
+ *  together take the time of 25 to 60 pings at the last quality. Leaves `ping` rendered at the quality that it returns
  *  with its error, and the renderer at any. */
 ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRenderer& renderer,
                  const types::Snapshot& scene, const Quality& start, const QualityGoal& goal, types::Sonar& ping);

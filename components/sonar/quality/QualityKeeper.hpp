@@ -62,7 +62,7 @@ private:
  *  changes. The quality is chosen again, on this ping, if the predicted error exceeds 1.2 times the target and 1.5
  *  times the error of the choice. Rows and columns are not lowered then for a head. It is chosen again as well if all
  *  errors of a whole turn of the head, and of at least 64 pings, were within half the target and had fallen by a third:
- *  a still scene keeps its quality. New choices have at most 15 % of the pings' samples plus 40 pings. All decisions
+ *  a still scene keeps its quality. New choices have at most 15 % of the pings' samples plus 100 pings. All decisions
  *  depend on the pings alone, so that a run can be repeated bit for bit; with a budget also on their times. */
 class QualityKeeper {
 public:
