@@ -116,7 +116,7 @@ TEST(RunFailureTest, AJumpOfThePoseDoesNotEndTheRun) {
         }
 }
 
-/** Runs a deployment with so many threads besides the first. */
+/** Runs a deployment with a limited number of threads besides the first. */
 Outcome runWithThreads(const WallFolder& folder, int threads, const std::string& deployment) {
     const std::string limited = "INSONIFY_THREADS=" + std::to_string(threads) + " LD_PRELOAD=" +
                                 insonify::test::program("libinsonify_thread_limit.so") + " ";

@@ -294,7 +294,7 @@ TEST(LifeCycleTest, WithoutAThreadATransitionIsRefusedAndCanBeRepeated) {
     EXPECT_TRUE(task.stop());
 }
 
-/** Returns how a run ends with so many threads. */
+/** Returns how a run ends with a limited number of threads. */
 std::string endOf(const std::string& yaml, int threads) try {
     Registry registry = test::testRegistry();
     const test::ThreadLimit limit(threads);

@@ -1,5 +1,5 @@
 #pragma once
-// A system that permits only so many threads, as a container does. Needs support/ThreadLimit.cpp among the sources.
+// A system that permits a limited number of threads, as a container does. Needs support/ThreadLimit.cpp as a source.
 //
 //     const ThreadLimit limit(3);  // the fourth thread from here on is refused
 
