@@ -56,6 +56,7 @@ public:
         due_.reset();
         late_ = 0;
     }
+    void sync() override { log_->sync(); }
     void close() override { log_->close(); }
     void next(std::filesystem::path path) override { log_->next(std::move(path)); }
     bool isOpen() const override { return log_->isOpen(); }
