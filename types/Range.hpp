@@ -11,7 +11,7 @@ namespace insonify::types {
  *  sensor_msgs/Range. */
 struct Range {
     static constexpr const char* type_name = "/insonify/Range";
-    static constexpr double none = std::numeric_limits<double>::quiet_NaN();           ///< Nothing is in range.
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();      ///< Nothing is in range.
     static constexpr double too_near = -std::numeric_limits<double>::infinity();  ///< Nearer than range_min (REP 117).
 
     Time time;

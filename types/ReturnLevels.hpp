@@ -9,9 +9,9 @@ namespace insonify::types {
 
 /** What is known of a sonar's bins, to tell returns from what is none. The defaults know nothing. */
 struct ReturnRules {
-    bool spreads = false;           ///< Echoes fall with r^2 and `loss_db_per_m`, as before a receiver's TVG.
+    bool spreads = false;      ///< Echoes fall with r^2 and `loss_db_per_m`, as before a receiver's TVG.
     double loss_db_per_m = 0;  ///< Absorption of a plane wave, one way.
-    double range_min = 0;           ///< Nearer bins are blanked [m].
+    double range_min = 0;      ///< Nearer bins are blanked [m].
     double ring_down_db = -std::numeric_limits<double>::infinity();  ///< The transmitter's ring-down at range 0 [dB].
     double ring_down_db_per_m = 1;                                   ///< Its decay with slant range.
     bool operator==(const ReturnRules&) const = default;

@@ -37,8 +37,7 @@ bool sameShape(const types::Sonar& a, const types::Sonar& b, bool is_stated) {
         return std::abs(types::Angle::fromRad(x.rad - y.rad).rad) < same_bearing;
     };
     return a.beam_count == b.beam_count && a.bin_count == b.bin_count && a.bins.size() == b.bins.size() &&
-           sameBins(a, b, is_stated) &&
-           std::ranges::equal(a.bearings, b.bearings, near);
+           sameBins(a, b, is_stated) && std::ranges::equal(a.bearings, b.bearings, near);
 }
 
 /** Converts bins to energies. */

@@ -46,8 +46,8 @@ public:
     void configure(ActivitySettings settings);
 
     /** Runs `work` on the task's thread and waits until it ends; runs it directly when called on that thread. Rethrows
-     *  what `work` throws. Allocates nothing. Throws std::runtime_error if the thread cannot be started, and in a forked
-     *  child, where there is no such thread. */
+     *  what `work` throws. Allocates nothing. Throws std::runtime_error if the thread cannot be started, and in a
+     * forked child, where there is no such thread. */
     template <class Work>
     void call(Work&& work) {
         using Callable = std::remove_reference_t<Work>;

@@ -70,8 +70,8 @@ private:
     std::atomic<bool> paused_{false};
     std::atomic<uint64_t> steps_{0};  ///< Requested while paused.
     std::mutex instant_mutex_;
-    std::condition_variable turn_;                   ///< An instant has ended.
-    std::atomic<bool> instant_due_{false};           ///< The run waits for its turn, or has it.
+    std::condition_variable turn_;                 ///< An instant has ended.
+    std::atomic<bool> instant_due_{false};         ///< The run waits for its turn, or has it.
     std::atomic<uint64_t> called_{0}, let_in_{0};  ///< Callers so far; those of them that have had the lock.
 };
 

@@ -184,7 +184,8 @@ public:
 
     void write(const T& sample) {
         writeFrom(&sample);
-        if constexpr (requires { sample->time.microseconds; } || requires { sample.time.microseconds; })
+        if constexpr (
+            requires { sample->time.microseconds; } || requires { sample.time.microseconds; })
             noteWritten(portStamp(sample));
     }
     std::string typeName() const override { return types::typeName<T>(); }

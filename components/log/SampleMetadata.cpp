@@ -51,8 +51,7 @@ void addSampleMetadata(types::SampleView first, Metadata& metadata) {
 void restoreBins(const Metadata& metadata, types::SampleRoom sample) {
     const auto restore = [&]<class T>(T* held) {
         if constexpr (has_bins<T>)
-            if (const double width = numberAt(metadata, bin_width_key),
-                speed = numberAt(metadata, speed_of_sound_key);
+            if (const double width = numberAt(metadata, bin_width_key), speed = numberAt(metadata, speed_of_sound_key);
                 width > 0 && speed > 0)
                 held->restore(width, static_cast<float>(speed));
     };

@@ -44,9 +44,7 @@ LogThread::~LogThread() {
 
 LogThread::Entry& LogThread::freeEntry(size_t bytes) {
     std::unique_lock lock(mutex_);
-    const auto hasRoom = [&] {
-        return count_ < ring_.size() && (count_ == 0 || waiting_bytes_ + bytes <= max_bytes);
-    };
+    const auto hasRoom = [&] { return count_ < ring_.size() && (count_ == 0 || waiting_bytes_ + bytes <= max_bytes); };
     room_.wait(lock, [&] { return hasRoom() || failed_; });
     if (failed_) reportFailure();
     waiting_bytes_ += bytes;

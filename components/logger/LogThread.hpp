@@ -72,7 +72,7 @@ private:
         size_t stream = 0;
         types::Time received;
         types::AnySample sample;
-        size_t bytes = 0;  ///< Size of the sample in memory [B].
+        size_t bytes = 0;     ///< Size of the sample in memory [B].
         Declare declaration;  ///< Instead of a sample.
     };
     using Clock = std::chrono::steady_clock;

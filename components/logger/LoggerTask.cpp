@@ -224,8 +224,8 @@ bool LoggerTask::startHook() {
     constexpr double never = 1e9;  // [s]
     health_ = {};
     thread_.emplace(*log_, *rotation_, static_cast<size_t>(config->queue),
-                    environment().is_shard ? never : config->flush_period,
-                    heals() ? AtFailure::Heal : AtFailure::Throw, config->sync_period.value_or(never));
+                    environment().is_shard ? never : config->flush_period, heals() ? AtFailure::Heal : AtFailure::Throw,
+                    config->sync_period.value_or(never));
     return true;
 }
 

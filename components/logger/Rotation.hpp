@@ -10,8 +10,8 @@ namespace insonify::logger {
 void refuseSequels(const std::filesystem::path& log);
 
 /** Removes the files that follow `log` from an earlier run, also after missing numbers, because Rock would read them as
- *  parts of this run. Call it when the run starts: until then, it may still fail. Throws as refuseSequels(), when another
- *  logger writes the last of them, before removing any. */
+ *  parts of this run. Call it when the run starts: until then, it may still fail. Throws as refuseSequels(), when
+ * another logger writes the last of them, before removing any. */
 void removeSequels(const std::filesystem::path& log);
 
 /** Decides when a log continues in its next file: x.0.log, x.1.log... */

@@ -51,7 +51,7 @@ private:
 
     SideScanImage* painter_ = nullptr;
     std::optional<uint64_t> known_changes_;  ///< Of the tasks' records, when the sonar's bins were last asked for.
-    std::deque<types::Range> altitudes_;  ///< The altitude in use, and later altitudes.
+    std::deque<types::Range> altitudes_;     ///< The altitude in use, and later altitudes.
 };
 
 }  // namespace insonify::output

@@ -52,8 +52,8 @@ private:
     /** The properties of a ping that the tables depend on. */
     struct Axis {
         uint32_t bin_count = 0;
-        double bin_width = 0;  ///< [m]
-        double bin_s = 0;      ///< One-way travel time through a bin.
+        double bin_width = 0;   ///< [m]
+        double bin_s = 0;       ///< One-way travel time through a bin.
         double beam_width = 0;  ///< [rad]
         bool operator==(const Axis&) const = default;
     };

@@ -112,17 +112,15 @@ DetectionThreshold::DetectionThreshold(const types::Sonar& ping, const SonarOpti
       is_linear_(options.scale == BinScale::Linear),
       is_absolute_(options.reference_db.has_value()) {
     if (!is_linear_) {
-        minimum_ = static_cast<double>(
-            std::max(binAt(referenceDb(ping, options) + options.threshold_db, options.scale),
-                     std::nextafter(static_cast<float>(nothing_db), 0.0f)));
+        minimum_ = static_cast<double>(std::max(binAt(referenceDb(ping, options) + options.threshold_db, options.scale),
+                                                std::nextafter(static_cast<float>(nothing_db), 0.0f)));
         return;
     }
     double reference = is_absolute_ ? std::pow(10, *options.reference_db / 10) : 0;
     for (size_t i = 0; !is_absolute_ && i < ping.bins.size(); ++i)
         reference = std::max(reference, levels_.unblanked(i % ping.bin_count, static_cast<double>(ping.bins[i])));
     reference = std::min(reference, std::numeric_limits<double>::max());
-    minimum_ =
-        std::max(reference * std::pow(10, options.threshold_db / 10), std::numeric_limits<double>::denorm_min());
+    minimum_ = std::max(reference * std::pow(10, options.threshold_db / 10), std::numeric_limits<double>::denorm_min());
 }
 
 std::optional<uint32_t> DetectionThreshold::firstOf(uint32_t beam) const {

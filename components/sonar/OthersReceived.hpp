@@ -10,7 +10,7 @@ namespace insonify::sonar {
 /** The pulses of other sonars that one sonar has received messages of, kept while they may arrive at it. */
 class OthersReceived {
 public:
-    static constexpr double memory = 10;  ///< Time for which a pulse is kept: sound travels 15 km [s].
+    static constexpr double memory = 10;         ///< Time for which a pulse is kept: sound travels 15 km [s].
     static constexpr double longest_ping = 200;  ///< Max time for which a ping waits for pulses [s].
 
     /** Also forgets pulses that are far from it in time: a sonar that does not ping asks for none. */

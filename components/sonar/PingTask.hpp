@@ -161,12 +161,12 @@ private:
     std::optional<DetectionRules> rules_;  ///< None before they are needed.
     Detector detector_;                    ///< Of the strongest returns.
     std::vector<uint32_t> strongest_;      ///< Bin of each beam.
-    bool culling_untold_ = false;      ///< Whether the plan still lacks what the first ping's culling omitted.
-    int threads_ = 0;                  ///< Threads of the renderer [1].
-    std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
-    bool plan_reported_ = false;       ///< Whether the record has the current plan.
-    types::GeometryPtr geometry_;      ///< The renderer's.
-    types::Transmission transmitted_;  ///< Everything except time and pose; made for the first ping.
+    bool culling_untold_ = false;          ///< Whether the plan still lacks what the first ping's culling omitted.
+    int threads_ = 0;                      ///< Threads of the renderer [1].
+    std::optional<types::Plan> plan_;      ///< Outlives the renderer, for the summary.
+    bool plan_reported_ = false;           ///< Whether the record has the current plan.
+    types::GeometryPtr geometry_;          ///< The renderer's.
+    types::Transmission transmitted_;      ///< Everything except time and pose; made for the first ping.
     OthersReceived others_received_;
     std::optional<Taken> listening_;  ///< The ping that waits for pulses of others.
     double render_seconds_ = 0;       ///< Time that the last ping took [s].

@@ -51,8 +51,8 @@ private:
     types::Angle asked_;               ///< Requested by settings.
     std::optional<types::Time> last_;  ///< Time of the ping before.
     std::optional<Look> before_;       ///< Look direction of the ping before.
-    int periods_ = 0;         ///< Periods in the mean [1].
-    double mean_period_ = 0;  ///< Mean period of the first pings of the scan [s].
+    int periods_ = 0;                  ///< Periods in the mean [1].
+    double mean_period_ = 0;           ///< Mean period of the first pings of the scan [s].
 };
 
 /** Registers the tasks of this folder for deployments. */

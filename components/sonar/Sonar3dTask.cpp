@@ -189,8 +189,7 @@ void Sonar3dTask::findStrongest(const types::Sonar& sample, std::vector<uint32_t
     const std::vector<float>& fan = detectionRules().water;
     if (!fan.empty()) rules.water.assign(sample.bins.size(), 0);
     for (size_t beam = 0; beam < sample.beam_count; ++beam)  // each is the sum over all elevations
-        for (size_t i = 0; i < fan.size(); ++i)
-            rules.water[beam * sample.bin_count + i % sample.bin_count] += fan[i];
+        for (size_t i = 0; i < fan.size(); ++i) rules.water[beam * sample.bin_count + i % sample.bin_count] += fan[i];
     PingTask::findStrongest(sample, rules, strongest);
 }
 

@@ -34,8 +34,8 @@ public:
      *  arrive through sidelobes, or that the pulse spreads into a bin, have no truth. */
     void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
 
-    /** Makes each later rendering of `ping` fill `signals` with those of the array's elements, which takes some time and
-     *  allocates. Null: no more. Throws std::logic_error where the sonar has no `elements`. */
+    /** Makes each later rendering of `ping` fill `signals` with those of the array's elements, which takes some time
+     * and allocates. Null: no more. Throws std::logic_error where the sonar has no `elements`. */
     void setElements(const types::Sonar& ping, types::SonarElements* signals);
 
     /** Fills the bins of `alike`, with the shape of the ping, with what every beam of the last ping records alike,

@@ -88,9 +88,8 @@ TEST(LogRoundingTest, LoggedBinsThatAreNotWholeMicrosecondsHaveExactRanges) {
     EXPECT_THAT(outcome.err, Not(HasSubstr("bin_duration")));
     const auto info = json::parse(callInsonify(logged, {"log", "info", "out/wall.0.log", "--metadata", "--json"}).out);
     EXPECT_EQ(info["metadata"]["sonar.ping"]["metadata"]["insonify_bin_width"], "0.005");
-    ASSERT_THAT(
-        callInsonify(logged, {"log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "x.npz"}),
-        succeeds());
+    ASSERT_THAT(callInsonify(logged, {"log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "x.npz"}),
+                succeeds());
     const Outcome ranges = python(logged, R"(import numpy
 d = numpy.load('x.npz')
 first = [numpy.flatnonzero(beam)[0] for beam in d['bins'][0]]

@@ -118,8 +118,8 @@ TEST(RunFailureTest, AJumpOfThePoseDoesNotEndTheRun) {
 
 /** Runs a deployment with a limited number of threads besides the first. */
 Outcome runWithThreads(const WallFolder& folder, int threads, const std::string& deployment) {
-    const std::string limited = "INSONIFY_THREADS=" + std::to_string(threads) + " LD_PRELOAD=" +
-                                insonify::test::program("libinsonify_thread_limit.so") + " ";
+    const std::string limited = "INSONIFY_THREADS=" + std::to_string(threads) +
+                                " LD_PRELOAD=" + insonify::test::program("libinsonify_thread_limit.so") + " ";
     const std::string run = insonify::test::program("insonify") + " run " + deployment + " --out out --pings 2";
     return Process({"bash", "-c", limited + run}, folder.path()).wait();
 }

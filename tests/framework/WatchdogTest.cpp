@@ -128,9 +128,9 @@ TEST_F(WatchdogTest, ItsPriorityIsAboveThoseOfTheTasks) {
         pthread_getschedparam(pthread_self(), &policy, &parameters);
         priority = parameters.sched_priority;
     };
-    const RunResult result = run(
-        "tasks: {slug: {type: test::Hanging, "
-        "activity: {period: 0.01, watchdog: 0.1, scheduler: fifo, priority: 7}}}\n");
+    const RunResult result =
+        run("tasks: {slug: {type: test::Hanging, "
+            "activity: {period: 0.01, watchdog: 0.1, scheduler: fifo, priority: 7}}}\n");
     if (result.warnings.at(0).find("is not permitted") != std::string::npos)
         GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
     EXPECT_EQ(policy, SCHED_FIFO);

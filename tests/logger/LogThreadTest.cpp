@@ -1,9 +1,8 @@
-#include "components/logger/LogThread.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 
+#include "components/logger/LogThread.hpp"
 #include "tests/support/Waiting.hpp"
 
 namespace insonify::logger {

@@ -1,5 +1,3 @@
-#include "components/output/ByteFile.hpp"
-
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sys/stat.h>
@@ -8,6 +6,7 @@
 #include <atomic>
 #include <thread>
 
+#include "components/output/ByteFile.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/ThreadLimit.hpp"
 #include "tests/support/Waiting.hpp"
@@ -68,9 +67,7 @@ TEST(ByteFileTest, OneCallMayExceedTheBound) {
 
 TEST(ByteFileTest, AFailureHasTheSystemsReason) {
     ByteFile file("/dev/full");
-    const auto untilItFails = [&] {
-        EXPECT_TRUE(test::becomesTrue([&] { return file.append({'x'}), false; }));
-    };
+    const auto untilItFails = [&] { EXPECT_TRUE(test::becomesTrue([&] { return file.append({'x'}), false; })); };
     EXPECT_THAT(untilItFails, testing::ThrowsMessage<std::runtime_error>(
                                   testing::HasSubstr("/dev/full: cannot be written: No space left on device")));
     EXPECT_THROW(file.tryAppend({'x'}), std::runtime_error);

@@ -69,7 +69,7 @@ types::SonarTruth made(std::type_identity<types::SonarTruth>) {
 }
 types::SonarReturns made(std::type_identity<types::SonarReturns>) {
     types::SonarReturns returns;
-    returns.take(made(std::type_identity<types::Sonar>{}), made(std::type_identity<types::SonarTruth>{}));
+    returns.take(made(std::type_identity<types::Sonar>{}), made(std::type_identity<types::SonarTruth>{}), {1, 1});
     return returns;
 }
 types::SonarElements made(std::type_identity<types::SonarElements>) {

@@ -103,8 +103,8 @@ TEST(DetectionTest, RingDownBlankedBinsAndWaterAreNoReturns) {
     }
     EXPECT_FALSE(Found({}, ping, rules).first(0));
     EXPECT_FALSE(Found({}, ping, rules).strongest(0));
-    ping.bins[3] += 1e4f;   // blanked
-    ping.bins[6] += 0.1f;   // below the ring-down, which is 5 there
+    ping.bins[3] += 1e4f;  // blanked
+    ping.bins[6] += 0.1f;  // below the ring-down, which is 5 there
     ping.bins[60] += 2e-3f;
     EXPECT_NEAR(Found({}, ping, rules).first(0)->range, 6.05, 1e-9);
     EXPECT_NEAR(Found({}, ping, rules).strongest(0)->range, 6.05, 1e-9);

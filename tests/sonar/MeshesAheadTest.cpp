@@ -1,11 +1,10 @@
-#include "components/sonar/places/MeshesAhead.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
 
+#include "components/sonar/places/MeshesAhead.hpp"
 #include "components/study/Shapes.hpp"
 #include "tests/support/Priorities.hpp"
 #include "tests/support/Waiting.hpp"

@@ -1,7 +1,6 @@
-#include "components/sonar/OthersReceived.hpp"
-
 #include <gtest/gtest.h>
 
+#include "components/sonar/OthersReceived.hpp"
 #include "types/Transmission.hpp"
 
 namespace insonify::sonar {

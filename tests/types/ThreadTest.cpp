@@ -1,12 +1,11 @@
 // Threads that are refused, their scheduling, and mutexes with priority inheritance.
-#include "types/Thread.hpp"
-
 #include <gmock/gmock.h>
 
 #include <condition_variable>
 
 #include "tests/support/Priorities.hpp"
 #include "tests/support/ThreadLimit.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::types {
 namespace {
@@ -21,8 +20,8 @@ TEST(ThreadTest, ARefusedThreadIsAnErrorWithItsPurposeAndTheLimits) {
         startThread("the log", [] {}).join();
         FAIL() << "it has started";
     } catch (const std::runtime_error& error) {
-        EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("no thread for the log: "),
-                                                 testing::HasSubstr("ulimit -u")));
+        EXPECT_THAT(error.what(),
+                    testing::AllOf(testing::HasSubstr("no thread for the log: "), testing::HasSubstr("ulimit -u")));
     }
 }
 

@@ -58,7 +58,7 @@ private:
     ChunkWriter out_;
     Transforms transforms_;
     bool closed_ = false, described_ = false;
-    bool is_begun_ = true;  ///< Whether the present file could be opened.
+    bool is_begun_ = true;            ///< Whether the present file could be opened.
     std::vector<uint16_t> channels_;  ///< For each stream.
     std::vector<Options> options_;    ///< For each stream.
     std::map<Schema, uint16_t> schemas_;

@@ -18,9 +18,10 @@ constexpr double watched_share = 0.2618034;  ///< Share of the pings; irrational
 constexpr int rarely = 16;  ///< One of this number of due pings is evaluated where the budget is used up.
 constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, has_fallen = 0.67, near_limit = 0.8;
 constexpr double least_look = 0.25;  ///< Least share of the worst error by which a target is lowered [1].
-constexpr double overhead = 0.15, pings_to_choose = 100;  ///< Max total cost of new choices [share of the pings, pings].
-constexpr double min_per_change = 1.5;  ///< Least growth of the error with the difference to a coarser ping [1].
-constexpr double pings_to_measure = 15, max_delay = 4;     ///< Max time to measure for a budget [pings, budgets].
+constexpr double overhead = 0.15,
+                 pings_to_choose = 100;  ///< Max total cost of new choices [share of the pings, pings].
+constexpr double min_per_change = 1.5;   ///< Least growth of the error with the difference to a coarser ping [1].
+constexpr double pings_to_measure = 15, max_delay = 4;  ///< Max time to measure for a budget [pings, budgets].
 constexpr double off_measure = 1.2;  ///< Margin where the error of another quality is taken from one comparison [1].
 constexpr int min_pings = 64, settled = 20, max_notices = 20;
 constexpr double worth_reporting = 1.2;

@@ -108,11 +108,11 @@ private:
     QualityLadder ladder_;
     ErrorEstimator estimator_;
     std::optional<BudgetKeeper> budget_;
-    ErrorModel model_;          ///< At the current quality; its error covers all pings of it.
-    double measured_ = 0;       ///< Error of the ping of the last choice, at the current quality [1].
-    double least_ = 0;          ///< Smallest error that is predicted for that ping [1].
-    double change_ = 0;         ///< Difference of that ping to a coarser one; negative: unknown at this quality [1].
-    double per_change_ = 0;     ///< Predicted error per difference to a coarser ping [1].
+    ErrorModel model_;             ///< At the current quality; its error covers all pings of it.
+    double measured_ = 0;          ///< Error of the ping of the last choice, at the current quality [1].
+    double least_ = 0;             ///< Smallest error that is predicted for that ping [1].
+    double change_ = 0;            ///< Difference of that ping to a coarser one; negative: unknown at this quality [1].
+    double per_change_ = 0;        ///< Predicted error per difference to a coarser ping [1].
     std::optional<Quality> next_;  ///< Quality of the next ping, where it is another.
     bool chosen_ = false, missed_ = false, late_reported_ = false;
     int64_t pings_ = 0;            ///< Pings with an echo [1].
