@@ -134,7 +134,7 @@ void PublisherTask::takeSonars() {
     inputs_.forEach([](auto& input) {
         const auto given = framework::upstreamNumber(input.port, {"frequency_khz", "absorption.frequency_khz"});
         const double frequency = given.value_or(0);
-        const types::ReturnRules rules = framework::upstreamReturnRules(input.port);
+        const types::ReturnRules rules = framework::upstreamReturnRules(input.port, types::left_receiver);
         for (const auto& publication : input.kept.publications) publication->takeSonar(frequency, rules);
     });
 }

@@ -27,7 +27,7 @@ private:
     const PingEnds& ends() const override { return config->ends; }
     std::unique_ptr<PingDevice> makeDevice() const override {
         Ping1dConfig device = config->device;
-        device.nearest = framework::upstreamReturnRules(ping).range_min;
+        device.nearest = framework::upstreamReturnRules(ping, types::left_receiver).range_min;
         return std::make_unique<Ping1dEmulator>(device);
     }
 };

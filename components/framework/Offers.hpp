@@ -30,12 +30,12 @@ public:
     virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
 };
 
-/** A sonar: the source of pings in which others detect returns. */
+/** A task in whose samples others detect returns. */
 class ReturnSource {
 public:
     virtual ~ReturnSource() = default;
 
-    /** Returns what is known of the bins of its pings, with the present configuration. */
+    /** Returns what is known of the bins of its samples, with the present configuration. */
     virtual types::ReturnRules returnRules() const = 0;
 };
 

@@ -8,7 +8,6 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/YamlText.hpp"
-#include "types/Sonar.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -75,15 +74,15 @@ std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer
     return number ? std::optional(*number) : std::nullopt;
 }
 
-types::ReturnRules upstreamReturnRules(const InputPortBase& port) {
+types::ReturnRules upstreamReturnRules(const InputPortBase& port, const char* amplified) {
     types::ReturnRules rules;
     forEachUpstream(port, [&](const TaskContext& task) {
-        const auto* const sonar = dynamic_cast<const ReturnSource*>(&task);
-        if (sonar) rules = sonar->returnRules();
-        return sonar != nullptr;
+        const auto* const source = dynamic_cast<const ReturnSource*>(&task);
+        if (source) rules = source->returnRules();
+        return source != nullptr;
     });
     const bool is_amplified = std::ranges::any_of(
-        port.channels(), [](const auto& channel) { return channel->source().content() == types::left_receiver; });
+        port.channels(), [&](const auto& channel) { return channel->source().content() == amplified; });
     if (!is_amplified) return rules;
     const double blanked = upstreamNumber(port, {"blanking.range_min"}).value_or(0);
     return {.range_min = std::max(rules.range_min, blanked)};

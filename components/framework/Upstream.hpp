@@ -22,9 +22,10 @@ std::optional<types::PropertyValue> upstreamValue(const InputPortBase& port, std
 /** As upstreamValue, for a number. */
 std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer_list<const char*> paths);
 
-/** Returns what is known of the bins of a port's pings: of the nearest sonar upstream, and of the receiver between; the
- *  defaults where there is no sonar. */
-types::ReturnRules upstreamReturnRules(const InputPortBase& port);
+/** Returns what is known of the bins of a port's samples: of the nearest ReturnSource upstream, and of the receiver
+ *  between; the defaults where there is no such source.
+ *  @param amplified  content of the ports whose samples a receiver has amplified */
+types::ReturnRules upstreamReturnRules(const InputPortBase& port, const char* amplified);
 
 /** As upstreamValue, for the property `mount`: the pose on its body of the sensor that made the samples. */
 std::optional<types::Mount> upstreamMount(const InputPortBase& port);

@@ -199,7 +199,7 @@ Installation installationOf(const fs::path& own) {
     const fs::path around = own.parent_path().parent_path();
     std::error_code none;
     if (fs::exists(around / "build.ninja", none)) return Installation::Clone;
-    if (fs::exists(around / "__init__.py", none) || fs::exists(around / "../insonify.libs", none))
+    if (fs::exists(around / "__init__.py", none) || fs::exists(around.parent_path() / "insonify.libs", none))
         return Installation::Wheel;
     const std::string path = own.string();
     return path.starts_with("/usr/") && !path.starts_with("/usr/local/") ? Installation::DebianPackage

@@ -35,7 +35,7 @@ private:
         if (!altitudes_.empty()) painter_->setAltitude(altitudes_.front().range);
         if (const uint64_t changes = *environment().record_changes; changes != known_changes_) {
             known_changes_ = changes;
-            painter_->setReturns(framework::upstreamReturnRules(ping));
+            painter_->setReturns(framework::upstreamReturnRules(ping, types::left_receiver));
         }
         take(*sample);
     }

@@ -29,7 +29,7 @@ size_t countIn(const std::string& text, const std::string& what) {
 TEST(RealtimeRunTest, TheSummaryReportsMetAndMissedTimes) {
     const WallFolder folder(
         replaced(realtimeWall(), "{trigger: [snapshot]}", "{trigger: [snapshot], deadline: 0.001}"));
-    const Outcome outcome = folder.run({"--pings", "4", "--summary", "summary.json"});
+    const Outcome outcome = folder.run({"--pings", "4", "--summary", "summary.json", "--verbose"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const json summary = json::parse(readFile(folder / "summary.json"));
     const json& vehicle = summary["tasks"]["vehicle"];

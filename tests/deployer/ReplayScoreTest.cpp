@@ -200,8 +200,10 @@ TEST_F(ReplayScoreTest, ExactBinsAreComparedInLogsOfThisAndOlderVersions) {
         for (const auto& [name, stream] : streams()) expectSame(stream);
     }
     log::pocolog::Reader from(folder_ / "out/wall.0.log");
+    fs::create_directory(folder_ / "older");
+    fs::copy_file(folder_ / "out/properties.0.log", folder_ / "older/properties.0.log");
     {
-        log::pocolog::Writer to(folder_ / "older.0.log");  // with the water's speed of sound, and no width
+        log::pocolog::Writer to(folder_ / "older/wall.0.log");  // with the water's speed of sound, and no width
         for (log::Stream stream : from.streams()) {
             stream.metadata.erase("insonify_bin_width");
             to.add(*stream.sample, stream.name, stream.metadata);
@@ -217,7 +219,7 @@ TEST_F(ReplayScoreTest, ExactBinsAreComparedInLogsOfThisAndOlderVersions) {
                 to.put(at.stream, at.received, at.time, from.sampleAt(at));
         }
     }
-    ASSERT_THAT(score("older.0.log"), succeeds());
+    ASSERT_THAT(score("older/wall.0.log"), succeeds());
     for (const auto& [name, stream] : streams()) expectSame(stream);
 }
 

@@ -400,7 +400,7 @@ TEST(ShardRunTest, ReportsEachTaskWhoseStateAShardCannotKnow) {
     EXPECT_THAT(refusal(replaced(movingWall(), "{from: noise.noisy, to: fan.ping}",
                                  "{from: noise.noisy, to: fan.ping}\n  - {from: sonar.pose, to: xtf.pose}\n"
                                  "  - {from: noise.noisy, to: xtf.ping}")
-                            .insert(movingWall().find("  fan:"), "  xtf: {type: output::XtfTask}\n")),
+                            .insert(movingWall().find("  fan:"), "  xtf: {type: output::XtfTask, properties: {samples: float32}}\n")),
                 HasSubstr("tasks.xtf: is a output::XtfTask, whose state depends on earlier pings"));
 }
 

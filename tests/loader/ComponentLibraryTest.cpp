@@ -211,8 +211,8 @@ TEST_F(ComponentLibraryTest, ReportsAPropertyThatNeedsAnAbsentLibraryBeforeAnyPi
     for (const auto& [property, library] : std::map<std::string, std::string>{
              {"bathymetry: {file: floor.tif}", "survey"}, {"gazebo: {world: sea}", "gazebo"}, {"file: a.sdf", "sdf"}}) {
         writeFile(folder_ / "a.yml", replaced(wall_deployment, file, property));
-        EXPECT_THAT(call({"check", "a.yml"}),
-                    isRefused(HasSubstr("needs the component library " + library + ", which is not here; `apt ")))
+        EXPECT_THAT(call({"check", "a.yml"}), isRefused(HasSubstr("needs the component library " + library +
+                                                                  ", which is not here; `scripts/setup ")))
             << property;
     }
     const std::string picture = "  fan: {type: output::FanImageTask, properties: {video: fan.mp4}}\n";
@@ -228,7 +228,7 @@ TEST_F(ComponentLibraryTest, ReportsAPropertyThatNeedsAnAbsentLibraryBeforeAnyPi
 TEST_F(ComponentLibraryTest, AptDoesNotInstallLibrariesForAPythonPackage) {
     writeFile(folder_ / "__init__.py", "");
     EXPECT_THAT(check("nav::ImuTask").err,
-                HasSubstr("nav, which is not in wheels and archives; it is in the Debian package insonify-nav"));
+                HasSubstr("nav, which is not in wheels and archives; it is in insonify-nav_"));
 }
 
 TEST_F(ComponentLibraryTest, TheCoreIsNotLinkedWithLibrariesOfComponents) {

@@ -108,6 +108,7 @@ struct DeformingMeshTest : scene::SceneFiles {
         types::Snapshot still = snapshot;
         auto geometry = std::make_shared<types::Geometry>(*scene::loadScene(file));
         for (types::Material& material : geometry->materials) material = snapshot.geometry->materials.front();
+        for (size_t i = 0; i < posed->objects.size(); ++i) geometry->objects[i].name = posed->objects[i].name;
         still.geometry = geometry;
         still.moved.clear();
         still.deformed.clear();

@@ -67,7 +67,7 @@ TEST(ClimbTest, TakesLessThanEightyPingsAndRendersThePingAtItsQuality) {
     SonarConfig config = small();
     config.quality.target_error = 0.03;
     SonarRenderer renderer(config, scene);
-    ErrorEstimator estimator(config, least_share * 0.03);
+    ErrorEstimator estimator(config, min_share * 0.03);
     types::Sonar ping;
     renderer.setQuality(64, 2);
     renderer.render(outwards(scene), ping);

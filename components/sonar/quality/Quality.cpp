@@ -13,7 +13,7 @@ constexpr int max_rows = 2048, max_columns = 256, rungs_per_doubling = 8;
 constexpr int max_steps = 12, max_lowerings = 2;
 constexpr double step_of_samples = 4, worth_a_step = 0.95, worth_lowering = 0.8, worth_halving = 1.5;
 constexpr double margin = 1.2, margin_of_means = 1.5;  ///< Predicted error over the measured difference [1].
-constexpr double least_part = 0.2;                     ///< Smallest part of rows or columns in an error [1].
+constexpr double min_part = 0.2;                       ///< Smallest part of rows or columns in an error [1].
 
 /** Returns whether a device can rasterise this number of columns per beam. */
 bool fits(SonarConfig config, int columns) {
@@ -122,7 +122,7 @@ ErrorModel ErrorEstimator::measure(SonarRenderer& renderer, const types::Snapsho
         measured = std::hypot(measured, changeToCoarser(renderer, scene, ping, quality));
         of_columns = to_finest;
     }
-    const double least = std::max(least_part * to_finest, 1e-12);
+    const double least = std::max(min_part * to_finest, 1e-12);
     ErrorModel model{quality, std::max(of_rows, least), std::max(of_columns, least)};
     measured *= config_.model == Model::Physical ? margin : margin_of_means;
     model = model.scaled(measured / std::hypot(model.of_rows, model.of_columns));
@@ -244,7 +244,7 @@ Quality chooseQuality(const SonarConfig& config, const types::Snapshot& scene) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const double target = config.targetError().value_or(0);
     SonarRenderer renderer(config, scene.geometry);
-    ErrorEstimator estimator(config, target > 0 ? least_share * target : least_error);
+    ErrorEstimator estimator(config, target > 0 ? min_share * target : min_error);
     types::Sonar ping;
     const Quality start;
     renderer.setQuality(start.rows, start.columns_per_beam);

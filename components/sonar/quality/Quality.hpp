@@ -104,7 +104,7 @@ ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRe
 constexpr double target_share = 0.92;
 
 /** Smallest error that is predicted [1 of the target], and without a target [1]. */
-constexpr double least_share = 0.2, least_error = 0.01;
+constexpr double min_share = 0.2, min_error = 0.01;
 
 /** Returns the quality that a sonar chooses in one snapshot, for its configuration's target and max samples. */
 Quality chooseQuality(const SonarConfig& config, const types::Snapshot& scene);

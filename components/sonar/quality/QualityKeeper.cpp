@@ -10,14 +10,14 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr int patience_after_fall = 20, max_patience = 320, forgiven_after = 400, more_patience = 4, most_turns = 1024;
+constexpr int patience_after_fall = 20, max_patience = 320, forgiven_after = 400, more_patience = 4, max_turns = 1024;
 constexpr double fall_to = 0.9, climb_to = 0.97, max_change = 4, min_climb = 1.09;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double watched_share = 0.2618034;  ///< Share of the pings; irrational, to cover all bearings of a head.
 constexpr int rarely = 16;  ///< One of this number of due pings is evaluated where the budget is used up.
 constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, has_fallen = 0.67, near_limit = 0.8;
-constexpr double least_look = 0.25;  ///< Least share of the worst error by which a target is lowered [1].
+constexpr double min_look = 0.25;  ///< Min share of the worst error by which a target is lowered [1].
 constexpr double overhead = 0.15,
                  pings_to_choose = 100;  ///< Max total cost of new choices [share of the pings, pings].
 constexpr double min_per_change = 1.5;   ///< Least growth of the error with the difference to a coarser ping [1].
@@ -71,7 +71,7 @@ QualityKeeper::QualityKeeper(const SonarConfig& config, int turn)
       target_(config.targetError().value_or(0)),
       turn_(turn),
       ladder_(config),
-      estimator_(config, target_ > 0 ? least_share * target_ : least_error) {
+      estimator_(config, target_ > 0 ? min_share * target_ : min_error) {
     if (config.quality.budget_ms) budget_.emplace(*config.quality.budget_ms, Quality().samples() * beams_);
 }
 
@@ -147,7 +147,7 @@ bool QualityKeeper::isDue() const {
 double QualityKeeper::errorOf(double change) {
     if (change_ < 0) {  // the first look at a quality that was chosen for its time
         change_ = change;
-        const double error = std::max(off_measure * per_change_ * change, least_error);
+        const double error = std::max(off_measure * per_change_ * change, min_error);
         model_ = model_.scaled(error / model_.at.error);
         measured_ = model_.at.error = error;
     }
@@ -159,7 +159,7 @@ void QualityKeeper::watch(SonarRenderer& renderer, const types::Snapshot& scene,
     const double error = errorOf(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
     worst_ = std::max(worst_, error);
     if (error > std::max(off_target * target_, off_prediction * measured_) && mayChoose()) {
-        if (std::exchange(lowered_, false)) turns_ = std::min(more_patience * turns_, most_turns);
+        if (std::exchange(lowered_, false)) turns_ = std::min(more_patience * turns_, max_turns);
         return choose(renderer, scene, ping, target_, turn_ == 1 ? Quality() : model_.at);
     }
     model_.at.error = std::max(model_.at.error, error);
@@ -172,7 +172,7 @@ void QualityKeeper::settle(SonarRenderer& renderer, const types::Snapshot& scene
     model_.at.error = worst;
     const bool is_idle = worst <= well_within * target_ && worst <= has_fallen * measured_;
     if (!is_idle || model_.at == Quality() || !mayChoose()) return;
-    const double look = worst > 0 ? std::max(error / worst, least_look) : 1;
+    const double look = worst > 0 ? std::max(error / worst, min_look) : 1;
     choose(renderer, scene, ping, target_ * look, {});
     model_.at.error /= look;
     lowered_ = true;

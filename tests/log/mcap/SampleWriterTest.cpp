@@ -303,6 +303,7 @@ TEST(SampleWriterTest, EachFileHasTheStreamsMetadataAndTheDeploymentOnce) {
         log.write(log.addStream<types::Sonar>("a.ping", first), {1}, smallPing(1));
         log.write(log.addStream<types::Sonar>("b.ping", second), {1}, smallPing(1));
         log.next(folder / "x.1.mcap");
+        log.flush();
     }
     copyLog({folder / "x.0.mcap"}, other / "y.0.mcap");
     for (const auto& file : {folder / "x.0.mcap", folder / "x.1.mcap", other / "y.0.mcap"}) {
@@ -339,7 +340,8 @@ TEST(SampleWriterTest, MoreThanAChunkIsReadBack) {
 TEST(SampleWriterTest, ReportsAFullDisk) {
     const Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.mcap");
-    EXPECT_THROW(SampleWriter(folder / "x.mcap", {}), std::runtime_error);
+    SampleWriter log(folder / "x.mcap", {});
+    EXPECT_THROW(log.flush(), std::runtime_error);
 }
 
 }  // namespace

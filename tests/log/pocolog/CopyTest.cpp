@@ -135,6 +135,7 @@ void writeStream(const std::filesystem::path& path, const std::string& type, con
     Writer log(path);
     log.declare("a.b", type, registry, {});
     log.declare("c.d", "/int32_t", "<typelib/>", {});
+    log.flush();
 }
 
 TEST_F(CopyTest, StreamsOfOneNameAreNotJoinedWhenTheirTypesOrLayoutsDiffer) {

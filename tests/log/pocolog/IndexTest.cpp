@@ -53,6 +53,8 @@ TEST(IndexTest, RemovesAnOldIndexWhenItsLogIsWrittenAgain) {
     Folder folder;
     writeBytes(folder / "x.0.idx", {'o', 'l', 'd'});
     Writer log(folder / "x.0.log");
+    EXPECT_TRUE(std::filesystem::exists(folder / "x.0.idx")) << "nothing is written yet";
+    log.flush();
     EXPECT_FALSE(std::filesystem::exists(folder / "x.0.idx"));
 }
 
