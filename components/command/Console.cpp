@@ -54,9 +54,10 @@ public:
         if (!thread_.joinable() || pending()) return;
         ending_ = true;
         work_.notify_one();
+        std::thread ended = std::move(thread_);  // from here on, callers print
         lock.unlock();
-        thread_.join();
-        thread_ = {};
+        ended.join();
+        lock.lock();
         ending_ = false;
     }
 

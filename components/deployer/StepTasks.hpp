@@ -11,7 +11,6 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/sonar/TriggeredTask.hpp"
 #include "types/DepthMap.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"

@@ -39,7 +39,9 @@ void OculusTask::listen(Network& network) {
     if (device.device_address.empty()) device.device_address = config->address;
     emulator_.emplace(device, now());
     clients_.clear();
-    openRecord();
+    recorded_.reset();  // opened at the start: a run that fails before leaves the file as it is
+    if (config->record && !std::filesystem::is_directory(outputPath(*config->record).parent_path()))
+        throw NetworkError("record", "is " + outputPath(*config->record).string() + ", which cannot be written");
     no_codes_ = {};
     try {
         sendStatus(emulator_->tick(now()).status, network);
@@ -64,7 +66,11 @@ void OculusTask::openRecord() {
 }
 
 bool OculusTask::startHook() {
-    if (!recorded_) openRecord();
+    try {
+        openRecord();
+    } catch (const NetworkError& error) {
+        throw types::ConfigError("", name() + "." + error.property, error.what());
+    }
     return true;
 }
 
@@ -83,7 +89,11 @@ void OculusTask::record(const Bytes& message) {
     if (!recorded_) return void(++unrecorded_);
     try {
         const Bytes item = bytesOf(itemOf(now().seconds(), message));
-        recorded_->append({item.begin(), item.end()});
+        const std::vector<char> bytes(item.begin(), item.end());
+        if (!framework::mayLose(environment())) return recorded_->append(bytes);
+        if (recorded_->tryAppend(bytes)) return;
+        ++unrecorded_;
+        record_failure_ = "the disk is slower than the pings";
     } catch (const std::exception& failure) {
         endRecord(failure);
     }

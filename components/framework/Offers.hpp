@@ -35,7 +35,7 @@ class ReturnSource {
 public:
     virtual ~ReturnSource() = default;
 
-    /** Returns what is known of the bins of its samples, with the present configuration. */
+    /** Returns how its samples fall with range, with the present configuration. */
     virtual types::ReturnRules returnRules() const = 0;
 };
 

@@ -22,7 +22,7 @@ std::optional<types::PropertyValue> upstreamValue(const InputPortBase& port, std
 /** As upstreamValue, for a number. */
 std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer_list<const char*> paths);
 
-/** Returns what is known of the bins of a port's samples: of the nearest ReturnSource upstream, and of the receiver
+/** Returns how the samples of a port fall with range: after the nearest ReturnSource upstream, and the receiver
  *  between; the defaults where there is no such source.
  *  @param amplified  content of the ports whose samples a receiver has amplified */
 types::ReturnRules upstreamReturnRules(const InputPortBase& port, const char* amplified);

@@ -1,5 +1,6 @@
 #include "components/logger/LogThread.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "types/Thread.hpp"
@@ -26,7 +27,7 @@ LogThread::LogThread(log::Writer& log, Rotation& rotation, size_t capacity, doub
     : log_(log),
       rotation_(rotation),
       kept_before_(log.kept()),
-      flush_period_(nanoseconds(flush_period)),
+      flush_period_(nanoseconds(std::min(flush_period, sync_period))),
       sync_period_(nanoseconds(sync_period)),
       at_failure_(at_failure),
       opened_(log.path()),
@@ -135,9 +136,10 @@ void LogThread::work(Entry* entry) {
 }
 
 void LogThread::flush() {
-    if (Clock::now() < next_sync_) return log_.flush();
+    const Clock::time_point begin = Clock::now();
+    if (begin + flush_period_ <= next_sync_) return log_.flush();  // the next flush is in time
     log_.sync();
-    next_sync_ = Clock::now() + sync_period_;
+    next_sync_ = begin + sync_period_;
 }
 
 void LogThread::write(Entry& entry) {

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
 #include <memory>
 #include <utility>
 
 #include "components/scene/MaterialNames.hpp"
+#include "types/Ascii.hpp"
 #include "types/DidYouMean.hpp"
 #include "types/Extent.hpp"
 
@@ -26,10 +26,9 @@ constexpr double large = 10;          ///< Shorter side of a large object [m].
 std::vector<std::string> wordsOf(const std::string& name) {
     std::vector<std::string> words(1);
     for (size_t i = 0; i < name.size(); ++i) {
-        const auto c = static_cast<unsigned char>(name[i]);
-        const bool begins = std::isupper(c) && i > 0 && std::islower(static_cast<unsigned char>(name[i - 1]));
-        if ((begins || !std::isalpha(c)) && !words.back().empty()) words.emplace_back();
-        if (std::isalpha(c)) words.back() += static_cast<char>(std::tolower(c));
+        const bool begins = i > 0 && types::isUpperLetter(name[i]) && types::isLowerLetter(name[i - 1]);
+        if ((begins || !types::isLetter(name[i])) && !words.back().empty()) words.emplace_back();
+        if (types::isLetter(name[i])) words.back() += types::lowered(name[i]);
     }
     return words;
 }

@@ -279,7 +279,7 @@ void PingTask::render() {
     const auto sample = pool_.take();
     const auto reported = takeTruth();
     const auto signals = elements.connected() ? signals_.take() : nullptr;
-    if (signals) renderer_->setElements(*sample, signals.get());
+    renderer_->setElements(*sample, signals.get());
     const auto start = std::chrono::steady_clock::now();
     const bool received = renderPing(*renderer_, takenScene(), *sample, reported.get());
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;

@@ -17,6 +17,7 @@
 #include "types/Elapsed.hpp"
 
 namespace insonify::sonar {
+
 bool ScanningSonarTask::startHook() {
     scan_.emplace(config->head);
     asked_ = {};

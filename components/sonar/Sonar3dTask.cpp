@@ -185,12 +185,13 @@ void Sonar3dTask::writeMore(const types::Sonar& sample, const types::Pose& sonar
 }
 
 void Sonar3dTask::findStrongest(const types::Sonar& sample, std::vector<uint32_t>& strongest) {
-    DetectionRules rules{detectionRules().returns, {}};
     const std::vector<float>& fan = detectionRules().water;
-    if (!fan.empty()) rules.water.assign(sample.bins.size(), 0);
+    summed_rules_.returns = detectionRules().returns;
+    summed_rules_.water.assign(fan.empty() ? 0 : sample.bins.size(), 0);
     for (size_t beam = 0; beam < sample.beam_count; ++beam)  // each is the sum over all elevations
-        for (size_t i = 0; i < fan.size(); ++i) rules.water[beam * sample.bin_count + i % sample.bin_count] += fan[i];
-    PingTask::findStrongest(sample, rules, strongest);
+        for (size_t i = 0; i < fan.size(); ++i)
+            summed_rules_.water[beam * sample.bin_count + i % sample.bin_count] += fan[i];
+    PingTask::findStrongest(sample, summed_rules_, strongest);
 }
 
 void Sonar3dTask::writeReturnTruth() {

@@ -104,6 +104,7 @@ private:
     types::DepthMap map_;
     std::vector<double> levels_;  ///< Of the return of each cell of the map, without spreading [1].
     Detector detector_;
+    DetectionRules summed_rules_;  ///< Of the sums over all elevations.
     GridTruth grid_truth_;
     types::SonarTruth fan_truth_;     ///< Truth of one azimuth.
     types::SonarTruth return_truth_;  ///< One bin for each cell of the map.

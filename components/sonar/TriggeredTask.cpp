@@ -98,11 +98,12 @@ std::map<std::string, std::string> TriggeredTask::changedBy(const types::SonarSe
 
 void TriggeredTask::applySettings(const types::SonarSettings& asked) {
     const auto changed = changedBy(asked);
+    const auto before = sonarConfig().speed_of_sound;
+    if (!changed.empty()) blockWith(changed.begin()->first, properties())->setAll(changed);
     if (asked.speed_of_sound == 0)
         own_speed_.reset();
     else if (!own_speed_ && changed.contains("speed_of_sound"))
-        own_speed_ = sonarConfig().speed_of_sound;
-    if (!changed.empty()) blockWith(changed.begin()->first, properties())->setAll(changed);
+        own_speed_ = before;
     if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
 }
 

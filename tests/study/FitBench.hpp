@@ -71,7 +71,7 @@ inline bool expectTruth(const RecordingFit& fit, const auto& truth, double range
     const double true_shape = shape->found.value / ratio;  // because the cell is the same
     EXPECT_TRUE(shape->found.low < true_shape && true_shape < shape->found.high) << shape->text();
     if (shape->is_determined) {
-        EXPECT_NEAR(ratio, 1, 0.2) << shape->text();
+        EXPECT_NEAR(ratio, 1, 0.25) << shape->text();
     }
     return shape->is_determined;
 }

@@ -70,13 +70,22 @@ struct Awaited {
     }
 };
 
+/** Returns whether an urgent thread is late in one of several tries: on a busy machine not in each. */
+template <class Shared>
+bool isLateOnce() {
+    for (int i = 0; i < 8; ++i) {
+        Shared shared;
+        if (!*urgentIsFirst(shared)) return true;
+    }
+    return false;
+}
+
 TEST(ThreadTest, AnUrgentThreadWaitsForTheOwnerOfAPriorityMutexOnly) {
     Locked<PriorityMutex> inherits;
     const auto first = urgentIsFirst(inherits);
     if (!first) GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
     EXPECT_TRUE(*first);
-    Locked<std::mutex> ordinary;
-    EXPECT_FALSE(*urgentIsFirst(ordinary)) << "the test cannot tell";
+    EXPECT_TRUE(isLateOnce<Locked<std::mutex>>()) << "the test cannot tell";
 }
 
 TEST(ThreadTest, AThreadThatIsWaitedForHasTheSchedulingThatItIsLent) {
@@ -84,8 +93,7 @@ TEST(ThreadTest, AThreadThatIsWaitedForHasTheSchedulingThatItIsLent) {
     const auto first = urgentIsFirst(lends);
     if (!first) GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
     EXPECT_TRUE(*first);
-    Awaited<false> ordinary;
-    EXPECT_FALSE(*urgentIsFirst(ordinary)) << "the test cannot tell";
+    EXPECT_TRUE(isLateOnce<Awaited<false>>()) << "the test cannot tell";
 }
 
 TEST(ThreadTest, AConditionVariableWaitsWithAPriorityMutex) {

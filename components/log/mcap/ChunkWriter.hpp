@@ -63,11 +63,11 @@ public:
 
     bool isOpen() const { return file_ && file_->isOpen(); }  ///< False after a failed write.
     const std::filesystem::path& path() const { return summary_.path; }
-    uint64_t size() const { return position() + chunk_.size(); }                 ///< Including unflushed messages [B].
-    uint64_t kept() const { return kept_; }                                      ///< Messages in all files [1].
-    bool isEmpty() const { return file_->size() == 0 && chunk_messages_ == 0; }  ///< Nor has samples.
-    const FileSummary& summary() const { return summary_; }                      ///< Summary of the present file.
-    const std::vector<Schema>& schemas() const { return schemas_; }              ///< Number 1 is the first.
+    uint64_t size() const { return position() + chunk_.size(); }  ///< Including unflushed messages [B].
+    uint64_t kept() const { return kept_; }                       ///< Messages in all files [1].
+    bool isEmpty() const { return file_ && file_->size() == 0 && chunk_messages_ == 0; }  ///< Nor has samples.
+    const FileSummary& summary() const { return summary_; }          ///< Summary of the present file.
+    const std::vector<Schema>& schemas() const { return schemas_; }  ///< Number 1 is the first.
     const std::vector<Channel>& channels() const { return channels_; }
 
 private:
@@ -86,7 +86,7 @@ private:
 
     void open();
     /** End of the data so far [B]. */
-    uint64_t position() const { return file_->size() + head_.size(); }
+    uint64_t position() const { return (file_ ? file_->size() : 0) + head_.size(); }
     void openChunk();
     void closeChunk(ChunkIndex& index);
     void append(const std::vector<char>& bytes);

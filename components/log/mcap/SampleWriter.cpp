@@ -207,6 +207,13 @@ void SampleWriter::flush() {
     if (!std::exchange(described_, true)) bag_.write(out_);
 }
 
+void SampleWriter::sync() {
+    out_.sync();
+    if (std::exchange(description_synced_, true)) return;
+    described_ = true;
+    bag_.write(out_);  // after the sync, so that it is synced too
+}
+
 void SampleWriter::close() {
     if (std::exchange(closed_, true)) return;
     if (out_.isOpen()) transforms_.finish();
@@ -223,6 +230,7 @@ void SampleWriter::next(std::filesystem::path path) {
     out_.next(std::move(path));
     is_begun_ = true;
     transforms_.nextFile();
+    description_synced_ = false;
     bag_.write(out_);
 }
 

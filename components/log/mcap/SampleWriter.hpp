@@ -30,7 +30,7 @@ public:
     void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
 
     void flush() override;  ///< The first writes metadata.yaml as well.
-    void sync() override { out_.sync(); }
+    void sync() override;   ///< The first of a file writes metadata.yaml as well.
     void close() override;
     void next(std::filesystem::path path) override;
 
@@ -57,7 +57,7 @@ private:
     Bag bag_;
     ChunkWriter out_;
     Transforms transforms_;
-    bool closed_ = false, described_ = false;
+    bool closed_ = false, described_ = false, description_synced_ = false;
     bool is_begun_ = true;            ///< Whether the present file could be opened.
     std::vector<uint16_t> channels_;  ///< For each stream.
     std::vector<Options> options_;    ///< For each stream.

@@ -82,6 +82,7 @@ class _Functions:
 
 _calls, _functions = _Calls(), _Functions()
 atexit.register(_calls.end)
+os.register_at_fork(after_in_child=_calls.__init__)  # threads that were in a call stayed in the parent
 _text, _handle, _size = ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t
 _library = ctypes.CDLL(str(pathlib.Path(__file__).with_name("_insonify.so")))
 for _name, _result, *_arguments in (

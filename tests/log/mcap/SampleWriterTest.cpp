@@ -341,6 +341,7 @@ TEST(SampleWriterTest, ReportsAFullDisk) {
     const Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.mcap");
     SampleWriter log(folder / "x.mcap", {});
+    log.write(log.addStream<std::string>("a.text", {}), {1}, std::string("x"));
     EXPECT_THROW(log.flush(), std::runtime_error);
 }
 
