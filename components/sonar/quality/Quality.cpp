@@ -13,6 +13,7 @@ constexpr int max_rows = 2048, max_columns = 256, rungs_per_doubling = 8;
 constexpr int max_steps = 12, max_lowerings = 2;
 constexpr double step_of_samples = 4, worth_a_step = 0.95, worth_lowering = 0.8, worth_halving = 1.5;
 constexpr double margin = 1.2, margin_of_means = 1.5;  ///< Predicted error over the measured difference [1].
+constexpr double max_margin = 2, margin_of_lag = 1.15;  ///< Where finer pings change in the same direction [1].
 constexpr double min_part = 0.2;                       ///< Smallest part of rows or columns in an error [1].
 
 /** Returns whether a device can rasterise this number of columns per beam. */
@@ -91,6 +92,18 @@ double ErrorEstimator::change(const std::vector<float>& coarse, const std::vecto
     return norm > 0 ? std::sqrt(error / norm) : 0;
 }
 
+double ErrorEstimator::lag(const std::vector<float>& coarse, const std::vector<float>& finer,
+                           const std::vector<float>& finest) const {
+    double along = 0, norm = 0;
+    for (size_t beam = 0; beam < finest.size(); beam += weights_.size())
+        for (size_t i = 0; i < weights_.size(); ++i) {
+            const double to_finest = double{finest[beam + i]} - coarse[beam + i];
+            along += weights_[i] * to_finest * (double{finest[beam + i]} - finer[beam + i]);
+            norm += weights_[i] * to_finest * to_finest;
+        }
+    return norm > 0 ? std::max(along / norm, 0.0) : 0;
+}
+
 void ErrorEstimator::render(SonarRenderer& renderer, const types::Snapshot& scene, int rows, int columns_per_beam,
                             types::Sonar& ping) {
     renderer.setQuality(rows, columns_per_beam);
@@ -115,7 +128,7 @@ ErrorModel ErrorEstimator::measure(SonarRenderer& renderer, const types::Snapsho
     finer(2.2, 2, other_);
     const double to_finer = change(ping.bins, other_.bins);
     finer(3, 3, finest_);
-    const double to_finest = change(ping.bins, finest_.bins);
+    const double to_finest = change(ping.bins, finest_.bins), lagging = lag(ping.bins, other_.bins, finest_.bins);
     const double ratio = finer(1, 2, other_), of_rows = std::min(change(other_.bins, finest_.bins), to_finest);
     double measured = std::max(to_finer, to_finest), of_columns = std::sqrt(to_finest * to_finest - of_rows * of_rows);
     if (ratio < 2) {  // these columns are the last that can be rasterised
@@ -124,7 +137,8 @@ ErrorModel ErrorEstimator::measure(SonarRenderer& renderer, const types::Snapsho
     }
     const double least = std::max(min_part * to_finest, 1e-12);
     ErrorModel model{quality, std::max(of_rows, least), std::max(of_columns, least)};
-    measured *= config_.model == Model::Physical ? margin : margin_of_means;
+    const double least_margin = config_.model == Model::Physical ? margin : margin_of_means;
+    measured *= std::clamp(margin_of_lag * (1 + 2 * lagging), least_margin, max_margin);
     model = model.scaled(measured / std::hypot(model.of_rows, model.of_columns));
     model.at.error = measured;
     return model;
