@@ -21,9 +21,9 @@ namespace insonify::sonar {
 namespace {
 
 /** Returns the configuration with the initial quality, until the first echo, where the quality is not given. */
-SonarConfig coarsest(SonarConfig config) {
+SonarConfig initial(SonarConfig config) {
     if (!config.choosesQuality()) return config;
-    const Quality quality;
+    const Quality quality = firstQuality(config);
     config.quality = {};
     config.quality.rows = quality.rows;
     config.quality.columns_per_beam = quality.columns_per_beam;
@@ -217,7 +217,7 @@ void PingTask::prepareRenderer() {
     diagnostics_.emplace(pingsPerTurn());
     RenderOptions options;
     options.threads = threads_;
-    renderer_ = std::make_unique<SonarRenderer>(coarsest(config), geometry_, options);
+    renderer_ = std::make_unique<SonarRenderer>(initial(config), geometry_, options);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
     takePlan();
 }

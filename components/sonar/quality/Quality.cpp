@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "components/sonar/fan/BeamFan.hpp"
+#include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -12,9 +13,10 @@ namespace {
 constexpr int max_rows = 2048, max_columns = 256, rungs_per_doubling = 8;
 constexpr int max_steps = 12, max_lowerings = 2;
 constexpr double step_of_samples = 4, worth_a_step = 0.95, worth_lowering = 0.8, worth_halving = 1.5;
-constexpr double margin = 1.2, margin_of_means = 1.5;  ///< Predicted error over the measured difference [1].
+constexpr double margin = 1.2, margin_of_means = 1.5;   ///< Predicted error over the measured difference [1].
 constexpr double max_margin = 2, margin_of_lag = 1.15;  ///< Where finer pings change in the same direction [1].
-constexpr double min_part = 0.2;                       ///< Smallest part of rows or columns in an error [1].
+constexpr double first_column_deg = 1.5;                ///< Widest column of a search's first ping [deg].
+constexpr double min_part = 0.2;                        ///< Smallest part of rows or columns in an error [1].
 
 /** Returns whether a device can rasterise this number of columns per beam. */
 bool fits(SonarConfig config, int columns) {
@@ -29,10 +31,20 @@ int fewerColumns(int columns) { return std::max(1, (columns + 1) / 2); }
 /** Returns up to `wanted` columns, as many as can be rasterised, and at least `columns`. */
 int moreColumns(const SonarConfig& config, int columns, int wanted) {
     while (wanted > columns && !fits(config, wanted)) --wanted;
-    return wanted;
+    return std::max(wanted, columns);
 }
 
 }  // namespace
+
+Quality firstQuality(const SonarConfig& config) {
+    const Quality least;
+    double widest = 0;
+    for (const Beam& beam : makeBeams(config)) widest = std::max(widest, beam.high - beam.low);
+    const double allowed = config.maxSamples().value_or(std::numeric_limits<double>::infinity()) / config.beams();
+    const double columns = std::min(widest / types::radians(first_column_deg), allowed / least.rows);
+    return {least.rows,
+            moreColumns(config, least.columns_per_beam, static_cast<int>(std::min(columns, double{max_columns})))};
+}
 
 double ErrorModel::error(int rows, int columns_per_beam) const {
     return std::hypot(of_rows * at.rows / rows, of_columns * at.columns_per_beam / columns_per_beam);
@@ -130,7 +142,14 @@ ErrorModel ErrorEstimator::measure(SonarRenderer& renderer, const types::Snapsho
     finer(3, 3, finest_);
     const double to_finest = change(ping.bins, finest_.bins), lagging = lag(ping.bins, other_.bins, finest_.bins);
     const double ratio = finer(1, 2, other_), of_rows = std::min(change(other_.bins, finest_.bins), to_finest);
-    double measured = std::max(to_finer, to_finest), of_columns = std::sqrt(to_finest * to_finest - of_rows * of_rows);
+    const bool is_below = 3 * rows <= finest_yet_.rows && 3 * columns <= finest_yet_.columns_per_beam;
+    const double to_reference = is_below ? change(ping.bins, reference_.bins) : 0;
+    if (Quality{3 * rows, 3 * columns}.samples() > finest_yet_.samples()) {
+        reference_.bins = finest_.bins;
+        finest_yet_ = {3 * rows, 3 * columns};
+    }
+    double measured = std::max({to_finer, to_finest, to_reference}),
+           of_columns = std::sqrt(to_finest * to_finest - of_rows * of_rows);
     if (ratio < 2) {  // these columns are the last that can be rasterised
         measured = std::hypot(measured, changeToCoarser(renderer, scene, ping, quality));
         of_columns = to_finest;
@@ -241,6 +260,7 @@ ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRe
         renderer.render(scene, ping);
     };
     Search search(ladder, goal);
+    estimator.begin();
     search.add(estimator.measure(renderer, scene, ping, start));
     Quality rendered = start;
     while (const auto next = search.next()) {
@@ -260,7 +280,7 @@ Quality chooseQuality(const SonarConfig& config, const types::Snapshot& scene) {
     SonarRenderer renderer(config, scene.geometry);
     ErrorEstimator estimator(config, target > 0 ? min_share * target : min_error);
     types::Sonar ping;
-    const Quality start;
+    const Quality start = firstQuality(config);
     renderer.setQuality(start.rows, start.columns_per_beam);
     renderer.render(scene, ping);
     const QualityGoal goal{target, config.maxSamples().value_or(infinity) / config.beams()};

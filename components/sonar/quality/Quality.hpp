@@ -21,6 +21,10 @@ struct Quality {
     }
 };
 
+/** Returns the quality before the first echo, at which a search begins: 64 rows, and columns of at most 1.5 deg, so
+ * that a wide beam finds a small body alone in the water; 2 at least, and no more than its max samples allow. */
+Quality firstQuality(const SonarConfig& config);
+
 /** The error predicted at one quality, in two parts that are inversely proportional to rows and to columns. */
 struct ErrorModel {
     Quality at;
@@ -59,8 +63,11 @@ class ErrorEstimator {
 public:
     /** `least`: the smallest error that is predicted where there is an echo [1]. */
     ErrorEstimator(const SonarConfig& config, double least);
-    /** Measures the error of a ping of this quality, and its parts; costs 15 pings. Leaves the renderer at another
-     *  quality. */
+    /** Forgets the finest ping that was rendered to measure. Call it for each new snapshot. */
+    void begin() { finest_yet_ = {}; }
+    /** Measures the error of a ping of this quality, and its parts; costs 15 pings. Its difference to the finest ping
+     *  since begin() counts as well: a coarse ping and those next to it may miss a small body. Leaves the renderer at
+     *  another quality. */
     ErrorModel measure(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
                        const Quality& quality);
     /** Returns the difference to a ping of three fifths of the rows and half the columns, relative to the ping; costs
@@ -86,7 +93,8 @@ private:
     SonarConfig config_;
     double least_;
     std::vector<double> weights_;  ///< Weights of the squares of a beam's bins [1].
-    types::Sonar finest_, other_;
+    types::Sonar finest_, other_, reference_;
+    Quality finest_yet_{0, 0};  ///< Of `reference_`.
     double rendered_ = 0;
 };
 

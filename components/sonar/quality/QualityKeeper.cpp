@@ -72,7 +72,8 @@ QualityKeeper::QualityKeeper(const SonarConfig& config, int turn)
       turn_(turn),
       ladder_(config),
       estimator_(config, target_ > 0 ? min_share * target_ : min_error) {
-    if (config.quality.budget_ms) budget_.emplace(*config.quality.budget_ms, Quality().samples() * beams_);
+    model_.at = firstQuality(config);
+    if (config.quality.budget_ms) budget_.emplace(*config.quality.budget_ms, model_.at.samples() * beams_);
 }
 
 double QualityKeeper::maxSamples() const {
@@ -187,8 +188,10 @@ void QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& s
     const double before = maxSamples();
     if (!budget_ || !budget_->note(ms, model_.at.samples() * beams_)) return;
     const bool rises = maxSamples() > before;
-    if (rises && pings_to_measure * ms <= max_delay * budget_->budget())
+    if (rises && pings_to_measure * ms <= max_delay * budget_->budget()) {
+        estimator_.begin();
         take(estimator_.measure(renderer, scene, ping, model_.at), renderer, scene, ping);
+    }
     const Quality next = ladder_.choose(model_, target_share * target_, maxSamples(), rises ? model_.at : Quality());
     if (!(next == model_.at)) next_ = next;
 }
