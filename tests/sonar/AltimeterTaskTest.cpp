@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "components/sonar/AltimeterTask.hpp"
-#include "tests/support/Scenes.hpp"
+#include "tests/support/Hills.hpp"
 #include "tests/support/TaskBench.hpp"
 
 namespace insonify::sonar {
@@ -88,6 +88,41 @@ TEST_F(AltimeterTaskTest, TheRangeIsUnknownWithoutAReturn) {
     startWide(25);
     EXPECT_FALSE(rangeAt(40).isKnown());
     EXPECT_TRUE(rangeAt(20).isKnown());
+}
+
+/** Without a return it looks for surfaces that are too near. That costs little, also where each ping has another
+ *  geometry, as over the tiles of a survey. */
+TEST_F(AltimeterTaskTest, ASearchForSurfacesThatAreTooNearCostsLittle) {
+    std::vector<types::Mesh> meshes(1, test::hills(60));
+    const auto always = sceneOf(std::move(meshes), -20);
+    std::vector<std::shared_ptr<types::Geometry>> scenes;
+    for (int i = 0; i < 40; ++i) {
+        scenes.push_back(std::make_shared<types::Geometry>(*always));
+        scenes.back()->meshes.push_back(ground(i % 2 == 0 ? -0.5f : -90, 4));
+        scenes.back()->objects.push_back({"tile", 1, glm::dmat4(1), true});
+    }
+    const auto secondsWith = [&](double range_min) {
+        AltimeterConfig config;
+        config.sonar.range = 15;
+        config.sonar.range_min = range_min;
+        config.sonar.bin_count = 100;
+        task_.stop();
+        task_.cleanup();
+        startWith(config);
+        const auto ping = [&](size_t i) {
+            types::Snapshot snapshot = test::snapshotOf(scenes[i]);
+            snapshot.sonar.orientation = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
+            const types::Range reported = answerTo(std::make_shared<types::Snapshot>(snapshot));
+            EXPECT_EQ(reported.range == types::Range::too_near, range_min > 0 && i % 2 == 0) << i;
+        };
+        for (size_t i = 0; i < 4; ++i) ping(i);
+        return test::processorSeconds([&] {
+            for (size_t i = 4; i < scenes.size(); ++i) ping(i);
+        });
+    };
+    const double without = secondsWith(0), with = secondsWith(1);
+    RecordProperty("ratio", std::to_string(with / without));
+    EXPECT_LT(with, 2.5 * without) << 1e3 * with / 36 << " and " << 1e3 * without / 36 << " ms per ping";
 }
 
 }  // namespace
