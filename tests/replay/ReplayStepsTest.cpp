@@ -104,7 +104,9 @@ TEST(ReplayStepsTest, TheNoticeOfAGapNamesTheStartBehindIt) {
     const auto offset = [](int i) { return i < 20 ? 0.0 : i < 40 ? -7200.0 : -100.0; };
     Recorded gap(offset);
     gap.begin();
-    const std::string notice = gap.bench.task.notices().front();
+    const std::vector<std::string> notices = gap.bench.task.notices();
+    ASSERT_FALSE(notices.empty());
+    const std::string& notice = notices.front();
     const size_t at = notice.find("from: ");
     ASSERT_NE(at, notice.npos) << notice;
     const double from = std::stod(notice.substr(at + 6));
