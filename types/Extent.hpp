@@ -19,7 +19,8 @@ struct Extent {
     void add(const Extent& other);
 };
 
-/** Returns the extent in the world of the vertices that triangles of a mesh use. */
+/** Returns the extent in the world of the vertices that triangles of a mesh use. Looks only at clusters whose boxes are
+ *  not inside of the extent so far: a small share of a large mesh. */
 Extent extentOf(const Mesh& mesh, const glm::dmat4& world_from_mesh);
 /** Returns the extent of all objects at their places in the geometry. */
 Extent extentOf(const Geometry& geometry);
@@ -32,7 +33,8 @@ struct NearestPoint {
     glm::dvec3 point{0};                                        ///< In the world [m].
     uint32_t object = 0;                                        ///< Index into Geometry::objects [1].
 };
-/** Returns the nearest point of all objects at the time of the snapshot. Takes time in proportion to the triangles. */
+/** Returns the nearest point of all objects at the time of the snapshot. Looks only at clusters whose boxes are nearer
+ *  than the nearest point so far: a small share of a large mesh, except where most of it is equally near. */
 NearestPoint nearestPoint(const Snapshot& snapshot, const glm::dvec3& place);
 
 /** Returns the point of the triangle a, b, c nearest to p (Ericson, Real-Time Collision Detection, 2005, 5.1.5). */

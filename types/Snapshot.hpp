@@ -63,6 +63,9 @@ struct Snapshot {
     /** Meshes that later geometries may have, so that their data can be prepared. Null: none known. */
     std::shared_ptr<const std::vector<MeshPtr>> ahead;
     std::vector<MovedObject> moved;
+    /** Objects that this or a later snapshot may move, ascending, so that sonars need not take them out of the scene at
+     *  rest when they do. Null: none known. */
+    std::shared_ptr<const std::vector<uint32_t>> movable;
     std::vector<DeformedObject> deformed;  ///< Ascending by object, each at most once.
     std::vector<JointPose> joints;         ///< Joints or targets of all deformed objects.
     std::vector<MorphPose> morphs;         ///< Joints or targets of all deformed objects.

@@ -16,6 +16,8 @@
 #include <thread>
 #include <utility>
 
+#include "types/Thread.hpp"
+
 namespace insonify::command {
 namespace {
 
@@ -45,7 +47,7 @@ class Console {
 public:
     void start() {
         const std::lock_guard lock(mutex_);
-        if (!thread_.joinable()) thread_ = std::thread(&Console::loop, this);
+        if (!thread_.joinable()) thread_ = types::startThread("the console", [this] { loop(); });
     }
 
     void finish() {

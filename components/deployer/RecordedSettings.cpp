@@ -19,6 +19,7 @@
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/YamlText.hpp"
+#include "components/log/LoggerClock.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "components/sonar/PingTask.hpp"
 #include "types/Ascii.hpp"
@@ -174,6 +175,15 @@ bool names(const std::vector<std::string>& set, const std::string& property) {
     });
 }
 
+/** Returns the stamp in a log this time after its first, without the steps of the logger's clock [s]. */
+types::Time stampAt(const log::Reader& log, double seconds) {
+    const std::vector<log::SampleRef>& samples = log.samples();
+    const log::LoggerClock clock(samples);
+    const types::Time even = samples.front().time + types::Time::fromSeconds(seconds);
+    const size_t index = clock.indexAt(samples, seconds);
+    return index == samples.size() ? even : even - (clock.evenTime(samples[index]) - samples[index].time);
+}
+
 /** Collects the differences. */
 struct Settings : RecordedSettings {
     std::set<std::string> settled;  ///< "task.property" that needs no further assignment.
@@ -211,7 +221,7 @@ struct Settings : RecordedSettings {
         for (const auto& [property, values] : histories) {
             if (settled.contains(property)) continue;
             const Pings& of_task = pings.at(splitPort(property).first);
-            const types::Time begin = log.samples().front().time + types::Time::fromSeconds(from);
+            const types::Time begin = stampAt(log, from);
             const types::Time start = of_task.samples.empty() ? begin : std::max(begin, of_task.samples.front().time);
             const RecordedProperty history = historyOf(property, values, of_task, start);
             const auto now = present.find(property);

@@ -16,6 +16,7 @@
 #include "components/deployer/RunCommand.hpp"
 #include "components/deployer/Score.hpp"
 #include "components/deployer/StopSignal.hpp"
+#include "components/log/LoggerClock.hpp"
 #include "components/log/Reader.hpp"
 #include "types/Reason.hpp"
 
@@ -163,17 +164,27 @@ void refuseFolderOf(const std::string& log, const std::string& out) {
         throw types::ConfigError(out, "--out", "is the folder of the log, whose files would be replaced; give another");
 }
 
+/** Returns where a replay starts, after the log's first stamp without the steps of the logger's clock [s]. A date is
+ *  that of the first sample with this stamp or a later one, which may be before or after a step. */
+double startIn(const log::Reader& log, const std::string& from) {
+    const std::vector<log::SampleRef>& samples = log.samples();
+    const types::Time first = samples.front().time, given = log::readTime(from, "--from", first);
+    if (given < first)
+        throw types::ConfigError("", "--from", "is " + from + "; the log begins at " + log::readable(first));
+    const bool is_date = log::readTime(from, "--from") == given && first != types::Time{};
+    if (!is_date) return (given - first).seconds();
+    const log::LoggerClock clock(samples);
+    const auto at = std::ranges::find_if(samples, [&](const auto& sample) { return sample.time >= given; });
+    if (at == samples.end())  // the task refuses it
+        return std::max(given - first, clock.span(samples) + types::Time{1}).seconds();
+    return (given - first + clock.evenTime(*at) - at->time).seconds();
+}
+
 int replay(Asked options) {
     const auto opened = log::openLog(options.replay.log);
     refuseFolderOf(options.replay.log, options.out);
     log::Reader& log = *opened;
-    if (!options.from.empty() && !log.samples().empty()) {
-        const types::Time start = log.samples().front().time;
-        options.replay.from = (log::readTime(options.from, "--from", start) - start).seconds();
-        if (options.replay.from < 0)
-            throw types::ConfigError("", "--from",
-                                     "is " + options.from + "; the log begins at " + log::readable(start));
-    }
+    if (!options.from.empty() && !log.samples().empty()) options.replay.from = startIn(log, options.from);
     std::vector<RecordedProperty> changed;
     if (options.replay.rerender) changed = takeSettings(log, options);
     try {

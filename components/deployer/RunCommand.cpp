@@ -206,12 +206,12 @@ void printNew(const framework::Deployment& deployment, const Notices& reported) 
 
 /** Prints what the run has made. */
 void report(const framework::Deployment& deployment, const RunOptions& options, const Summary& summary,
-            const std::filesystem::path& folder, std::filesystem::file_time_type begin) {
+            const std::filesystem::path& folder, const FolderListing& before) {
     if (options.verbose) command::addResult(summary.details());
     command::addResult(summary.text());
     if (const uint64_t dropped = command::droppedDiagnostics(); dropped > 0)
         command::printResult("{} lines of notices and warnings could not be printed\n", dropped);
-    if (!options.shard) command::addResult(filesText(folder, begin, deployment));
+    if (!options.shard) command::addResult(filesText(folder, before, deployment));
 }
 
 /** Splits at commas outside of brackets. */
@@ -269,7 +269,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     refuseUnwritable(options.summary, deployment.spec().file);
 
     const std::atomic<bool>& stop = stopOnSignals();
-    const auto begin = runBegin();
+    const FolderListing before = options.quiet || options.shard ? FolderListing() : listingOf(folder.path());
     command::startPrinting();
     deployment.configure();
     refuseUnmeantLength(deployment, options);
@@ -287,7 +287,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     for (std::string& failure : deployment.cleanup()) result.failures.push_back(std::move(failure));
     // All files are closed: from here on, the console may keep the process waiting.
     if (!options.summary.empty()) write(summary.json(), options.summary);
-    if (!options.quiet) report(deployment, options, summary, folder.path(), begin);
+    if (!options.quiet) report(deployment, options, summary, folder.path(), before);
     for (const std::string& failure : result.failures) command::printDiagnostic("insonify: {}\n", failure);
     return result.failed() ? 1 : 0;
 }

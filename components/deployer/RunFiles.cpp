@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <vector>
 
@@ -16,18 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Files = std::vector<fs::path>;
-
-/** Returns the files of a folder that were written since `begin`, by name; without the indices of logs. */
-Files writtenIn(const fs::path& folder, fs::file_time_type begin) {
-    Files files;
-    std::error_code failed;
-    for (const auto& entry : fs::recursive_directory_iterator(folder, failed))
-        if (entry.is_regular_file(failed) && entry.path().extension() != ".idx" &&
-            entry.last_write_time(failed) >= begin)
-            files.push_back(entry.path().lexically_relative(folder));
-    std::ranges::sort(files);
-    return files;
-}
 
 /** Returns a name without the number at its end: fan_.png for fan_000012.png. */
 std::string kindOf(const fs::path& file) {
@@ -75,14 +62,27 @@ std::string drawingCommand(const fs::path& folder, const Files& files, const fra
 
 }  // namespace
 
-fs::file_time_type runBegin() {
-    constexpr std::chrono::milliseconds step{20};  // of the clock by which the system stamps files
-    return fs::file_time_type::clock::now() - step;
+FolderListing listingOf(const fs::path& folder) {
+    FolderListing listing;
+    std::error_code failed;
+    for (const auto& entry : fs::recursive_directory_iterator(folder, failed))
+        if (entry.is_regular_file(failed))
+            listing[entry.path().lexically_relative(folder)] = {entry.file_size(failed), entry.last_write_time(failed)};
+    return listing;
 }
 
-std::string filesText(const fs::path& folder, fs::file_time_type begin, const framework::Deployment& deployment) {
+std::vector<fs::path> writtenSince(const FolderListing& before, const fs::path& folder) {
+    Files files;
+    for (const auto& [file, state] : listingOf(folder)) {
+        const auto was = before.find(file);
+        if (file.extension() != ".idx" && (was == before.end() || was->second != state)) files.push_back(file);
+    }
+    return files;
+}
+
+std::string filesText(const fs::path& folder, const FolderListing& before, const framework::Deployment& deployment) {
     constexpr size_t shown = 10;
-    const Files files = writtenIn(folder, begin);
+    const Files files = writtenSince(before, folder);
     std::map<std::string, Files> kinds;
     for (const fs::path& file : files) kinds[kindOf(file)].push_back(file);
     std::string text = fmt::format("files in {}{}\n", folder.string(), files.empty() ? ": none" : "");

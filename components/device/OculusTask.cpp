@@ -27,6 +27,7 @@ std::vector<std::string> OculusTask::notices() const {
         all.push_back(std::to_string(emulator_->lost()) + " pings of the sonar did not arrive in time");
     if (emulator_ && emulator_->refused() > 0)
         all.push_back(std::to_string(emulator_->refused()) + " messages of drivers were not valid settings");
+    const std::lock_guard alone(failure_mutex_);
     if (unrecorded_ > 0)
         all.push_back("Warning: at least " + std::to_string(unrecorded_) + " pings are not in " + *config->record +
                       ": " + record_failure_);
@@ -52,7 +53,11 @@ void OculusTask::listen(Network& network) {
 
 void OculusTask::openRecord() {
     recorded_.reset();
-    unrecorded_ = 0;
+    {
+        const std::lock_guard alone(failure_mutex_);
+        unrecorded_ = 0;
+        record_failure_.clear();
+    }
     if (!config->record) return;
     const std::filesystem::path file = outputPath(*config->record);
     try {
@@ -86,25 +91,29 @@ void OculusTask::stopHook() {
 
 void OculusTask::record(const Bytes& message) {
     if (!config->record || message.empty()) return;
-    if (!recorded_) return void(++unrecorded_);
+    if (!recorded_) return countUnrecorded("");
     try {
         const Bytes item = bytesOf(itemOf(now().seconds(), message));
         const std::vector<char> bytes(item.begin(), item.end());
         if (!framework::mayLose(environment())) return recorded_->append(bytes);
         if (recorded_->tryAppend(bytes)) return;
-        ++unrecorded_;
-        record_failure_ = "the disk is slower than the pings";
+        countUnrecorded("the disk is slower than the pings");
     } catch (const std::exception& failure) {
         endRecord(failure);
     }
 }
 
+void OculusTask::countUnrecorded(const std::string& why) {
+    const std::lock_guard alone(failure_mutex_);
+    ++unrecorded_;
+    if (!why.empty()) record_failure_ = why;
+}
+
 void OculusTask::endRecord(const std::exception& failure) {
     if (!framework::mayLose(environment())) throw;
-    record_failure_ = failure.what();
+    countUnrecorded(failure.what());
     recorded_.reset();
-    ++unrecorded_;
-    error(record_failure_ + "; the recording ends here, and further pings are not in it");
+    error(failure.what() + std::string("; the recording ends here, and further pings are not in it"));
 }
 
 void OculusTask::sendStatus(const Bytes& status, Network& network) const {

@@ -1,6 +1,6 @@
 #pragma once
-#include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -68,6 +68,8 @@ private:
     void openRecord();
     /** Adds a message to the recording. A message that the disk cannot take is counted where a run may lose samples. */
     void record(const Bytes& message);
+    /** Counts a ping that is not in the recording. `why`: empty: as the one before. */
+    void countUnrecorded(const std::string& why);
     /** Ends a recording that cannot be written any more; throws `failure` where a run may not lose samples. */
     void endRecord(const std::exception& failure);
     void sendStatus(const Bytes& status, Network& network) const;
@@ -77,8 +79,9 @@ private:
 
     std::optional<OculusEmulator> emulator_;
     std::unique_ptr<output::ByteFile> recorded_;  ///< Null: no recording, or it cannot be written any more.
-    std::atomic<uint64_t> unrecorded_{0};         ///< Pings that are not in the recording [1].
-    std::string record_failure_;
+    mutable std::mutex failure_mutex_;            ///< For the next two, which notices() reads on another thread.
+    uint64_t unrecorded_ = 0;                     ///< Pings that are not in the recording [1].
+    std::string record_failure_;                  ///< Why the last of them is not.
     std::set<Client> clients_;
     types::RecurringDiagnostic no_codes_;
 };

@@ -3,7 +3,6 @@
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -16,6 +15,8 @@
 #include <vector>
 
 #include "components/gpu/Program.hpp"
+#include "types/OwnProcess.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::gpu {
 namespace {
@@ -43,8 +44,8 @@ bool hasNode() {
 
 /** OpenGL's libraries have threads and displays of their own, which a forked child lacks. */
 void requireOwnProcess() {
-    static const pid_t first = getpid();
-    if (first != getpid())
+    static const types::OwnProcess first;
+    if (first.isForked())
         throw GlError(
             "OpenGL was used before this process was forked from another; start processes with spawn, or fork "
             "before the first sonar that rasterises");
@@ -219,11 +220,8 @@ bool EglContext::hasCard() {
         const auto look = [&] {
             found = std::ranges::any_of(all, isCard, [](const auto& one) { return one.display(); });
         };
-        try {
-            std::thread(look).join();  // a thread of its own, so that the caller's context stays current
-        } catch (const std::system_error& refused) {
-            throw GlError(std::string("no thread to look for a graphics card: ") + refused.code().message());
-        }
+        // A thread of its own, so that the caller's context stays current.
+        types::startThread("the search for a graphics card", look).join();
         return found;
     }();
     return has;

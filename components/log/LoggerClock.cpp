@@ -24,4 +24,20 @@ types::Time LoggerClock::evenTime(const SampleRef& at) const {
     return at.time + step->shift;
 }
 
+types::Time LoggerClock::sinceFirst(const std::vector<SampleRef>& samples, const SampleRef& at) const {
+    return evenTime(at) - evenTime(samples.front());
+}
+
+types::Time LoggerClock::span(const std::vector<SampleRef>& samples) const {
+    types::Time latest;
+    for (const SampleRef& at : samples) latest = std::max(latest, sinceFirst(samples, at));
+    return latest;
+}
+
+size_t LoggerClock::indexAt(const std::vector<SampleRef>& samples, double seconds) const {
+    const types::Time from = types::Time::fromSeconds(seconds);
+    const auto late_enough = [&](const SampleRef& at) { return sinceFirst(samples, at) >= from; };
+    return static_cast<size_t>(std::ranges::find_if(samples, late_enough) - samples.begin());
+}
+
 }  // namespace insonify::log

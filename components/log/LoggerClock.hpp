@@ -18,6 +18,13 @@ public:
 
     /** Returns the world time of a sample of the log without the steps; its recorded time where there are none. */
     types::Time evenTime(const SampleRef& at) const;
+    /** Returns the time from the first of these samples, all of the log, to one of them, without the steps. */
+    types::Time sinceFirst(const std::vector<SampleRef>& samples, const SampleRef& at) const;
+    /** Returns the time from the first of all samples to the latest, without the steps. */
+    types::Time span(const std::vector<SampleRef>& samples) const;
+    /** Returns the index of the first sample, in the log's order, at least this time after the first of all [s]; their
+     *  number: there is none. */
+    size_t indexAt(const std::vector<SampleRef>& samples, double seconds) const;
 
 private:
     struct Step {

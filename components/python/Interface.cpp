@@ -254,7 +254,8 @@ int insonify_step(Handle* simulation, const char* const* ports, const double* po
 }
 
 double insonify_time(const Handle* simulation) {
-    return dynamic_cast<const SimulationHandle&>(*simulation).simulation.time();
+    return guarded(std::numeric_limits<double>::quiet_NaN(),
+                   [&] { return dynamic_cast<const SimulationHandle&>(*simulation).simulation.time(); });
 }
 
 int insonify_reset(Handle* simulation, const uint64_t* seed) {

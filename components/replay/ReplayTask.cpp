@@ -10,31 +10,22 @@
 namespace insonify::replay {
 namespace {
 
-/** Returns the time from the first sample to the latest [s]. */
-double spanOf(const log::Reader& log) {
-    const auto& samples = log.samples();
-    if (samples.empty()) return 0;
-    return (std::ranges::max(samples, {}, &log::SampleRef::time).time - samples.front().time).seconds();
-}
-
 /** Returns a warning of the longest time without samples, if it is longer than an hour, as after stamps of another
- * clock.
- */
-std::string gapText(const log::Reader& log) {
+ *  clock. */
+std::string gapText(const std::vector<log::SampleRef>& samples, const log::LoggerClock& clock) {
     constexpr double long_gap = 3600;  // [s]
-    const auto& samples = log.samples();
-    types::Time before, gap, after;
-    for (size_t i = 0; i < samples.size(); ++i) {
-        if (i > 0 && samples[i].time - before > gap) gap = samples[i].time - before, after = samples[i].time;
-        before = i == 0 ? samples[i].time : std::max(before, samples[i].time);
+    types::Time before, gap, after;    // since the first sample
+    for (const log::SampleRef& at : samples) {
+        const types::Time time = clock.sinceFirst(samples, at);
+        if (time - before > gap) gap = time - before, after = time;
+        before = std::max(before, time);
     }
     if (!(gap.seconds() > long_gap)) return "";
-    const double from = (after - samples.front().time).seconds();
     return fmt::format(
         "Warning: the log has no sample for {:.6g} s (its stamps may be of two clocks), which its replay waits for; "
         "from: "
         "{:.6f} begins behind it, and pace: 0 does not wait",
-        gap.seconds(), from);
+        gap.seconds(), after.seconds());
 }
 
 /** Whether a stream has Rock's beams or scans, which are also pings. */
@@ -66,9 +57,9 @@ void ReplayTask::open() {
     if (log_) return;
     log_ = log::openLog(inputPath(config->file));
     by_stream_.resize(log_->streams().size());
-    span_s_ = spanOf(*log_);
-    gap_text_ = gapText(*log_);
     clock_ = log::LoggerClock(log_->samples());
+    span_s_ = clock_.span(log_->samples()).seconds();
+    gap_text_ = gapText(log_->samples(), clock_);
 }
 
 std::optional<types::Playback> ReplayTask::playback() const {
@@ -90,7 +81,8 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
 
 void ReplayTask::check(types::Diagnostics& diagnostics) const {
     try {
-        const double span = spanOf(*log::openLog(inputPath(config->file)));
+        const auto log = log::openLog(inputPath(config->file));
+        const double span = log::LoggerClock(log->samples()).span(log->samples()).seconds();
         if (config->from > span)
             diagnostics.push_back(
                 {"from", fmt::format("is {:g} s; the log ends {:g} s after its start", config->from, span)});
@@ -127,14 +119,6 @@ std::optional<types::Time> ReplayTask::nextStamp(const std::string& stream) cons
     return {};
 }
 
-size_t ReplayTask::indexAt(double seconds) const {
-    const auto& samples = log_->samples();
-    if (samples.empty()) return 0;
-    const types::Time from = samples.front().time + types::Time::fromSeconds(seconds);
-    const auto late_enough = [from](const log::SampleRef& at) { return at.time >= from; };
-    return static_cast<size_t>(std::ranges::find_if(samples, late_enough) - samples.begin());
-}
-
 size_t ReplayTask::withOutput(size_t index) const {
     const auto& samples = log_->samples();
     while (index < samples.size() && !by_stream_[samples[index].stream]) ++index;
@@ -150,7 +134,7 @@ void ReplayTask::settle() {
 }
 
 void ReplayTask::rewind() {
-    next_ = indexAt(config->from);
+    next_ = clock_.indexAt(log_->samples(), config->from);
     next_time_ = shift_ = pause_ = {};
     at_us_ = types::Time::fromSeconds(config->from).microseconds;
     pace_ = config->pace;
@@ -168,7 +152,7 @@ void ReplayTask::seekTo(double seconds) {
 }
 
 void ReplayTask::jump(double seconds) {
-    next_ = withOutput(indexAt(seconds));
+    next_ = withOutput(clock_.indexAt(log_->samples(), seconds));
     finished_ = next_ == log_->samples().size();
     if (finished_) return;
     if (played_us_ != 0) {
@@ -178,7 +162,7 @@ void ReplayTask::jump(double seconds) {
         pause_ = next_time_ - after;
     }
     shift_ = next_time_ - clock_.evenTime(log_->samples()[next_]);
-    at_us_ = (log_->samples()[next_].time - log_->samples().front().time).microseconds;
+    at_us_ = clock_.sinceFirst(log_->samples(), log_->samples()[next_]).microseconds;
 }
 
 std::function<types::Time()> ReplayTask::clock(std::function<types::Time()> wall) {
@@ -189,10 +173,9 @@ std::function<types::Time()> ReplayTask::clock(std::function<types::Time()> wall
 types::Time ReplayTask::logTime() const {
     const double pace = pace_;
     if (pace == 0) return {std::max<int64_t>(first_us_, played_us_)};
-    std::lock_guard lock(clock_mutex_);
-    const types::Time wall = paused_us_ != 0 ? types::Time{paused_us_} : wall_();
-    const double seconds = started_us_ == 0 ? 0 : (wall - types::Time{started_us_}).seconds();
-    return types::Time{first_us_} + types::Time::fromSeconds(pace * seconds);
+    const int64_t clock = clock_us_;
+    const types::Time elapsed{clock < 0 ? -1 - clock : wall_().microseconds - clock};
+    return types::Time{first_us_} + types::Time::fromSeconds(pace * elapsed.seconds());
 }
 
 std::string ReplayTask::streamOf(const std::string& port) const {
@@ -219,9 +202,8 @@ bool ReplayTask::configureHook() {
 
 bool ReplayTask::startHook() {
     rewind();
-    std::lock_guard lock(clock_mutex_);
-    if (wall_) started_us_ = wall_().microseconds;
-    paused_us_ = 0;
+    if (wall_) clock_us_ = wall_().microseconds;
+    is_paused_ = false;
     return true;
 }
 
@@ -240,26 +222,24 @@ void ReplayTask::setPaused(bool on) {
     if (!wall_ || !isRunning())
         throw std::runtime_error(
             "the log's time can be paused while the replay runs in realtime; in lockstep pause the deployment");
-    std::lock_guard lock(clock_mutex_);
-    if (on == (paused_us_ != 0)) return;
-    const int64_t wall = wall_().microseconds;
-    if (!on) started_us_ += wall - paused_us_;
-    paused_us_ = on ? wall : 0;
+    if (on == is_paused_) return;
+    const int64_t wall = wall_().microseconds, clock = clock_us_;
+    clock_us_ = on ? -1 - std::max<int64_t>(wall - clock, 0) : wall - (-1 - clock);
+    is_paused_ = on;
 }
 
 void ReplayTask::playNext() {
-    if (paused_us_ == 0) throw std::runtime_error("the replay is not paused");
+    if (!is_paused_) throw std::runtime_error("the replay is not paused");
     if (finished_) return;
     if (pace_ > 0) {
-        std::lock_guard lock(clock_mutex_);
         const double seconds = (next_time_ - types::Time{first_us_}).seconds() / pace_;
-        started_us_ = paused_us_ - types::Time::fromSeconds(seconds).microseconds;
+        clock_us_ = -1 - types::Time::fromSeconds(seconds).microseconds;
     }
     play(next_time_);
 }
 
 void ReplayTask::updateHook() {
-    const bool halted = paused_us_ != 0 && pace_ == 0;
+    const bool halted = is_paused_ && pace_ == 0;
     if (!halted) play(due());
 }
 
@@ -267,7 +247,7 @@ void ReplayTask::play(types::Time until) {
     while (!finished_ && next_time_ <= until) {
         noteInstant();
         const log::SampleRef& at = log_->samples()[next_];
-        at_us_ = (at.time - log_->samples().front().time).microseconds;
+        at_us_ = clock_.sinceFirst(log_->samples(), at).microseconds;
         const types::Time shift = clock_.evenTime(at) - at.time + shift_;
         std::visit([&](auto& output) { publish(output, *log_, at, shift); }, *by_stream_[at.stream]);
         ++next_;

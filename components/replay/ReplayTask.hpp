@@ -17,7 +17,6 @@
 #include "components/log/LoggerClock.hpp"
 #include "components/log/Reader.hpp"
 #include "types/Describe.hpp"
-#include "types/Thread.hpp"
 
 namespace insonify::replay {
 
@@ -45,10 +44,10 @@ struct ReplayConfig {
  *  Ports: an output for each connection that names a stream of the log, as in `replay.sonar.ping`. Samples keep their
  *  recorded values and stamps; Rock's older beams and scans become pings. A logger keeps the streams' recorded names. A
  *  sample is due at its world time, or with its predecessor in the file if that is later. Where the logger's clock was
- *  set back, time continues: see log::LoggerClock. In lockstep, simulated time
- *  starts at the first sample and advances from one sample to the next. In realtime the task keeps `pace`, checking
- *  every millisecond unless its activity has a period. All tasks of the deployment then read the log's time, at that
- *  pace, instead of the wall clock.
+ *  set back, time continues: see log::LoggerClock. `from`, `seek` and the position in the log are of that time. In
+ *  lockstep, simulated time starts at the first sample and advances from one sample to the next. In realtime the task
+ *  keeps `pace`, checking every millisecond unless its activity has a period. All tasks of the deployment then read the
+ *  log's time, at that pace, instead of the wall clock.
  *
  *  In realtime the log's time can be paused and stepped; in lockstep the deployment's time can.
  *
@@ -85,7 +84,7 @@ public:
     std::function<types::Time()> clock(std::function<types::Time()> wall) override;
     std::string streamOf(const std::string& port) const override;
     std::string modelOf(const std::string& port) const override;
-    /** Returns the position in the log of the last sample played, by its recorded stamp. */
+    /** Returns the position in the log of the last sample played, without steps of the logger's clock. */
     std::optional<types::Playback> playback() const override;
 
 private:
@@ -105,9 +104,7 @@ private:
     /** Jumps to this time after the log's first stamp [s]; throws outside of the log. */
     void seekTo(double seconds);
     void jump(double seconds);
-    /** Returns the index of the first sample at least this time after the log's first stamp [s]; withOutput: of the
-     *  first sample from an index on that has an output. */
-    size_t indexAt(double seconds) const;
+    /** Returns the index of the first sample from an index on that has an output. */
     size_t withOutput(size_t index) const;
     void noteInstant();
     void setPaused(bool on);
@@ -132,9 +129,10 @@ private:
     types::Time pause_;                         ///< In addition to `gap_`, before the next instant, after a late jump.
     std::atomic<double> pace_{1};               ///< Other threads read the clock, too.
     std::function<types::Time()> wall_;         ///< In realtime.
-    mutable types::PriorityMutex clock_mutex_;  ///< For the next two, which other threads read through the clock.
-    int64_t started_us_ = 0;                    ///< On the wall clock, without pauses; 0: not yet.
-    int64_t paused_us_ = 0;                     ///< Start of the pause; 0: not paused.
+    /** Start of the log's time on the wall clock, without pauses; negative: it stands, -1 - the time since its start.
+     *  The tasks of the deployment read it with every look at the clock, without a lock. */
+    std::atomic<int64_t> clock_us_{-1};
+    bool is_paused_ = false;
     std::atomic<int64_t> first_us_{0};          ///< The instant at which the replay starts, on the log's clock.
     std::atomic<int64_t> played_us_{0};         ///< The instant being played; 0: none yet.
     std::atomic<int64_t> at_us_{0};             ///< The last sample played, after the log's first.

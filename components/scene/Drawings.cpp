@@ -22,17 +22,6 @@ constexpr double sheet = 0.1;         ///< Greatest thickness of a sheet [m].
 constexpr double near_surface = 0.1;  ///< Distance of a drawn surface from the water surface [m].
 constexpr double large = 10;          ///< Shorter side of a large object [m].
 
-/** Returns the words of a name in lower case: "seaSurface_2::Water" is sea, surface, water. */
-std::vector<std::string> wordsOf(const std::string& name) {
-    std::vector<std::string> words(1);
-    for (size_t i = 0; i < name.size(); ++i) {
-        const bool begins = i > 0 && types::isUpperLetter(name[i]) && types::isLowerLetter(name[i - 1]);
-        if ((begins || !types::isLetter(name[i])) && !words.back().empty()) words.emplace_back();
-        if (types::isLetter(name[i])) words.back() += types::lowered(name[i]);
-    }
-    return words;
-}
-
 bool isAnyOf(const std::string& word, const auto& words) { return std::ranges::find(words, word) != std::end(words); }
 
 constexpr std::array waters{"water", "sea", "ocean", "lake", "river", "pool"};

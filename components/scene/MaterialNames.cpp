@@ -52,17 +52,6 @@ constexpr Synonym synonyms[] = {
     {"silt", "medium_silt"},
 };
 
-/** Splits a name into lower-case words of letters; "traceIron" has two. */
-std::vector<std::string> wordsOf(const std::string& name) {
-    std::vector<std::string> words(1);
-    for (size_t i = 0; i < name.size(); ++i) {
-        const bool begins = i > 0 && types::isUpperLetter(name[i]) && types::isLowerLetter(name[i - 1]);
-        if ((begins || !types::isLetter(name[i])) && !words.back().empty()) words.emplace_back();
-        if (types::isLetter(name[i])) words.back() += types::lowered(name[i]);
-    }
-    return words;
-}
-
 /** Returns the matter or else the sediment of that name: "rock" is matter, "sand" is the sediment. */
 std::string_view nameOf(std::string_view words) {
     const auto* synonym = std::ranges::find(synonyms, words, &Synonym::word);
@@ -101,6 +90,16 @@ std::string noticeOf(const std::vector<std::string>& taken, const std::vector<st
 }
 
 }  // namespace
+
+std::vector<std::string> wordsOf(const std::string& name) {
+    std::vector<std::string> words(1);
+    for (size_t i = 0; i < name.size(); ++i) {
+        const bool begins = i > 0 && types::isUpperLetter(name[i]) && types::isLowerLetter(name[i - 1]);
+        if ((begins || !types::isLetter(name[i])) && !words.back().empty()) words.emplace_back();
+        if (types::isLetter(name[i])) words.back() += types::lowered(name[i]);
+    }
+    return words;
+}
 
 std::vector<std::string_view> matterIn(const std::string& name) {
     constexpr size_t max_words = 3;

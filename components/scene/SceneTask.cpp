@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 #include <variant>
 
@@ -231,6 +232,7 @@ bool SceneTask::configureHook() {
     lay_ = layText(*scene);
     side_ = isGltf(config->file) ? sideWarning(*scene->geometry) : "";
     std::ranges::sort(movables_, {}, &Movable::node);
+    movable_objects_ = objectsOf(movables_);
     mover_.assign(geometry_->objects.size(), nullptr);
     return true;
 }
@@ -337,6 +339,7 @@ void SceneTask::updateHook() try {
     warnAboveWater(sample->sonar.position.z);
     if (animator_) animate(body.time);
     addMoved(sample->moved);
+    sample->movable = movable_objects_;
     if (animator_) animator_->addMoved(sample->moved), animator_->addDeformed(*sample);
     addTargets(sample->targets);
     sample->target_names = target_names_;
@@ -403,6 +406,14 @@ void SceneTask::animate(types::Time time) {
         driven_[i].rate = movable.rate * body_from_node;
     }
     animator_->take((environment().elapsed() + (time - now())).seconds(), driven_);
+}
+
+std::shared_ptr<const std::vector<uint32_t>> SceneTask::objectsOf(const std::vector<Movable>& movables) {
+    std::set<uint32_t> objects;
+    for (const Movable& movable : movables)
+        for (const Part& part : movable.parts) objects.insert(static_cast<uint32_t>(part.object));
+    if (objects.empty()) return nullptr;
+    return std::make_shared<const std::vector<uint32_t>>(objects.begin(), objects.end());
 }
 
 /** Adds the moved objects. Each object follows the innermost of its nodes that has a pose. */

@@ -108,6 +108,8 @@ private:
     bool readMovables();
     void placeTargets(const Scene& scene, types::Diagnostics& diagnostics);
     void addMoved(std::vector<types::MovedObject>& moved);
+    /** Returns the objects that movables move, ascending; null: there are none. */
+    static std::shared_ptr<const std::vector<uint32_t>> objectsOf(const std::vector<Movable>& movables);
     void addTargets(std::vector<types::PointTarget>& targets) const;
     const Movable* movableOf(int node) const;
     framework::InputPortBase* makeTimeInput(const std::string& port);
@@ -132,6 +134,7 @@ private:
     std::unique_ptr<Bathymetry> bathymetry_;
     std::vector<Movable> movables_;       ///< Outer nodes before inner nodes, once configured.
     size_t part_count_ = 0;               ///< Parts of all movables; their memory is allocated before they move.
+    std::shared_ptr<const std::vector<uint32_t>> movable_objects_;  ///< Null: no port moves an object.
     std::vector<const Movable*> mover_;   ///< For each object, the movable that moves it now.
     std::unique_ptr<Animator> animator_;  ///< Null: nothing moves by itself, nor is deformed.
     std::vector<Timed> timed_;

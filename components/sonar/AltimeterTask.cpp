@@ -18,7 +18,9 @@ SonarConfig AltimeterConfig::beam() const {
 bool AltimeterTask::isTooNear() {
     if (!(config->sonar.range_min > 0)) return false;
     const types::Snapshot& scene = takenScene();
-    if (!near_ || near_scene_ != scene.geometry) {
+    if (near_) {
+        near_->setGeometry(scene.geometry);
+    } else {
         SonarConfig near;
         near.bearings_deg = {0};
         near.beam_width_deg = config->beam().beamWidthDeg();
@@ -30,8 +32,7 @@ bool AltimeterTask::isTooNear() {
         near.bin_count = 1;
         near.quality.rows = near.quality.columns_per_beam = near_samples;
         near.visibility = Visibility::Cpu;  // beside a renderer that may rasterise
-        near_scene_ = scene.geometry;
-        near_ = std::make_unique<SonarRenderer>(near, near_scene_, RenderOptions{.threads = 1});
+        near_ = std::make_unique<SonarRenderer>(near, scene.geometry, RenderOptions{.threads = 1});
     }
     near_->render(scene, near_ping_);
     return near_->hasEchoes();

@@ -51,7 +51,6 @@ private:
 
     Detector detector_;
     std::unique_ptr<SonarRenderer> near_;  ///< Of the range up to `range_min`; made when it is needed.
-    types::GeometryPtr near_scene_;
     types::Sonar near_ping_;
 };
 

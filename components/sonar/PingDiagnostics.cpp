@@ -128,8 +128,7 @@ bool isLoud(Model model, const types::Sonar& ping) {
 
 /** Returns why a sonar may receive no echo. The text states its place and look direction, the extent of the scene, and
  *  the distances of its nearest point and nearest point target. It names what prevents their echoes: range, aperture,
- *  fan, or a material without echo. Sidelobes count as far as the plan uses them. `all_round`: its head has turned.
- *  Takes time in proportion to the triangles of the scene. */
+ *  fan, or a material without echo. Sidelobes count as far as the plan uses them. `all_round`: its head has turned. */
 std::string silenceText(const RenderPlan& plan, bool all_round, const types::Snapshot& scene) {
     const Coverage coverage{plan, all_round};
     const glm::dvec3 ahead = scene.sonar.orientation * glm::dvec3(1, 0, 0);

@@ -150,6 +150,10 @@ const char* TriggeredTask::refusal() {
             return moved.object >= count;
         }))
         return "the snapshot moves an object that its geometry does not have";
+    if (taken_.scene.movable && std::ranges::any_of(*taken_.scene.movable, [&](uint32_t object) {
+            return object >= taken_.scene.geometry->objects.size();
+        }))
+        return "the snapshot has a movable object that its geometry does not have";
     if (!types::deformsRightly(taken_.scene))
         return "the snapshot deforms an object that its geometry does not have so";
     if (const char* why = normalisePose(taken_.scene.sonar)) return why;

@@ -69,8 +69,8 @@ def show_ways(scenes):
 
 
 def measure_scenes(_options):
-    """Results of scene_bench for a mission over tiles of a survey, and for the memory of 1 and of 16 sonars of one
-    scene."""
+    """Results of scene_bench for a mission over tiles of a survey, for ways over borders of cells, and for the memory of
+    1 and of 16 sonars of one scene."""
     def measured(*arguments):
         done = subprocess.run([ROOT / "build/bin/scene_bench", *arguments], stdout=subprocess.PIPE, text=True)
         if done.returncode != 0:
@@ -78,7 +78,8 @@ def measure_scenes(_options):
         return json.loads(done.stdout)
     with tempfile.TemporaryDirectory(dir=BENCH) as folder:
         mission = measured("mission", folder)
-    return {"mission": mission, "memory": [measured("memory", count, "708") for count in ("1", "16")]}
+    return {"mission": mission, "borders": [measured("border", way, "708") for way in ("line", "circle")],
+            "memory": [measured("memory", count, "708") for count in ("1", "16")]}
 
 
 def show_scenes(scenes):
@@ -88,6 +89,10 @@ def show_scenes(scenes):
             median, p99, slowest = mission[clock + key]
             print(f"mission, {name:20} {kind:15} median {median:7.2f} ms, p99 {p99:7.2f}, max {slowest:7.2f}: "
                   f"{slowest / mission[clock + 'ms'][0]:.2f} times the median of all")
+    for row in scenes["borders"]:
+        median, p99, slowest = row["busy_ms"]
+        print(f"{row['way']:6} over borders, processor time median {median:7.2f} ms, p99 {p99:7.2f}, max {slowest:7.2f}: "
+              f"{slowest / median:.2f} times; {row['mb_first']:.0f} MB after the first ping, at most {row['mb']:.0f}")
     for row in scenes["memory"]:
         print(f"{row['sonars']:2} sonars of {row['triangles']} triangles: {row['mb']:.1f} MB, of which the scene without "
               f"sonars is {row['mb_scene']:.1f} MB")

@@ -2,6 +2,10 @@
 //   scene_bench mission FOLDER      prints JSON: milliseconds a ping [median, p99, max] of a mission over more than 100
 //                                   tiles of a survey that it writes there, by rays of one thread: of all pings and of
 //                                   those with new tiles, by the clock and of that thread's processor time.
+//   scene_bench border WAY CELLS    prints JSON: milliseconds a ping [median, p99, max] at 20 Hz over a floor of
+//                                   2 CELLS^2 triangles, on a `line` across the border of two cells of 512 m, or on a
+//                                   `circle` of 20 m about the corner of four; megabytes after the first ping and at
+//                                   most.
 //   scene_bench memory SONARS CELLS prints JSON: megabytes of the scene's file in memory and of the process with
 //                                   this number of sonars that have all pinged, before a floor of 2 CELLS^2 triangles.
 #include <fmt/core.h>
@@ -14,6 +18,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
+#include <thread>
 
 #include "components/scene/Bathymetry.hpp"
 #include "components/scene/Clusters.hpp"
@@ -146,6 +151,41 @@ types::GeometryPtr field(uint32_t cells) {
     return geometry;
 }
 
+/** Measures 2 m/s, each ping 50 ms after the one before. */
+void border(std::string_view way, uint32_t cells) {
+    auto geometry = std::make_shared<types::Geometry>(*field(cells));
+    const glm::dvec3 middle = way == "circle" ? glm::dvec3(256, 256, -4) : glm::dvec3(256, 400, -4);
+    geometry->objects.front().world_from_object[3] = {middle.x - 50, middle.y, 0, 1};
+    sonar::RenderOptions one_thread;
+    one_thread.threads = 1;
+    sonar::SonarRenderer renderer(fan(), geometry, one_thread);
+    types::Sonar ping;
+    std::vector<double> all, busy;
+    double first_mb = 0, max_mb = 0;
+    for (int i = 0; i < 1300; ++i) {
+        const auto start = Clock::now();
+        const double angle = 0.005 * i;
+        const glm::dvec3 place =
+            middle + (way == "circle" ? 20.0 * glm::dvec3(std::cos(angle), std::sin(angle), 0)
+                                      : glm::dvec3(0.1 * i - 46, 0, 0));
+        types::Snapshot snapshot = at(place, i);
+        snapshot.geometry = geometry;
+        const double start_busy = busyMs();
+        renderer.render(snapshot, ping);
+        max_mb = std::max(max_mb, megabytes());
+        if (i == 0) first_mb = max_mb;
+        if (i > 0) {
+            all.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+            busy.push_back(busyMs() - start_busy);
+        }
+        std::this_thread::sleep_until(start + std::chrono::milliseconds(50));
+    }
+    fmt::print(
+        "{{\"way\": \"{}\", \"triangles\": {}, \"ms\": {}, \"busy_ms\": {}, \"mb_first\": {:.1f}, "
+        "\"mb\": {:.1f}}}\n",
+        way, geometry->triangleCount(), spread(all), spread(busy), first_mb, max_mb);
+}
+
 void memory(int count, uint32_t cells) {
     const types::GeometryPtr geometry = field(cells);
     const double loaded = megabytes();
@@ -166,8 +206,9 @@ void memory(int count, uint32_t cells) {
 int run(int argc, char** argv) {
     const std::string_view what = argc > 1 ? argv[1] : "";
     if (what == "mission" && argc == 3) return mission(argv[2]), 0;
+    if (what == "border" && argc == 4) return border(argv[2], static_cast<uint32_t>(std::atoi(argv[3]))), 0;
     if (what == "memory" && argc == 4) return memory(std::atoi(argv[2]), static_cast<uint32_t>(std::atoi(argv[3]))), 0;
-    fmt::print(stderr, "usage: scene_bench mission FOLDER | scene_bench memory SONARS CELLS\n");
+    fmt::print(stderr, "usage: scene_bench mission FOLDER | border WAY CELLS | memory SONARS CELLS\n");
     return 2;
 }
 

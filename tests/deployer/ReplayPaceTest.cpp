@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "components/log/pocolog/Reader.hpp"
+#include "components/log/pocolog/Writer.hpp"
 #include "tests/deployer/Growing.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Paths.hpp"
@@ -57,6 +58,40 @@ TEST_F(ReplayPaceTest, ACutAndAReplayStartAtTheSameStamp) {
     ASSERT_EQ(callInsonify(folder_, {"log", "cut", "out/wall.0.log", "--from", "0.1", "--to", "part.0.log"}).code, 0);
     const auto part = log::openLog(folder_ / "part.0.log");
     EXPECT_EQ(part->samples().front().time.microseconds, 1'100'000);
+}
+
+/** Six pings 1 s apart; the clock is set by `step` s after the third. Seconds and dates lead to the same places. */
+TEST_F(ReplayPaceTest, StartsBehindAStepOfTheClockBySecondsAndByDates) {
+    using types::Time;
+    types::Sonar ping;
+    log::pocolog::Reader recorded(folder_ / "out/wall.0.log");
+    recorded.forEach<types::Sonar>("noise.noisy", [&](const types::Sonar& one, const log::SampleRef&) { ping = one; });
+    const Time first{1'800'000'000'000'000};
+    const auto stampOf = [&](int i, int step) { return first + Time::fromSeconds(i + (i < 3 ? 0 : step)); };
+    for (const int step : {-600, 600}) {
+        {
+            log::pocolog::Writer log(folder_ / "stepped.0.log");
+            const size_t stream = log.addStream<types::Sonar>("noise.noisy");
+            for (int i = 0; i < 6; ++i) ping.time = stampOf(i, step), log.write(stream, ping.time, ping);
+            log.close();
+        }
+        const auto startOf = [&](const std::string& from) {
+            EXPECT_THAT(callInsonify(folder_, {"replay", "stepped.0.log", "wall.yml", "--out", "again", "--from", from}),
+                        succeeds())
+                << from << ", " << step;
+            return Time{1000 * stamps().front()} - first;
+        };
+        const int behind = step > 0 ? 4 + step : 4;  // a step forward is a pause
+        EXPECT_EQ(startOf("1"), Time::fromSeconds(1));
+        EXPECT_EQ(startOf(std::to_string(behind)), Time::fromSeconds(behind));
+        EXPECT_EQ(startOf(log::readable(stampOf(2, step))), Time::fromSeconds(2));
+        if (step > 0) {
+            EXPECT_EQ(startOf(log::readable(stampOf(4, step))), Time::fromSeconds(behind));
+        }
+        EXPECT_EQ(startOf(std::to_string(behind + 1)), Time::fromSeconds(behind + 1)) << "the last";
+        EXPECT_THAT(callInsonify(folder_, {"replay", "stepped.0.log", "wall.yml", "--from", std::to_string(behind + 2)}),
+                    isRefused(HasSubstr("; the log ends ")));
+    }
 }
 
 TEST_F(ReplayPaceTest, RefusesAStartAfterTheLogsEnd) {

@@ -1,6 +1,7 @@
 // What a run prints at its end.
 #include <gmock/gmock.h>
 
+#include "components/deployer/RunFiles.hpp"
 #include "tests/deployer/Wall.hpp"
 
 using namespace insonify::deployer;
@@ -65,6 +66,43 @@ TEST(RunFilesTest, FilesOfAnEarlierRunAreNotThoseOfThisOne) {
     fs::last_write_time(folder / "out/notes.txt", fs::file_time_type::clock::now() - std::chrono::seconds(5));
     EXPECT_THAT(folder.run({"--pings", "2"}).out,
                 AllOf(HasSubstr("fan_000000.png to pictures/fan_000001.png, 2 files"), Not(HasSubstr("notes.txt")),
+                      EndsWith("open first: out/pictures/fan_000001.png\n")));
+}
+
+TEST(RunFilesTest, FilesAreTheRunsIfTheyHaveChangedWhateverTheClockSays) {
+    const insonify::Folder folder;
+    const auto hours = [](int count) { return fs::file_time_type::clock::now() + std::chrono::hours(count); };
+    const auto stamp = [&](const char* name, int h) { fs::last_write_time(folder / name, hours(h)); };
+    EXPECT_TRUE(listingOf(folder / "missing").empty());
+    for (const char* name : {"future", "past", "grown", "rewritten", "set_back", "index.idx"})
+        writeFile(folder / name, "earlier");
+    fs::create_directory(folder / "below");
+    writeFile(folder / "below/kept", "earlier");
+    stamp("future", 10);
+    stamp("past", -10);
+    stamp("rewritten", -1);
+    const FolderListing before = listingOf(folder.path());
+    EXPECT_EQ(before.size(), 7u);
+    const auto kept = fs::last_write_time(folder / "grown");
+    writeFile(folder / "grown", "earlier and more");
+    fs::last_write_time(folder / "grown", kept);  // in one step of the system's clock
+    fs::last_write_time(folder / "rewritten", before.at("rewritten").written + std::chrono::nanoseconds(4));
+    writeFile(folder / "set_back", "another");
+    stamp("set_back", -5);
+    writeFile(folder / "index.idx", "other");
+    for (const char* name : {"new", "below/new_in_the_past"}) writeFile(folder / name, "of the run");
+    stamp("below/new_in_the_past", -100);
+    EXPECT_THAT(writtenSince(before, folder.path()),
+                testing::ElementsAre("below/new_in_the_past", "grown", "new", "rewritten", "set_back"));
+}
+
+TEST(RunFilesTest, AFileFromTheFutureIsNotOfThisRun) {
+    const WallFolder folder(pictured());
+    ASSERT_EQ(folder.run({"--pings", "1"}).code, 0);
+    writeFile(folder / "out/fan_000007.png", "of a run before the clock was set back");
+    fs::last_write_time(folder / "out/fan_000007.png", fs::file_time_type::clock::now() + std::chrono::minutes(10));
+    EXPECT_THAT(folder.run({"--pings", "2"}).out,
+                AllOf(HasSubstr("pictures/fan_000001.png, 2 files"), Not(HasSubstr("fan_000007")),
                       EndsWith("open first: out/pictures/fan_000001.png\n")));
 }
 

@@ -181,6 +181,30 @@ TEST_F(OculusTaskTest, AFullDiskEndsTheRecordingAndNotThePings) {
     EXPECT_EQ(task().state(), framework::TaskState::Stopped);
 }
 
+/** Other threads read the notices while the task counts: each has the whole reason. */
+TEST_F(OculusTaskTest, NoticesOfAFullDiskHaveTheirReasonFromTheFirst) {
+    const Folder folder;
+    std::filesystem::create_symlink("/dev/full", folder / "dive.oculus");
+    start({"device.record=" + (folder / "dive.oculus").string()});
+    std::atomic<bool> done{false};
+    std::atomic<int> found{0}, bare{0};
+    std::thread reader([&] {
+        while (!done) {
+            const std::string notice = noticeOf("pings are not in");
+            if (notice.empty()) continue;
+            ++found;
+            bare += notice.ends_with("dive.oculus: ") ? 1 : 0;
+        }
+    });
+    OculusDriver driver(port_);
+    driver.send(bytesOf({.rate = 2, .range = 10}));
+    for (int i = 0; i < 10; ++i) driver.nextPing();
+    EXPECT_TRUE(test::becomesTrue([&] { return found > 0; }));
+    done = true;
+    reader.join();
+    EXPECT_EQ(bare, 0);
+}
+
 TEST_F(OculusTaskTest, AClientThatDoesNotReadDelaysNoOther) {
     start();
     OculusDriver deaf(port_), driver(port_);

@@ -291,5 +291,39 @@ TEST(DeploymentRunTest, OperationsOfTasksAreCalledByName) {
     EXPECT_EQ(why("t.start", {}), "t.start: there is no task t; known: s");
 }
 
+/** Warns when it ends. */
+struct Farewell : TaskContext {
+    using TaskContext::TaskContext;
+    ~Farewell() override { warn("ends"); }
+};
+
+/** What takes the warnings, and whether it was there when one came. */
+struct Receiver {
+    struct Seen {
+        int present = 0;
+        std::vector<int> present_at;
+    };
+    explicit Receiver(Seen& where) : seen(&where) { ++seen->present; }
+    Receiver(const Receiver& other) : seen(other.seen) { ++seen->present; }
+    ~Receiver() { --seen->present; }
+    void operator()(const std::string&) const { seen->present_at.push_back(seen->present); }
+
+    char before[64] = {};
+    Seen* seen;
+};
+
+TEST(DeploymentRunTest, TasksMayWarnUntilTheyEnd) {
+    Registry registry;
+    registry.add<Farewell>("test::Farewell", "warns when it ends");
+    Receiver::Seen seen;
+    {
+        Deployment deployment(
+            DeploymentSpec::parse("tasks: {f: {type: test::Farewell, activity: {period: 1}}}", "a.yml"), registry);
+        deployment.onWarning(Receiver(seen));
+    }
+    EXPECT_EQ(seen.present_at, std::vector<int>{1});
+    EXPECT_EQ(seen.present, 0);
+}
+
 }  // namespace
 }  // namespace insonify::framework

@@ -82,7 +82,8 @@ bool mayInclude(const Source& source, const Source& target) {
     if (from == to)
         return from == "framework" || source.isTaskHalf() || source.isCommandHalf() ||
                (!target.isTaskHalf() && !target.isCommandHalf());
-    if (to == "types") return from != "gpu";
+    const std::set<std::string> of_any_program = {"OwnProcess", "Thread"};
+    if (to == "types") return from != "gpu" || of_any_program.contains(target.stem());
     if ((from == "study" || from == "dataset") && target.isTaskHalf()) return false;
     return from != "types" && from != "gpu" && neighboursOf(source).contains(to);
 }
@@ -140,6 +141,7 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/noise/Speckle.cpp", "components/noise/NoiseTask.hpp"));
     EXPECT_FALSE(allowed("types/Sonar.hpp", "components/gpu/Context.hpp"));
     EXPECT_FALSE(allowed("components/gpu/Context.hpp", "types/Sonar.hpp"));
+    EXPECT_TRUE(allowed("components/gpu/Context.cpp", "types/Thread.hpp"));
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/log/Reader.hpp"));
     EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarTask.hpp"));
     EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarRenderer.hpp"));

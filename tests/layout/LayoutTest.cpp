@@ -100,6 +100,68 @@ TEST(LayoutTest, NoSourceReadsNumbersByTheLocaleOfTheHost) {
                     << source.path << ": std::from_chars instead: " << line;
 }
 
+/** A refused thread is an error that names it, and a fork is noticed where processes are told apart by their number. */
+TEST(LayoutTest, ThreadsAreStartedAndForksNoticedInOnePlace) {
+    const std::regex own_way(R"(\bstd::thread\([^)]|\bstd::jthread\b|\bgetpid\(\)\s*[!=]=|[!=]=\s*getpid\(\))");
+    for (const char* folder : {"types", "components"})
+        for (const Source& source : sourcesIn(folder, {".hpp", ".cpp"}))
+            for (const std::string& line : source.lines)
+                EXPECT_TRUE(source.path == "types/Thread.hpp" || !std::regex_search(line, own_way))
+                    << source.path << ": types::startThread() and types::OwnProcess instead: " << line;
+}
+
+std::string trimmed(const std::string& line) {
+    return line.substr(std::min(line.size(), line.find_first_not_of(' ')));
+}
+
+/** Returns the functions of several lines in a source, each as its text without indents. */
+std::vector<std::string> functionsIn(const Source& source) {
+    static const std::regex begin(R"(^(?!return|namespace|struct|class)[\w:<>&*, ]+ [&*]?\w+\(.*\{$)");
+    constexpr size_t several = 5;
+    std::vector<std::string> functions;
+    for (size_t i = 0; i < source.lines.size(); ++i) {
+        if (!std::regex_search(source.lines[i], begin)) continue;
+        const auto end = std::find(source.lines.begin() + static_cast<std::ptrdiff_t>(i), source.lines.end(), "}");
+        const auto size = static_cast<size_t>(end - source.lines.begin()) - i;
+        std::string text;
+        for (size_t k = i; k < i + size; ++k)
+            text += trimmed(source.lines[k]) + '\n';
+        if (size >= several) functions.push_back(text);
+    }
+    return functions;
+}
+
+TEST(LayoutTest, NoFunctionOfSeveralLinesIsWrittenTwice) {
+    std::map<std::string, std::string> found;  // path by text
+    for (const char* folder : {"types", "components"})
+        for (const Source& source : sourcesIn(folder, {".hpp", ".cpp"}))
+            for (const std::string& function : functionsIn(source)) {
+                const auto [other, is_new] = found.emplace(function, source.path);
+                EXPECT_TRUE(is_new || other->second == source.path)
+                    << other->second << " and " << source.path << ": " << function.substr(0, function.find('\n'));
+            }
+    EXPECT_GT(found.size(), 1000u);
+}
+
+/** An exception that leaves a function of C ends the process of Python. */
+TEST(LayoutTest, EveryFunctionForPythonIsGuarded) {
+    const std::regex begin(R"(^[\w:*&<> ]* \*?(insonify_\w+)\()");
+    const std::set<std::string> throw_nothing = {"insonify_error", "insonify_free"};
+    const std::filesystem::path root = insonify::test::source_dir;
+    const Source source = readSource(root / "components/python/Interface.cpp");
+    size_t functions = 0;
+    for (size_t i = 0; i < source.lines.size(); ++i) {
+        std::smatch found;
+        if (!std::regex_search(source.lines[i], found, begin) || throw_nothing.contains(found[1])) continue;
+        ++functions;
+        bool is_guarded = false;
+        for (size_t k = i; k < source.lines.size() && source.lines[k] != "}"; ++k)
+            is_guarded = is_guarded || source.lines[k].find("return guarded(") != std::string::npos;
+        EXPECT_TRUE(is_guarded) << found[1];
+    }
+    EXPECT_GE(functions, 10u);
+}
+
 TEST(LayoutTest, EveryHeaderIsOnThePageOfItsFolder) {
     std::map<std::string, std::set<std::string>> files;  // By page.
     for (const char* folder : {"types", "components"})

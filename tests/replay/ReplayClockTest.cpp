@@ -1,7 +1,11 @@
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <future>
+
 #include "tests/replay/Bench.hpp"
 #include "tests/support/Refused.hpp"
+#include "tests/support/Waiting.hpp"
 
 namespace insonify::replay {
 namespace {
@@ -68,6 +72,31 @@ TEST(ReplayClockTest, StartsAtTheGivenTime) {
     bench.updateAt(100);
     EXPECT_THAT(stampsIn(poses), ElementsAre(20, 30));
     EXPECT_THAT(stampsIn(pings), ElementsAre(10, 20)) << "in the file they are after the pose at 20";
+}
+
+/** A task that waits in the clock of the system keeps no other from reading the log's time. */
+TEST(ReplayClockTest, TasksReadTheClockWithoutWaitingForEachOther) {
+    Bench bench(false);
+    std::promise<void> enters, leaves;
+    std::atomic<bool> is_slow{false};
+    auto clock = bench.task.clock([&] {
+        if (is_slow.exchange(false)) {
+            enters.set_value();
+            leaves.get_future().wait();
+        }
+        return bench.clock;
+    });
+    test::Reader<types::Pose> poses;
+    bench.clock = {1'000'000};
+    bench.start("vehicle.pose", poses);
+    is_slow = true;
+    std::future<types::Time> slow = std::async(std::launch::async, clock);
+    enters.get_future().wait();
+    std::future<types::Time> fast = std::async(std::launch::async, clock);
+    EXPECT_EQ(fast.wait_for(test::patience), std::future_status::ready);
+    leaves.set_value();
+    EXPECT_EQ(slow.get(), types::Time{10});
+    EXPECT_EQ(fast.get(), types::Time{10});
 }
 
 TEST(ReplayClockTest, ReportsAStartAfterTheEndBeforeAnythingStarts) {

@@ -77,7 +77,10 @@ TEST_F(SceneTaskTest, ANodeFollowsItsPortWithItsScaleAndSubtree) {
     EXPECT_EQ(port->need(), framework::Need::Optional);
     ASSERT_TRUE(boat_.port.connectTo(*port, {}));
     start();
-    EXPECT_TRUE(ping(at(1, {0, 0, 0}))->moved.empty());  // before its first pose
+    const auto before = ping(at(1, {0, 0, 0}));  // its first pose
+    EXPECT_TRUE(before->moved.empty());
+    ASSERT_TRUE(before->movable) << "sonars know what may move";
+    EXPECT_EQ(*before->movable, (std::vector<uint32_t>{0, 1}));
     boat_.port.write(at(1.5, {100, 0, 0}, turn(90, {0, 0, 1})));
     const auto snapshot = ping(at(2, {0, 0, 0}));
     ASSERT_EQ(snapshot->moved.size(), 2u);

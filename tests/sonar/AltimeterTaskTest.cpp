@@ -1,10 +1,13 @@
 // First returns, compared with closed forms.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "components/framework/Activity.hpp"
 #include "components/sonar/AltimeterTask.hpp"
-#include "tests/support/Scenes.hpp"
+#include "components/sonar/rays/SceneTrees.hpp"
+#include "tests/support/Hills.hpp"
 #include "tests/support/TaskBench.hpp"
 
 namespace insonify::sonar {
@@ -88,6 +91,71 @@ TEST_F(AltimeterTaskTest, TheRangeIsUnknownWithoutAReturn) {
     startWide(25);
     EXPECT_FALSE(rangeAt(40).isKnown());
     EXPECT_TRUE(rangeAt(20).isKnown());
+}
+
+/** A floor out of reach, and a tile below the sonar that is another in each scene, as over a survey: 0.5 m away in every
+ *  second scene, else out of reach as well. */
+std::vector<types::GeometryPtr> scenesOfTiles(size_t count) {
+    std::vector<types::Mesh> meshes(1, test::hills(60));
+    const auto always = sceneOf(std::move(meshes), -20);
+    std::vector<types::GeometryPtr> scenes;
+    for (size_t i = 0; i < count; ++i) {
+        auto scene = std::make_shared<types::Geometry>(*always);
+        scene->meshes.push_back(ground(i % 2 == 0 ? -0.5f : -90, 4));
+        scene->objects.push_back({"tile", 1, glm::dmat4(1), true});
+        scenes.push_back(std::move(scene));
+    }
+    return scenes;
+}
+
+struct TooNearTest : AltimeterTaskTest {
+    /** Starts an altimeter whose range begins at `range_min` and reaches no floor. */
+    void startWith(double range_min, Visibility visibility = Visibility::Cpu) {
+        AltimeterConfig config;
+        config.sonar.range = 15;
+        config.sonar.range_min = range_min;
+        config.sonar.bin_count = 100;
+        config.sonar.visibility = visibility;
+        if (visibility == Visibility::Gl) config.sonar.device = "software";
+        task_.stop();
+        task_.cleanup();
+        AltimeterTaskTest::startWith(config);
+    }
+    bool isTooNear(const types::GeometryPtr& scene) {
+        types::Snapshot snapshot = test::snapshotOf(scene);
+        snapshot.sonar.orientation = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
+        return answerTo(std::make_shared<types::Snapshot>(snapshot)).range == types::Range::too_near;
+    }
+};
+
+/** Next to pictures nobody else has the trees of its rays. */
+TEST_F(TooNearTest, TheSearchKeepsTheTreesOfWhatStaysInTheScene) {
+    const std::vector<types::GeometryPtr> scenes = scenesOfTiles(10);
+    startWith(1, Visibility::Gl);
+    size_t before = 0, after = 0;
+    task_.activity().call([&] { before = StillTree::builtByThisThread(); });
+    for (size_t i = 0; i < scenes.size(); ++i) EXPECT_EQ(isTooNear(scenes[i]), i % 2 == 0) << i;
+    task_.activity().call([&] { after = StillTree::builtByThisThread(); });
+    EXPECT_EQ(after - before, 1u);
+}
+
+/** Pings without a return take at most half as long again with the search, also where each has another geometry. */
+TEST_F(TooNearTest, TheSearchCostsLittle) {
+    const std::vector<types::GeometryPtr> scenes = scenesOfTiles(40);
+    const auto secondsWith = [&](double range_min) {
+        startWith(range_min);
+        for (size_t i = 0; i < 4; ++i) isTooNear(scenes[i]);
+        return test::processorSeconds([&] {
+            for (size_t i = 4; i < scenes.size(); ++i) isTooNear(scenes[i]);
+        });
+    };
+    double without = secondsWith(0), with = secondsWith(1);
+    for (int again = 0; again < 4; ++again) {
+        without = std::min(without, secondsWith(0));
+        with = std::min(with, secondsWith(1));
+    }
+    RecordProperty("ratio", std::to_string(with / without));
+    EXPECT_LT(with, 1.5 * without) << 1e3 * with / 36 << " and " << 1e3 * without / 36 << " ms per ping";
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include <chrono>
 #include <filesystem>
 
+#include "components/sonar/places/MeshFacts.hpp"
 #include "components/sonar/places/MeshesAhead.hpp"
+#include "components/sonar/rays/SceneTrees.hpp"
 #include "components/study/Shapes.hpp"
 #include "tests/support/Priorities.hpp"
 #include "tests/support/Waiting.hpp"

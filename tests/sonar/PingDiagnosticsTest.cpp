@@ -1,11 +1,16 @@
 // Warnings of a sonar's task about empty pings, and their frequency.
 #include <gmock/gmock.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+#include <random>
+
+#include "components/scene/Clusters.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Deformed.hpp"
+#include "tests/support/Hills.hpp"
 #include "tests/support/Ports.hpp"
-#include "tests/support/Scenes.hpp"
+#include "types/Extent.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -87,6 +92,45 @@ TEST_F(PingDiagnosticsTest, FindsMeshesThatDeformWhereTheyArePosed) {
     scene.joints[0].mesh_from_bind = glm::dmat4x3(1);
     ping(scene, 40);
     EXPECT_THAT(reported_, ElementsAre(HasSubstr("is inside of object_0")));
+}
+
+/** The nearest point and the extent of a scene, as the text of a silent sonar needs them on the thread of its pings. */
+void describeScene(const types::Snapshot& scene, types::NearestPoint& nearest, types::Extent& extent) {
+    nearest = types::nearestPoint(scene, scene.sonar.position);
+    extent = types::extentOf(scene);
+}
+
+TEST(LargeSceneTest, ASilentSonarLooksAtAShareOfTheTriangles) {
+    types::Mesh whole = test::hills(500), parts = whole;
+    scene::buildClusters(parts);
+    ASSERT_GT(parts.clusters.size(), 1000u);
+    whole = parts;
+    whole.clusters.clear(), whole.cluster_nodes.clear();  // so that every triangle is looked at
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> any(-1, 1);
+    double by_parts = 0, by_all = 0;
+    for (int trial = 0; trial < 12; ++trial) {
+        const glm::dvec3 at = 700.0 * glm::dvec3(any(random), any(random), 0.1 * any(random));
+        types::Snapshot scene = test::snapshotOf(test::sceneOf({parts, test::sphere(3, 20)}, 0, {{}, {1, 2, 3}}), at);
+        types::Snapshot all = test::snapshotOf(test::sceneOf({whole, test::sphere(3, 20)}, 0, {{}, {1, 2, 3}}), at);
+        glm::dmat4 place(1);
+        if (trial % 3 != 0) place = glm::rotate(place, any(random), glm::dvec3(any(random), any(random), 1));
+        if (trial % 3 == 2) place = glm::scale(place, glm::dvec3(1, -0.5, 2));
+        place[3] = glm::dvec4(trial % 2 == 0 ? glm::dvec3(0) : glm::dvec3(463'000, 5'937'000, 0), 1);
+        scene.moved = all.moved = {{0, place}};
+        scene.sonar.position = all.sonar.position = at + glm::dvec3(place[3]);
+        types::NearestPoint nearest, expected;
+        types::Extent extent, expected_extent;
+        by_parts += test::processorSeconds([&] { describeScene(scene, nearest, extent); });
+        by_all += test::processorSeconds([&] { describeScene(all, expected, expected_extent); });
+        EXPECT_EQ(nearest.distance, expected.distance) << trial;
+        EXPECT_EQ(nearest.point, expected.point) << trial;
+        EXPECT_EQ(nearest.object, expected.object) << trial;
+        EXPECT_EQ(extent.low, expected_extent.low) << trial;
+        EXPECT_EQ(extent.high, expected_extent.high) << trial;
+    }
+    RecordProperty("share", std::to_string(by_parts / by_all));
+    EXPECT_LT(by_parts, by_all / 10) << 1e3 * by_parts << " and " << 1e3 * by_all << " ms";
 }
 
 }  // namespace

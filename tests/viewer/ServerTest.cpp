@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <future>
 #include <map>
 #include <stdexcept>
 #include <vector>
@@ -60,6 +62,51 @@ TEST(ServerTest, CountsHandshakesUnderWayAsClients) {
                                               testing::Pair(testing::HasSubstr("503"), 9)));
     asking.clear();
     EXPECT_TRUE(becomesTrue([&] { return server.counts().clients == 0; }));
+}
+
+/** Serves one file, but the one that is slow only when it is let. */
+struct Slow final : ServerHandler {
+    std::optional<PageFile> file(std::string_view path) override {
+        if (path == "/slow") {
+            is_asked = true;
+            released.wait();
+        }
+        return PageFile{"text/plain", "a page"};
+    }
+    std::vector<Frame> greeting() override { return {}; }
+    void request(uint64_t, std::string) override {}
+    void parameters(uint64_t, ParameterRequest, bool) override {}
+    void subscribed(const std::vector<uint32_t>&) override {}
+    void subscribedToParameters() override {}
+
+    std::atomic<bool> is_asked{false};
+    std::promise<void> release;
+    std::shared_future<void> released{release.get_future()};
+};
+
+/** A full server has read the request of its oldest connection, and is still answering it, when another connection
+ *  takes its place: both happen while the server's thread is busy. */
+TEST(ServerTest, AHandshakeThatIsEvictedIsCountedNoLonger) {
+    constexpr size_t spare = 32;  // connections in addition to clients
+    Slow slow;
+    ServerOptions options;
+    options.clients = 1;
+    Server server(options, slow);
+    Client oldest(server.port()), blocks(server.port());
+    std::vector<Client> asked;
+    for (size_t i = 2; i < options.clients + spare; ++i) {
+        asked.emplace_back(server.port());
+        asked.back().send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+        ASSERT_THAT(asked.back().upgraded(), testing::HasSubstr("200"));
+    }
+    blocks.send("GET /slow HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    ASSERT_TRUE(becomesTrue([&] { return slow.is_asked.load(); }));
+    oldest.sendUpgrade(page_protocol);
+    Client newest(server.port());
+    newest.sendUpgrade(page_protocol);
+    slow.release.set_value();
+    EXPECT_THAT(newest.upgraded(), testing::HasSubstr("101")) << "no other client is connected";
+    EXPECT_EQ(server.counts().clients, 1u);
 }
 
 /** Otherwise a link on the page would reveal the token in its address. */

@@ -1,65 +1,45 @@
 #include "components/sonar/places/MeshesAhead.hpp"
 
-#include <algorithm>
-#include <exception>
-#include <utility>
+#include "components/sonar/places/MeshFacts.hpp"
+#include "components/sonar/rays/SceneTrees.hpp"
 
 namespace insonify::sonar {
+namespace {
 
-MeshesAhead::~MeshesAhead() {
-    {
-        const std::lock_guard alone(mutex_);
-        quit_ = true;
-    }
-    asked_.notify_one();
-    if (worker_.joinable()) worker_.join();
+/** Data of a mesh that is kept until a geometry has the mesh. */
+struct MeshData {
+    types::MeshPtr mesh;
+    std::shared_ptr<MeshTree> tree;
+    std::shared_ptr<MeshFacts> facts;
+    MeshFacts::Planes planes;
+    MeshFacts::Facets facets;
+    MeshFacts::Curves curves;
+};
+
+std::shared_ptr<const MeshData> dataOf(const types::MeshPtr& mesh, const MaterialLaws& laws) {
+    MeshData data{mesh, MeshTree::of(mesh), MeshFacts::of(mesh), {}, {}, {}};
+    data.tree->tree();
+    data.facts->box();
+    data.facts->longestEdge();
+    data.facts->triangles();
+    data.planes = data.facts->planes();
+    data.facets = data.facts->facets(glm::dmat3(1), laws);
+    data.curves = data.facts->curves(glm::dmat3(1));
+    return std::make_shared<const MeshData>(std::move(data));
 }
+
+}  // namespace
 
 void MeshesAhead::take(const Meshes& meshes, const MaterialLaws& laws) {
     if (meshes == taken_) return;
     taken_ = meshes;
-    {
-        const std::lock_guard alone(mutex_);
-        next_ = meshes ? meshes : std::make_shared<const std::vector<types::MeshPtr>>();
-        laws_ = laws;
-    }
-    if (!worker_.joinable()) worker_ = types::startThread("meshes ahead", [this] { work(); });
-    asked_.notify_one();
-}
-
-MeshesAhead::Made MeshesAhead::make(const types::MeshPtr& mesh, const MaterialLaws& laws) try {
-    Made made{mesh, MeshTree::of(mesh), MeshFacts::of(mesh), {}, {}, {}};
-    made.tree->tree();
-    made.facts->box();
-    made.facts->longestEdge();
-    made.facts->triangles();
-    made.planes = made.facts->planes();
-    made.facets = made.facts->facets(glm::dmat3(1), laws);
-    made.curves = made.facts->curves(glm::dmat3(1));
-    return made;
-} catch (const std::exception&) {
-    return {};  // the ping that needs it meets the same error, and reports it
-}
-
-void MeshesAhead::work() {
-    types::useDefaultScheduling();
-    for (std::unique_lock<std::mutex> lock(mutex_);;) {
-        asked_.wait(lock, [this] { return quit_ || next_; });
-        if (quit_) return;
-        const Meshes meshes = std::exchange(next_, nullptr);
-        const MaterialLaws laws = laws_;
-        std::vector<Made> made;
-        for (size_t i = 0; i < meshes->size() && !quit_ && !next_; ++i) {
-            lock.unlock();
-            made.push_back(make((*meshes)[i], laws));
-            lock.lock();
-        }
-        for (Made& old : made_)
-            if (next_ && std::ranges::count(*next_, old.mesh) > 0) made.push_back(std::move(old));
-        lock.unlock();
-        made_ = std::move(made);  // only now, so that data that is still needed is not made twice
-        lock.lock();
-    }
+    MadeAhead::Items items;
+    const auto shared_laws = std::make_shared<const MaterialLaws>(laws);
+    if (meshes)
+        for (const types::MeshPtr& mesh : *meshes)
+            items.push_back({{static_cast<int64_t>(reinterpret_cast<intptr_t>(mesh.get()))},
+                             [mesh, shared_laws](const std::atomic<bool>&) { return dataOf(mesh, *shared_laws); }});
+    ahead_.take(std::move(items));
 }
 
 }  // namespace insonify::sonar

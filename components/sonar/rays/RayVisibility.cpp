@@ -20,14 +20,6 @@
 namespace insonify::sonar {
 namespace {
 
-/** Spacing of the possible origins of trees on each axis: at most 444 m from the sonar, where float resolves 0.03 mm
- *  [m]. */
-constexpr double origin_spacing = 512;
-
-/** Returns the origin for a place of the sonar; it depends on nothing else, so that pings are independent of pings
- *  before [m]. */
-glm::dvec3 originNear(const glm::dvec3& sonar) { return origin_spacing * glm::round(sonar / origin_spacing); }
-
 /** Max triangles that are copied to their places, once for each object. In larger scenes, meshes with several places
  *  are instances of one tree, which are slower to trace [1]. */
 constexpr size_t max_copied = 4'000'000;
@@ -264,6 +256,7 @@ void RayVisibility::takeScene(const types::Geometry& geometry, std::span<const u
     geometry_ = &geometry;
     moves_.resize(geometry.objects.size());
     here_->is_built = before_->is_built = false;
+    still_.reset();
     listCommands();
     deforms_.assign(deforming.empty() ? 0 : geometry.objects.size(), false);
     std::vector<DeformingTrees::Object> objects;
@@ -298,8 +291,9 @@ void RayVisibility::listCommands() {
 }
 
 bool RayVisibility::hasNewMover(const types::Snapshot& snapshot) const {
-    return std::ranges::any_of(
-        snapshot.moved, [this](const auto& moved) { return !moves_[moved.object] && !doesDeform(moved.object); });
+    return std::ranges::any_of(snapshot.moved, [this](const auto& moved) { return isStill(moved.object); }) ||
+           (snapshot.movable &&
+            std::ranges::any_of(*snapshot.movable, [this](uint32_t object) { return isStill(object); }));
 }
 
 void RayVisibility::place(const types::Snapshot& snapshot) {
@@ -307,6 +301,10 @@ void RayVisibility::place(const types::Snapshot& snapshot) {
     if (hasNewMover(snapshot)) forgetTrees(snapshot);
     if (here_->is_built && here_->origin != origin) std::swap(here_, before_);
     if (!here_->is_built || here_->origin != origin) build(origin);
+    if (trees_ahead_.follow(snapshot.sonar.position, still_)) {
+        if (!trees_ahead_.needs(before_->origin)) *before_ = {};  // while the other thread still has the tree
+        trees_ahead_.send();
+    }
     world_from_sonar_ = glm::mat3(glm::mat3_cast(snapshot.sonar.orientation));
     place_ = glm::vec3(snapshot.sonar.position - origin);
     placeMovers(snapshot);
@@ -337,18 +335,20 @@ void RayVisibility::fitDeforming(size_t part, size_t parts) {
 void RayVisibility::forget() {
     moves_.assign(moves_.size(), false);
     here_->is_built = before_->is_built = false;
+    still_.reset();
 }
 
 void RayVisibility::forgetTrees(const types::Snapshot& snapshot) {
     for (const types::MovedObject& moved : snapshot.moved) moves_[moved.object] = true;
+    if (snapshot.movable)
+        for (const uint32_t object : *snapshot.movable) moves_[object] = true;
     here_->is_built = before_->is_built = false;
+    still_.reset();
 }
 
-void RayVisibility::build(const glm::dvec3& origin) {
-    here_->is_built = false;
-    here_->origin = origin;
-    std::vector<Mover> movers;
-    std::vector<TreeObject> still, apart;
+void RayVisibility::sortObjects() {
+    auto still = std::make_shared<std::vector<TreeObject>>();
+    apart_.clear();
     std::vector<size_t> uses(geometry_->meshes.size());
     size_t triangles = 0;
     for (const types::Object& object : geometry_->objects) {
@@ -359,21 +359,29 @@ void RayVisibility::build(const glm::dvec3& origin) {
     for (size_t i = 0; i < geometry_->objects.size(); ++i) {
         const types::Object& object = geometry_->objects[i];
         const auto mesh = static_cast<size_t>(object.mesh);
-        if (geometry_->meshes[mesh].indices.empty()) continue;
-        const types::MeshPtr& shared = geometry_->meshes.shared(mesh);
-        glm::dmat4 place = object.world_from_object;
-        place[3] -= glm::dvec4(origin, 0);
-        if (doesDeform(i)) continue;
-        if (moves_[i]) {
-            Mover& mover = movers.emplace_back(static_cast<uint32_t>(i), first_command_[i], MeshTree::of(shared));
-            mover.tree = mover.mesh->tree().scene();
-            mover.box = MeshFacts::of(shared)->box();
-        } else {
-            const bool is_apart = object.transient || (triangles > max_copied && uses[mesh] > 1);
-            (is_apart ? apart : still).push_back({shared, place, first_command_[i]});
-        }
+        if (geometry_->meshes[mesh].indices.empty() || !isStill(static_cast<uint32_t>(i))) continue;
+        const bool is_apart = object.transient || (triangles > max_copied && uses[mesh] > 1);
+        (is_apart ? apart_ : *still)
+            .push_back({geometry_->meshes.shared(mesh), object.world_from_object, first_command_[i]});
     }
-    here_->trees.emplace(SceneTrees(still, apart));  // keeps the old trees until it has reused them
+    still_ = std::move(still);
+}
+
+void RayVisibility::build(const glm::dvec3& origin) {
+    here_->is_built = false;
+    here_->origin = origin;
+    if (!still_) sortObjects();
+    std::vector<Mover> movers;
+    for (size_t i = 0; i < geometry_->objects.size(); ++i) {
+        const auto mesh = static_cast<size_t>(geometry_->objects[i].mesh);
+        if (!moves_[i] || doesDeform(i) || geometry_->meshes[mesh].indices.empty()) continue;
+        const types::MeshPtr& shared = geometry_->meshes.shared(mesh);
+        Mover& mover = movers.emplace_back(static_cast<uint32_t>(i), first_command_[i], MeshTree::of(shared));
+        mover.tree = mover.mesh->tree().scene();
+        mover.box = MeshFacts::of(shared)->box();
+    }
+    // Keeps the old trees until it has reused them.
+    here_->trees.emplace(SceneTrees(objectsAbout(*still_, origin), objectsAbout(apart_, origin)));
     here_->movers = std::move(movers);
     here_->is_built = true;
 }

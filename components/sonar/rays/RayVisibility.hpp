@@ -6,6 +6,7 @@
 
 #include "components/sonar/rays/AngularView.hpp"
 #include "components/sonar/rays/DeformingTrees.hpp"
+#include "components/sonar/rays/TreesAhead.hpp"
 #include "types/Snapshot.hpp"
 
 struct RTCRayHit16;
@@ -41,7 +42,7 @@ struct PathRays {
 /** Finds the visible triangles by rays on the processor (Embree).
  *
  *  Objects at rest form one tree about an origin near the sonar, on a coarse grid, so that world coordinates may be
- *  large. Each object that moves, or is transient, has a tree of its mesh, which is placed anew and never rebuilt.
+ *  large. Each object that may move, or is transient, has a tree of its mesh, which is placed anew and never rebuilt.
  *  Objects that deform have trees that are refitted to their meshes in each ping. All trees are shared with other
  * renderers of the same meshes. Surfaces nearer than `nearest` are not seen. */
 class RayVisibility {
@@ -60,9 +61,10 @@ public:
     /** Forgets which objects have moved. Trees stay until the next ping has reused those that it needs. */
     void forget();
 
-    /** Places the sonar and the moving objects; call it once per ping. Rebuilds the tree when an object moves for the
-     *  first time, or when the sonar is near another origin than the last two; allocates only then. What is seen
-     *  depends on the snapshot alone, not on the pings before. */
+    /** Places the sonar and the moving objects; call it once per ping. Builds a tree in the first ping, when an object
+     *  moves that no snapshot has called movable, and when the sonar jumps near another origin than the last two; the
+     *  trees of origins that it approaches are built ahead. Allocates only where origins or objects change. What is
+     *  seen depends on the snapshot alone, not on the pings before. */
     void place(const types::Snapshot& snapshot);
     /** Fits the trees of every parts-th object that deforms from the part-th on, after place(). Parts may run at a
      * time.
@@ -86,6 +88,9 @@ public:
     /** Traces a tile along paths that are not straight, by straight pieces between their corners. */
     void traceAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const;
 
+    /** Returns whether all trees are built that the sonar may need next. */
+    bool hasTreesAhead() const { return trees_ahead_.isDone(); }
+
     /** Returns the commands that hits refer to: one for each object and run of one material. */
     const std::vector<CommandRecord>& commands() const { return commands_; }
 
@@ -103,8 +108,11 @@ private:
                     TileHits& hits) const;
     void listCommands();
     bool hasNewMover(const types::Snapshot& snapshot) const;
+    bool isStill(uint32_t object) const { return !moves_[object] && !doesDeform(object); }
     /** Records the objects of a snapshot as moving; every tree is to be rebuilt. */
     void forgetTrees(const types::Snapshot& snapshot);
+    /** Lists the objects at rest, and those that have trees of their meshes. */
+    void sortObjects();
     void build(const glm::dvec3& origin);
     void placeMovers(const types::Snapshot& snapshot);
     void placeDeforming(const types::Snapshot& snapshot);
@@ -116,7 +124,10 @@ private:
     const types::Geometry* geometry_;
     std::vector<CommandRecord> commands_;
     std::vector<uint32_t> first_command_;  ///< First command of each object.
-    std::vector<bool> moves_;              ///< Whether an object has ever moved.
+    std::vector<bool> moves_;              ///< Whether an object has ever moved, or been movable.
+    TreesAhead::Objects still_;            ///< Objects of the tree at rest, in the world; null: to be sorted out.
+    std::vector<TreeObject> apart_;        ///< Objects at rest with trees of their meshes, in the world.
+    TreesAhead trees_ahead_;
     std::vector<bool> deforms_;            ///< Whether each object deforms; empty if no object does.
     DeformingTrees deforming_;
     std::vector<glm::dmat4> deforming_places_;  ///< Places of the deforming objects about the origin.

@@ -18,6 +18,8 @@ RTCDevice sharedDevice() {
     return device;
 }
 
+thread_local size_t built_by_this_thread = 0;
+
 /** Returns numbers that are equal for equal objects. */
 std::vector<uint64_t> keyOf(const std::vector<TreeObject>& objects) {
     std::vector<uint64_t> key;
@@ -79,8 +81,11 @@ void EmbreeScene::attach(RTCGeometry geometry, bool has_vertices) {
     has_vertices_.push_back(has_vertices);
 }
 
-void EmbreeScene::commit() {
+void EmbreeScene::commit(const std::atomic<bool>* quits) {
+    const auto goesOn = [](void* flag, double) { return !static_cast<const std::atomic<bool>*>(flag)->load(); };
+    if (quits) rtcSetSceneProgressMonitorFunction(scene_, goesOn, const_cast<std::atomic<bool>*>(quits));
     rtcCommitScene(scene_);
+    if (quits) rtcSetSceneProgressMonitorFunction(scene_, nullptr, nullptr);
     if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
         throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
 }
@@ -120,12 +125,15 @@ std::shared_ptr<StillTree> StillTree::of(const std::vector<TreeObject>& objects)
     return all.of(keyOf(objects), [&] { return std::make_shared<StillTree>(objects); });
 }
 
-const EmbreeScene& StillTree::tree() {
-    built_.call([this] { build(); });
+const EmbreeScene& StillTree::tree(const std::atomic<bool>* quits) {
+    built_.call([&] { build(quits); });
     return *tree_;
 }
 
-void StillTree::build() {
+size_t StillTree::builtByThisThread() { return built_by_this_thread; }
+
+void StillTree::build(const std::atomic<bool>* quits) {
+    ++built_by_this_thread;
     auto tree = std::make_unique<EmbreeScene>();
     parts_.clear();
     positions_.clear();
@@ -141,7 +149,7 @@ void StillTree::build() {
             parts_.push_back({command++, run.first_index / 3});
         }
     }
-    tree->commit();
+    tree->commit(quits);
     tree_ = std::move(tree);
 }
 

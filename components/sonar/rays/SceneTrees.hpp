@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <glm/mat4x4.hpp>
 #include <memory>
 #include <vector>
@@ -41,8 +42,9 @@ public:
     void add(const types::Mesh& mesh, const MaterialRun& run, const std::vector<glm::vec3>& at);
     /** Adds another scene, which must outlive this one. */
     void add(const EmbreeScene& other, const glm::dmat4& place);
-    /** Builds the tree. Throws std::runtime_error with Embree's error. */
-    void commit();
+    /** Builds the tree. Throws std::runtime_error with Embree's error, and soon after `quits` becomes true; null: it
+     *  does not. */
+    void commit(const std::atomic<bool>* quits = nullptr);
     /** Refits a Kind::Refitted scene after vertices have moved. */
     void recommit();
 
@@ -79,6 +81,8 @@ struct TreeObject {
     types::MeshPtr mesh;
     glm::dmat4 place;
     uint32_t command;
+
+    bool operator==(const TreeObject&) const = default;
 };
 
 /** The tree of objects at rest, with their triangles copied to their places. All callers with the same objects share
@@ -88,13 +92,16 @@ public:
     static std::shared_ptr<StillTree> of(const std::vector<TreeObject>& objects);
     explicit StillTree(const std::vector<TreeObject>& objects) : objects_(objects) {}
 
-    /** Returns the tree, built at the first call. Thread-safe. */
-    const EmbreeScene& tree();
+    /** Returns the tree, built at the first call. Thread-safe. Throws, without a tree, soon after `quits` becomes
+     *  true. */
+    const EmbreeScene& tree(const std::atomic<bool>* quits = nullptr);
+    /** Returns how many trees this thread has built so far [1]. */
+    static size_t builtByThisThread();
     const TreePart& part(uint32_t geometry) const { return parts_[geometry]; }
     bool isEmpty() const { return objects_.empty(); }
 
 private:
-    void build();
+    void build(const std::atomic<bool>* quits);
 
     std::vector<TreeObject> objects_;
     Once built_;
