@@ -50,8 +50,11 @@ TEST(RandomKindTest, PingsOfEveryKindHaveEchoes) {
 
 /** The beams of a fan and the pings of a scan change places. */
 TEST(RandomKindTest, TheMirrorImageOfASceneHasTheMirrorImageOfItsPings) {
-    forEachSonar(few, [](const RandomSonar& one, Draw&) {
-        if (one.is_coherent) return;  // its scatterers are not mirrored
+    forEachSonar(few, [](const RandomSonar& drawn, Draw&) {
+        if (drawn.is_coherent) return;  // its scatterers are not mirrored
+        RandomSonar one = drawn;
+        const bool has_pattern = one.properties.contains("beam_pattern");  // whose columns begin at one side
+        if (has_pattern) one.properties["quality"] = "{rows: 48, columns_per_beam: 48}";
         std::vector<RandomObject> objects = one.objects;
         for (RandomObject& object : objects) {
             for (glm::vec3& p : object.mesh.positions) p.y = -p.y;
@@ -67,8 +70,7 @@ TEST(RandomKindTest, TheMirrorImageOfASceneHasTheMirrorImageOfItsPings) {
                 std::swap_ranges(ping.bins.begin() + beam * ping.bin_count,
                                  ping.bins.begin() + (beam + 1) * ping.bin_count,
                                  ping.bins.end() - (beam + 1) * ping.bin_count);
-        // With a pattern the columns of samples begin at one side.
-        expectAlike(binsOf(mirrored), binsOf(one, one.scene()), one.properties.contains("beam_pattern") ? 0.1 : 0.01);
+        expectAlike(binsOf(mirrored), binsOf(one, one.scene()), has_pattern ? 0.1 : 0.01);
     });
 }
 
@@ -175,7 +177,7 @@ TEST(RandomKindTest, AFlatObjectIsHeardAlikeInTwoParts) {
         bool has_lobes = false;
         for (const RandomObject& object : one.objects) {
             has_lobes = has_lobes || object.material.reflection > 0;
-            const double size = draw.between(0.2, 0.6), at = draw.between(0.2, 0.8);
+            const double size = draw.between(0.15, 0.4), at = draw.between(0.2, 0.8);
             const glm::vec3 low(0, -size, -size), a(draw.between(-0.2, 0.2), 2 * size, 0),
                 b(draw.between(-0.2, 0.2), 0, 2 * size), there = static_cast<float>(at) * a;
             whole.push_back(object);
@@ -186,9 +188,9 @@ TEST(RandomKindTest, AFlatObjectIsHeardAlikeInTwoParts) {
                 parts.back().mesh = part == 0 ? test::quad(low, there, b) : test::quad(low + there, a - there, b);
             }
         }
-        // The lobe of a smooth surface is integrated facet by facet.
+        // The lobe of a smooth surface is integrated facet by facet, and is narrower than few columns of samples.
         expectAlike(binsOf(one, RandomSonar::sceneOf(parts)), binsOf(one, RandomSonar::sceneOf(whole)),
-                    has_lobes ? 0.05 : 1e-4);
+                    has_lobes ? 0.2 : 1e-4);
     });
 }
 

@@ -210,14 +210,14 @@ inline void drawEffects(Draw& draw, RandomSonar& made) {
 
 /** Returns the direction of object `i` of `count` from the sonar, about where its beams look. */
 inline glm::dvec3 drawDirection(Draw& draw, Kind kind, int i, int count) {
-    double azimuth = draw.between(-8, 8) + 80 * (i - 0.5 * (count - 1)) / count, elevation = draw.between(-6, 6);
+    double azimuth = draw.between(-3, 3) + 80 * (i - 0.5 * (count - 1)) / count, elevation = draw.between(-6, 6);
     if (kind == Kind::SideScan) azimuth = draw.between(-3, 3) + (i % 2 ? 90 : -90), elevation = -20 - 15.0 * i;
     const double a = types::radians(azimuth), e = types::radians(elevation);
     return {std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e)};
 }
 
 inline types::Mesh drawMesh(Draw& draw) {
-    const double size = draw.between(0.2, 0.6);
+    const double size = draw.between(0.15, 0.4);
     if (draw.once(2)) return sphere(size, 8);
     return quad({0, -size, -size}, {draw.between(-0.2, 0.2), 2 * size, 0}, {draw.between(-0.2, 0.2), 0, 2 * size});
 }
@@ -249,7 +249,7 @@ inline RandomSonar randomSonar(uint64_t seed) {
     for (int i = 0; i < objects; ++i) {
         RandomObject object;
         object.name = fmt::format("object_{}", i);
-        object.place = draw.between(5, 11) * random_sonars::drawDirection(draw, made.kind, i, objects);
+        object.place = draw.between(6, 11) * random_sonars::drawDirection(draw, made.kind, i, objects);
         object.mesh = random_sonars::drawMesh(draw);
         object.material = random_sonars::drawMaterial(draw);
         made.objects.push_back(std::move(object));
