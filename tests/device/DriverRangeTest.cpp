@@ -52,7 +52,7 @@ TEST(DriverRangeTest, ThePing360sDriverFindsTheEchoByItsSamplePeriod) {
         const auto first = std::ranges::find_if(data, [](uint8_t byte) { return byte > 0; }) - data.begin();
         ASSERT_LT(first, samples) << each.reach;
         const double bin = period * 25e-9 * 1500 / 2;
-        EXPECT_NEAR((static_cast<double>(first) + 0.5) * bin, target, std::max(bin, 0.00151))
+        EXPECT_NEAR((static_cast<double>(first) + 0.5) * bin, target, bin + 0.00151)
             << each.reach << " m, " << each.is_exact;
     }
 }
@@ -72,10 +72,10 @@ TEST(DriverRangeTest, ThePing1dReportsTheDistanceAndItsProfileHasIt) {
         bench.waitForNext();
         const auto profile = bench.only<Ping1dProfile>();
         const double bin = each.reach / 200;
-        EXPECT_NEAR(profile.measurement.distance * 1e-3, each.target, std::max(bin, 0.00151) + 1e-3) << each.reach;
+        EXPECT_NEAR(profile.measurement.distance * 1e-3, each.target, bin + 0.0025) << each.reach;
         const auto first = std::ranges::find_if(profile.data, [](uint8_t byte) { return byte > 0; }) - profile.data.begin();
         const double shown = each.reach / static_cast<double>(profile.data.size());
-        EXPECT_NEAR((static_cast<double>(first) + 0.5) * shown, each.target, std::max(shown, 0.00151) + 1e-3)
+        EXPECT_NEAR((static_cast<double>(first) + 0.5) * shown, each.target, shown + 0.0025)
             << each.reach;
     }
 }
