@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace insonify::types {
@@ -34,7 +35,8 @@ void ReturnLevels::take(const RangeBins& bins, uint32_t count, const ReturnRules
     for (size_t k = 0; k < count && width > 0; ++k) {
         const double from = bins.binStart(static_cast<double>(k)), received = ringDown(rules, from, from + width);
         if (!(static_cast<float>(received) > 0)) break;
-        ring_down_.push_back(received);
+        // Below the least normal float a bin has no digits left, and may be any multiple of the ring-down.
+        ring_down_.push_back(std::max(received, static_cast<double>(std::numeric_limits<float>::min())));
     }
 }
 

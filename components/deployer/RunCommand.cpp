@@ -134,6 +134,17 @@ void refuseUnmeantLength(const framework::Deployment& deployment, const RunOptio
                     last.end, last.end / 86'400, week / 86'400));
 }
 
+/** Refuses a number of pings where no task makes any: the run would never end. */
+void refuseUncountable(const framework::Deployment& deployment, const RunOptions& options) {
+    if (options.limits.samples == 0) return;
+    const auto isCounted = [](const framework::PortBase* port) { return port->counted(); };
+    for (const auto& task : deployment.tasks())
+        if (std::ranges::any_of(task->outputs(), isCounted)) return;
+    throw types::ConfigError(deployment.spec().file, "--pings",
+                             fmt::format("is {}, and no task of the deployment makes pings; give --duration S instead",
+                                         options.limits.samples));
+}
+
 /** Shows a run's progress on a terminal: done, total and remaining time. */
 class RunProgress {
 public:
@@ -273,6 +284,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     command::startPrinting();
     deployment.configure();
     refuseUnmeantLength(deployment, options);
+    refuseUncountable(deployment, options);
     folder.keep();
     if (folder.hadFiles() && !options.quiet && !options.shard)
         command::printDiagnostic(

@@ -115,7 +115,7 @@ struct Noise::Run {
 Noise::Noise(const NoiseConfig& config) : config_(config) {
     if (config.speckle && config.speckle->law == SpeckleLaw::Gamma) gamma_.emplace(config.speckle->looks.value_or(1));
     if (config.speckle && config.speckle->law == SpeckleLaw::K) gamma_.emplace(config.speckle->shape.value_or(1));
-    if (config.filter) filter_.emplace(*config.filter);
+    if (config.filter && !config.filter->isNeutral()) filter_.emplace(*config.filter);
     if (config.ambient) ambient_ = static_cast<float>(std::min(ambientIntensity(*config.ambient), 1e30));
     if (config.additive) additive_ = static_cast<float>(std::pow(10.0, config.additive->level_db / 10));
 }

@@ -66,6 +66,9 @@ struct FilterConfig {
     int looks = 1;
     std::optional<double> correlation_bins = {}, correlation_beams = {};
 
+    /** Returns whether one look is taken of independent bins, as without a filter. */
+    bool isNeutral() const { return looks == 1 && !correlation_bins && !correlation_beams; }
+
     static void describe(auto& self, auto& visit) {
         visit({"looks", "1", "independent intensities that are averaged in each bin", 1, 256}, self.looks);
         visit({"correlation_bins", "1",

@@ -183,7 +183,7 @@ void convert(const types::Range& range, const std::string& frame_id, Range& mess
     message.min_range = static_cast<float>(range.range_min);
     message.max_range = static_cast<float>(range.range_max);
     constexpr float nothing = std::numeric_limits<float>::infinity();  // REP 117
-    message.range = range.isKnown() ? static_cast<float>(range.range)
+    message.range = range.isKnown() ? std::max(message.min_range, static_cast<float>(range.range))
                                     : (range.range == types::Range::too_near ? -nothing : nothing);
     message.variance = 0;
 }

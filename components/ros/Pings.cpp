@@ -132,6 +132,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& m
     arc.take(ping);
     const double minimum = minStep(arc);
     const DetectionThreshold rule(ping, options);
+    const auto nearest = static_cast<float>(rangeMin(options));
     message.ranges.clear();
     message.intensities.clear();
     for (size_t place = 0, ray = 0; place < arc.beams.size(); ++place) {
@@ -140,7 +141,10 @@ void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& m
         message.intensities.resize(ray + 1, 0);
         const auto bin = rule.firstOf(arc.beams[place]);
         constexpr float nothing = std::numeric_limits<float>::infinity();
-        message.ranges[ray] = bin ? binCentre(ping, *bin) : rule.isTooNear(arc.beams[place]) ? -nothing : nothing;
+        // The bin that range_min divides has echoes of its farther part, and readers drop ranges below range_min.
+        message.ranges[ray] = bin                                ? std::max(nearest, binCentre(ping, *bin))
+                              : rule.isTooNear(arc.beams[place]) ? -nothing
+                                                                 : nothing;
         if (bin) message.intensities[ray] = ping.bins[size_t{arc.beams[place]} * ping.bin_count + *bin];
     }
     const size_t rays = message.ranges.size();
@@ -148,7 +152,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& m
     message.angle_min = static_cast<float>(first);
     message.angle_increment = rays > 1 ? static_cast<float>((last - first) / static_cast<double>(rays - 1)) : 0;
     message.angle_max = static_cast<float>(last);
-    message.range_min = static_cast<float>(rangeMin(options));
+    message.range_min = nearest;
     message.range_max = static_cast<float>(ping.binStart(ping.bin_count));
 }
 

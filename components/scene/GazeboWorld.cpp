@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "components/loader/ComponentLibrary.hpp"
+#include "components/scene/VertexRounding.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -39,6 +40,7 @@ std::shared_ptr<const Scene> sharedWorld(const GazeboConfig& config, const std::
         if (auto scene = known->second.lock()) return scene;
     Scene read;
     worldReader()(config, folder, read);
+    noteRounding(read.geometry);
     auto scene = std::make_shared<const Scene>(std::move(read));
     worlds[key] = scene;
     return scene;

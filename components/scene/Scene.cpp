@@ -14,6 +14,7 @@
 
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Gltf.hpp"
+#include "components/scene/VertexRounding.hpp"
 #include "types/Ascii.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
@@ -92,6 +93,19 @@ auto* sdfReader(const std::filesystem::path& file) try {
     throw types::ConfigError(file.string(), "", error.diagnostics().front().text());
 }
 
+/** Reads a file that exists by the reader of its extension. */
+Scene readByExtension(const std::filesystem::path& file) {
+    const std::string extension = extensionOf(file);
+    if (const SceneReader read = readerOf(extension)) return read(file);
+    if (extension == ".world" || extension == ".sdf" || extension == ".urdf") {
+        Scene scene;
+        sdfReader(file)(file, scene);
+        return scene;
+    }
+    throw types::ConfigError(file.string(), "",
+                             fmt::format("has extension \"{}\"; may be .gltf, .glb, .world, .sdf or .urdf", extension));
+}
+
 }  // namespace
 
 void addFormat(const std::string& extension, SceneReader reader) {
@@ -108,15 +122,9 @@ std::string extensionOf(const std::filesystem::path& file) { return types::lower
 
 Scene readScene(const std::filesystem::path& file) {
     refuseMissing(file);
-    const std::string extension = extensionOf(file);
-    if (const SceneReader read = readerOf(extension)) return read(file);
-    if (extension == ".world" || extension == ".sdf" || extension == ".urdf") {
-        Scene scene;
-        sdfReader(file)(file, scene);
-        return scene;
-    }
-    throw types::ConfigError(file.string(), "",
-                             fmt::format("has extension \"{}\"; may be .gltf, .glb, .world, .sdf or .urdf", extension));
+    Scene scene = readByExtension(file);
+    noteRounding(scene.geometry);
+    return scene;
 }
 
 std::shared_ptr<const Scene> sharedScene(const std::filesystem::path& file) {

@@ -129,3 +129,103 @@ def test_scenes_are_reported_to_the_millimetre(runs):
     path.write_text(json.dumps(made))
     shown = subprocess.run([INSONIFY, "scene", path], check=True, capture_output=True, text=True, timeout=100).stdout
     assert "from [499999.123, 6499999.123, -0.877] to [500001.123, 6500001.123, 1.123]" in shown
+
+
+def pipe(facet=0.002, radius=0.15):
+    """Vertices and triangles of an upright pipe of facets of that width [m]."""
+    count = int(2 * np.pi * radius / facet)
+    angle = 2 * np.pi * np.arange(count) / count
+    vertices = np.concatenate([np.c_[radius * np.cos(angle), radius * np.sin(angle), np.full(count, z)] for z in (-0.25, 0.25)])
+    a = np.arange(count)
+    b = (a + 1) % count
+    return vertices, np.concatenate([np.c_[a, b, b + count], np.c_[a, b + count, a + count]])
+
+
+def write_gltf(folder, place, baked):
+    """A pipe by the pose of its node, or, baked, by its vertices."""
+    vertices, triangles = pipe()
+    y_up = lambda v: np.stack([v[..., 0], v[..., 2], -v[..., 1]], -1)
+    points, at = y_up(vertices + (place if baked else 0)).astype("<f4"), y_up(np.asarray(place))
+    (folder / "p.bin").write_bytes(points.tobytes() + triangles.astype("<u4").tobytes())
+    views = [{"buffer": 0, "byteOffset": 0, "byteLength": points.nbytes}, {"buffer": 0, "byteOffset": points.nbytes, "byteLength": 4 * triangles.size}]
+    accessors = [
+        {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": len(points), "min": points.min(0).tolist(), "max": points.max(0).tolist()},
+        {"bufferView": 1, "componentType": 5125, "type": "SCALAR", "count": triangles.size},
+    ]  # fmt: skip
+    node = {"mesh": 0, "name": "pipe"} | ({} if baked else {"translation": at.tolist()})
+    made = {
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [node], "materials": [{"name": "steel"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+        "buffers": [{"uri": "p.bin", "byteLength": points.nbytes + 4 * triangles.size}], "bufferViews": views, "accessors": accessors,
+    }  # fmt: skip
+    (folder / "s.gltf").write_text(json.dumps(made))
+    return "s.gltf"
+
+
+def write_obj(folder, place, baked):
+    vertices, triangles = pipe()
+    lines = ["v {:.9f} {:.9f} {:.9f}".format(*v) for v in vertices + (place if baked else 0)]
+    (folder / "p.obj").write_text("\n".join(lines + ["f {} {} {}".format(*(t + 1)) for t in triangles]))
+    return "{:.9f} {:.9f} {:.9f}".format(*(np.zeros(3) if baked else place))
+
+
+def write_sdf(folder, place, baked):
+    at = write_obj(folder, place, baked)
+    visual = "<geometry><mesh><uri>p.obj</uri></mesh></geometry><material><script><name>steel</name></script></material>"
+    link = f"<link name='l'><visual name='pipe'>{visual}</visual></link>"
+    model = f"<model name='m'><static>true</static><pose>{at} 0 0 0</pose>{link}</model>"
+    (folder / "s.sdf").write_text(f"<sdf version='1.9'><world name='w'>{model}</world></sdf>")
+    return "s.sdf"
+
+
+def write_urdf(folder, place, baked):
+    at = write_obj(folder, place, baked)
+    visual = "<visual><geometry><mesh filename='p.obj'/></geometry><material name='steel'/></visual>"
+    joint = f"<joint name='j' type='fixed'><parent link='base'/><child link='l'/><origin xyz='{at}'/></joint>"
+    (folder / "s.urdf").write_text(f"<robot name='r'><link name='base'/><link name='l'>{visual}</link>{joint}</robot>")
+    return "s.urdf"
+
+
+def pipe_simulation(folder, write, place, baked=False):
+    """A sonar 5 m from a pipe at `place`; returns the simulation and the sonar's pose."""
+    at = np.asarray(place) + [-5, 0.03, 0.02]
+    waypoints = [{"position": at.tolist()}]
+    tasks = {
+        "vehicle": {"type": "pose::TrajectoryTask", "activity": {"period": 0.1}, "properties": {"waypoints": waypoints}},
+        "scene": {"type": "scene::SceneTask", "properties": {"file": write(folder, np.asarray(place), baked)}},
+        "sonar": {
+            "type": "sonar::SonarTask",
+            "properties": {
+                "beam_count": 8, "field_of_view_deg": 20, "beam_height_deg": 8, "range": 8, "bin_count": 200, "speed_of_sound": 1500,
+                "frequency_khz": 400, "visibility": "cpu", "quality": {"rows": 48, "columns_per_beam": 64},
+            },
+        },
+    }  # fmt: skip
+    connections = [{"from": "vehicle.pose", "to": "scene.pose"}, {"from": "scene.snapshot", "to": "sonar.snapshot"}]
+    (folder / "d.yml").write_text(json.dumps({"tasks": tasks, "connections": connections}))
+    return folder / "d.yml", insonify.Pose(at)
+
+
+@pytest.mark.parametrize("write", [write_gltf, write_sdf, write_urdf])
+def test_a_pipe_of_small_facets_echoes_the_same_wherever_its_pose_is(tmp_path, write):
+    levels = []
+    for i, place in enumerate([(0, 0, 0), (230, -240, 11), (1000, 300, -40), (100_000, 20_000, -300)]):
+        (tmp_path / str(i)).mkdir()
+        try:
+            file, pose = pipe_simulation(tmp_path / str(i), write, place)
+            levels.append(10 * np.log10(insonify.Simulation(file).step(pose).bins.sum(dtype=float)))
+        except insonify.ConfigError as error:
+            if "libsdformat" not in str(error) and "sdf.so" not in str(error):
+                raise
+            pytest.skip(str(error))
+    assert np.ptp(levels) < 0.05 and np.isfinite(levels).all(), levels
+
+
+@pytest.mark.parametrize("write, place, steps", [(write_gltf, 1000, "0.061 mm"), (write_gltf, 100_000, "7.8 mm"), (write_sdf, 1000, "0.061 mm")])
+def test_vertices_far_from_their_origin_are_named(tmp_path, write, place, steps):
+    file, _ = pipe_simulation(tmp_path, write, (place, 0, 0), baked=True)
+    scene = next(tmp_path.glob("s.*"))
+    shown = subprocess.run([INSONIFY, "scene", scene], capture_output=True, text=True, timeout=100)
+    run = subprocess.run([INSONIFY, "run", file, "--pings", "1", "--out", tmp_path / "out"], capture_output=True, text=True, timeout=100)
+    assert f"in steps of {steps}" in shown.stdout + shown.stderr and "pipe" in shown.stdout, shown.stdout + shown.stderr
+    assert f"in steps of {steps}" in run.stdout + run.stderr, run.stdout + run.stderr

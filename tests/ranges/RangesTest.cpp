@@ -40,6 +40,12 @@ Case randomCase(std::mt19937& random) {
     config.range_rounding = random() % 2 ? sonar::RangeRounding::Exact : sonar::RangeRounding::Sample;
     config.beam_count = 1 + 2 * static_cast<int>(random() % 3);
     config.field_of_view_deg = 2.0 * config.beam_count;
+    if (random() % 3 == 0) {  // at irregular angles, which are multiples of one for a LaserScan
+        const auto step = [&](int most) { return 3.0 * static_cast<double>(1 + random() % static_cast<unsigned>(most)); };
+        config.field_of_view_deg.reset();
+        config.beam_width_deg = 2;
+        config.bearings_deg = {-step(3) - 3, -3, 0, step(5), 18 + step(4)};
+    }
     config.beam_height_deg = 2;
     config.quality.rows = config.quality.columns_per_beam = 64;
     config.visibility = sonar::Visibility::Cpu;
@@ -70,6 +76,7 @@ Rendered rendered(const Case& given) {
     }
     made.returns.take(made.ping, made.truth, strongest);
     made.middle = made.ping.beam_count / 2;
+    EXPECT_NEAR(made.ping.bearings[made.middle].rad, 0, 1e-9);
     const float* const bins = &made.ping.bins[size_t{made.middle} * made.ping.bin_count];
     while (made.first < made.ping.bin_count && !(bins[made.first] > 0)) ++made.first;
     return made;
@@ -153,7 +160,8 @@ TEST(RangesTest, AWallIsWithinOneBinOfItsRangeInEveryOutput) {
         options.threshold_db = -60;
         ros::LaserScan scan;
         convert(ping, options, scan);
-        expect(scan.ranges[scan.ranges.size() / 2], "LaserScan");
+        const float before = scan.angle_increment > 0 ? -scan.angle_min / scan.angle_increment : 0;
+        expect(scan.ranges[static_cast<size_t>(std::lround(before))], "LaserScan");
         EXPECT_NEAR(scan.range_max, ping.binStart(ping.bin_count), 1e-6 * given.config.range);
         ros::SonarRanges ranges;
         convert(ping, options, ranges);

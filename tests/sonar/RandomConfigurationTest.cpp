@@ -4,9 +4,9 @@
 
 #include <functional>
 #include <map>
-#include <random>
 
 #include "components/sonar/SonarTask.hpp"
+#include "tests/support/Draw.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -14,27 +14,10 @@
 namespace insonify::sonar {
 namespace {
 
+using test::Draw;
 using test::relativeL2;
 
 constexpr int random_configurations = 24;  ///< Configurations for each property.
-
-/** Numbers of a seed, the same on every machine. */
-class Draw {
-public:
-    explicit Draw(uint64_t seed) : engine_(seed) {}
-    double between(double low, double high) {
-        return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-    }
-    int upTo(int count) { return static_cast<int>(between(0, count)); }
-    bool once(int in) { return upTo(in) == 0; }
-    template <size_t N>
-    const char* oneOf(const char* const (&all)[N]) {
-        return all[upTo(N)];
-    }
-
-private:
-    std::mt19937_64 engine_;
-};
 
 /** A sonar by its properties, and the meshes in front of it, by their places. */
 struct Drawn {
@@ -117,10 +100,10 @@ Drawn drawnFrom(uint64_t seed) {
     drawEffects(draw, made);
     const int objects = 2 + draw.upTo(3);
     for (int i = 0; i < objects; ++i) {
-        const double bearing = types::radians(draw.between(-8, 8) + 40 * (i - 0.5 * (objects - 1)) / objects * 2);
-        const double range = draw.between(5, 11), height = draw.between(-0.6, 0.6);
+        const double bearing = types::radians(draw.between(-3, 3) + 40 * (i - 0.5 * (objects - 1)) / objects * 2);
+        const double range = draw.between(6, 11), height = draw.between(-0.6, 0.6);
         made.places.push_back({range * std::cos(bearing), range * std::sin(bearing), height});
-        const double size = draw.between(0.2, 0.6);
+        const double size = draw.between(0.15, 0.4);
         if (draw.once(2))
             made.meshes.push_back(test::sphere(size, 8));
         else
@@ -137,12 +120,13 @@ types::Sonar pingOf(const Drawn& one, const types::Snapshot& scene, const Render
 
 /** Calls `hold` with each configuration, and with its number. */
 void forEachDrawn(const std::function<void(const Drawn&, Draw&)>& hold) {
-    for (uint64_t seed = 1; seed <= random_configurations; ++seed) {
+    const test::Seeds seeds(random_configurations);
+    for (uint64_t seed = seeds.first; seed < seeds.end(); ++seed) {
         const Drawn one = drawnFrom(seed);
         SCOPED_TRACE(fmt::format("seed {}\n{}", seed, one.text()));
         Draw more(1000 + seed);
         hold(one, more);
-        if (testing::Test::HasFailure()) return;
+        if (testing::Test::HasFailure() && seeds.count == random_configurations) return;
     }
 }
 
@@ -178,7 +162,9 @@ TEST(RandomConfigurationTest, DrawsPingsWithEchoes) {
 
 /** The world turns about the vertical and moves, as far as float positions are exact. */
 TEST(RandomConfigurationTest, APingDoesNotDependOnWhereTheWorldsAxesAre) {
-    forEachDrawn([](const Drawn& one, Draw& draw) {
+    forEachDrawn([](const Drawn& drawn, Draw& draw) {
+        Drawn one = drawn;
+        if (one.is_coherent) one.properties.erase("volume");  // the scatterers of the water stay in the world
         const types::Snapshot scene = one.scene();
         const glm::dquat turn = glm::angleAxis(draw.between(-3, 3), glm::normalize(glm::dvec3(0.2, -0.1, 1)));
         const glm::dvec3 way(draw.between(-100, 100), draw.between(-100, 100), draw.between(-20, 20));
@@ -197,15 +183,19 @@ TEST(RandomConfigurationTest, APingDoesNotDependOnWhereTheWorldsAxesAre) {
 }
 
 TEST(RandomConfigurationTest, TheMirrorImageOfASceneHasTheMirrorImageOfItsPing) {
-    forEachDrawn([](const Drawn& one, Draw&) {
-        if (one.is_coherent) return;  // its scatterers are not mirrored
+    forEachDrawn([](const Drawn& drawn, Draw&) {
+        if (drawn.is_coherent) return;  // its scatterers are not mirrored
+        Drawn one = drawn;
+        const bool has_pattern = one.properties.contains("beam_pattern");  // whose columns begin at one side
+        if (has_pattern) one.properties["quality"] = "{rows: 64, columns_per_beam: 32}";
         std::vector<types::Mesh> meshes;
         std::vector<glm::dvec3> places;
         for (size_t i = 0; i < one.meshes.size(); ++i) {
             meshes.push_back(mirrorImage(one.meshes[i]));
             places.push_back(one.places[i] * glm::dvec3(1, -1, 1));
         }
-        expectAlike(mirrorImage(pingOf(one, one.sceneOf(meshes, places))), pingOf(one, one.scene()), 0.01);
+        expectAlike(mirrorImage(pingOf(one, one.sceneOf(meshes, places))), pingOf(one, one.scene()),
+                    has_pattern ? 0.1 : 0.01);
     });
 }
 
