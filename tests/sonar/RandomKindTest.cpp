@@ -194,6 +194,34 @@ TEST(RandomKindTest, AFlatObjectIsHeardAlikeInTwoParts) {
     });
 }
 
+/** Scatterers are numbered by the name of their object: two parts have other speckle, of the same mean. */
+TEST(RandomKindTest, AFlatObjectInTwoPartsHasOtherSpeckleOfTheSameMean) {
+    SonarConfig config =
+        test::sonarOf({.beams = 8, .width_deg = 16, .height_deg = 12, .bins = 120, .rows = 48, .columns = 12});
+    config.visibility = Visibility::Cpu;
+    config.frequency_khz = 300;
+    config.speckle.emplace().coherent = true;
+    const auto meanOf = [&](const std::vector<std::pair<const char*, types::Mesh>>& parts, const std::string& drawn,
+                            double& mean) {
+        std::vector<types::Mesh> meshes;
+        for (const auto& part : parts) meshes.push_back(part.second);
+        auto geometry = std::make_shared<types::Geometry>(*test::sceneOf(meshes));
+        for (size_t i = 0; i < parts.size(); ++i) geometry->objects[i].name = parts[i].first + drawn;
+        const types::Sonar ping = test::pingOf(config, test::snapshotOf(geometry));
+        mean += test::sumOf(ping);
+        return ping.bins;
+    };
+    const glm::vec3 low(8, -1, -0.8f), across(0.6f, 2, 0), up(0.2f, 0, 1.6f), half = 0.4f * across;
+    double whole = 0, parts = 0;
+    for (int i = 0; i < 150; ++i) {
+        const auto one = meanOf({{"whole", test::quad(low, across, up)}}, std::to_string(i), whole);
+        const auto two = meanOf({{"right", test::quad(low, half, up)}, {"left", test::quad(low + half, across - half, up)}},
+                                std::to_string(i), parts);
+        EXPECT_NE(one, two);
+    }
+    EXPECT_NEAR(parts / whole, 1, 0.05);
+}
+
 /** The object in a bin reaches into the bin's ranges. */
 TEST(RandomKindTest, TheTruthOfABinIsAnObjectWithinItsRange) {
     forEachSonar(few, [](const RandomSonar& one, Draw&) {
