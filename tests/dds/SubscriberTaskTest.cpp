@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <thread>
+
 #include "components/dds/SubscriberTask.hpp"
 #include "tests/dds/Ends.hpp"
 #include "tests/support/Refused.hpp"
@@ -161,4 +163,31 @@ TEST_F(SubscriberTaskTest, WarnsOnceOfTheAbsenceOfAPose) {
     }
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_THAT(warnings[0], testing::HasSubstr("subscriber.pose: no pose yet: nobody publishes /nowhere"));
+}
+
+/** A live publisher whose clock is set by ten minutes, back and forward. Stamps ahead of our clock are refused. */
+TEST_F(SubscriberTaskTest, PosesGoOnWhenThePublishersClockIsSetByTenMinutes) {
+    Publishing<types::Pose> publishing({topicOut("in", "/stepping", message_type<ros::Odometry>)});
+    Subscribing subscribing("/stepping", PoseType::Odometry);
+    meet(publishing, subscribing, somewhere(0));
+    double x = 0;
+    /** Returns how long it took until a pose of a clock that is set by `step` came [s]; 3 s: none came. */
+    const auto untilOneComes = [&](double step) {
+        const types::Time begin = framework::wallClock(), limit = types::Time::fromSeconds(3);
+        x += 1;
+        while (framework::wallClock() - begin < limit) {
+            types::Pose sent = somewhere(x), came;
+            sent.time = sent.time + types::Time::fromSeconds(step);
+            publishing.send(sent);
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            while (subscribing.reader.port.readNew(came))
+                if (came.position.x == x) return (framework::wallClock() - begin).seconds();
+        }
+        return 3.0;
+    };
+    EXPECT_LT(untilOneComes(0), 1);
+    EXPECT_LT(untilOneComes(-600), 2.5) << "set back: after a second of poses that may be late ones";
+    EXPECT_LT(untilOneComes(0), 1) << "and right again";
+    EXPECT_EQ(untilOneComes(600), 3) << "ahead of our clock: refused, with a warning";
+    EXPECT_LT(untilOneComes(0), 1) << "the refused ones have left no trace";
 }

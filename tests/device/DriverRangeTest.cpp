@@ -73,10 +73,10 @@ TEST(DriverRangeTest, ThePing1dReportsTheDistanceAndItsProfileHasIt) {
         const auto profile = bench.only<Ping1dProfile>();
         const double bin = each.reach / 200;
         EXPECT_NEAR(profile.measurement.distance * 1e-3, each.target, bin + 0.0025) << each.reach;
-        const auto first = std::ranges::find_if(profile.data, [](uint8_t byte) { return byte > 0; }) - profile.data.begin();
+        const auto first =
+            std::ranges::find_if(profile.data, [](uint8_t byte) { return byte > 0; }) - profile.data.begin();
         const double shown = each.reach / static_cast<double>(profile.data.size());
-        EXPECT_NEAR((static_cast<double>(first) + 0.5) * shown, each.target, shown + 0.0025)
-            << each.reach;
+        EXPECT_NEAR((static_cast<double>(first) + 0.5) * shown, each.target, shown + 0.0025) << each.reach;
     }
 }
 

@@ -215,5 +215,30 @@ TEST_F(BodyTest, AMissingMessageIsReportedAfterTheClockIsSetBack) {
     EXPECT_THAT(reported, HasSubstr("arrives without"));
 }
 
+/** Our clock, the vehicle's, or both are set by ten minutes while poses arrive 50 times a second. */
+TEST_F(BodyTest, PosesGoOnWhenAClockIsSetByTenMinutes) {
+    for (const double ours : {-600.0, 0.0, 600.0})
+        for (const double theirs : {-600.0, 0.0, 600.0}) {
+            Body vehicle{{}, {0, 0, 0}};
+            double last = 0, longest = 0;
+            for (int i = 0; i < 500; ++i) {
+                const double now = 0.02 * i;
+                const auto ms = static_cast<uint32_t>(std::lround(1000 * (1000 + now + (now >= 4 ? theirs : 0))));
+                const Time clock = Time::fromSeconds(1e9 + now + (now >= 6 ? ours : 0));
+                const auto give = [&](const auto& message) { return vehicle.take(frameOf(message, 1, 1), 1, clock); };
+                give(LocalPositionNed{.time_boot_ms = ms, .x = 1});
+                const auto pose = give(turned(0.1, {1, 0, 0}, ms)).pose;
+                if (!pose) continue;
+                EXPECT_LE(pose->time, clock);
+                EXPECT_GE(pose->time, clock - Time::fromSeconds(0.7)) << ours << ", " << theirs << " at " << now;
+                expectNear(pose->position, {1, 0, 0});
+                longest = std::max(longest, now - last);
+                last = now;
+            }
+            EXPECT_LE(longest, 0.05) << ours << ", " << theirs;
+            EXPECT_NEAR(last, 9.98, 0.03) << ours << ", " << theirs;
+        }
+}
+
 }  // namespace
 }  // namespace insonify::mavlink

@@ -147,7 +147,10 @@ def write_gltf(folder, place, baked):
     y_up = lambda v: np.stack([v[..., 0], v[..., 2], -v[..., 1]], -1)
     points, at = y_up(vertices + (place if baked else 0)).astype("<f4"), y_up(np.asarray(place))
     (folder / "p.bin").write_bytes(points.tobytes() + triangles.astype("<u4").tobytes())
-    views = [{"buffer": 0, "byteOffset": 0, "byteLength": points.nbytes}, {"buffer": 0, "byteOffset": points.nbytes, "byteLength": 4 * triangles.size}]
+    views = [
+        {"buffer": 0, "byteOffset": 0, "byteLength": points.nbytes},
+        {"buffer": 0, "byteOffset": points.nbytes, "byteLength": 4 * triangles.size},
+    ]
     accessors = [
         {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": len(points), "min": points.min(0).tolist(), "max": points.max(0).tolist()},
         {"bufferView": 1, "componentType": 5125, "type": "SCALAR", "count": triangles.size},
@@ -221,7 +224,9 @@ def test_a_pipe_of_small_facets_echoes_the_same_wherever_its_pose_is(tmp_path, w
     assert np.ptp(levels) < 0.05 and np.isfinite(levels).all(), levels
 
 
-@pytest.mark.parametrize("write, place, steps", [(write_gltf, 1000, "0.061 mm"), (write_gltf, 100_000, "7.8 mm"), (write_sdf, 1000, "0.061 mm")])
+@pytest.mark.parametrize(
+    "write, place, steps", [(write_gltf, 1000, "0.061 mm"), (write_gltf, 100_000, "7.8 mm"), (write_sdf, 1000, "0.061 mm")]
+)
 def test_vertices_far_from_their_origin_are_named(tmp_path, write, place, steps):
     file, _ = pipe_simulation(tmp_path, write, (place, 0, 0), baked=True)
     scene = next(tmp_path.glob("s.*"))

@@ -42,7 +42,8 @@ def drawn(folder, seed, noisy):
     wall = reach * random.uniform(0.3, 0.8)
     sonar = {
         "range": reach, "bin_count": bins, "range_min": 0.02 * reach, "speed_of_sound": random.uniform(1400, 1600), "visibility": "cpu",
-        "frequency_khz": 400, "range_rounding": "exact" if random.random() < 0.5 or reach / bins < 0.03 else "sample", "quality": {"rows": 16, "columns_per_beam": 16},
+        "frequency_khz": 400, "range_rounding": "exact" if random.random() < 0.5 or reach / bins < 0.03 else "sample",
+        "quality": {"rows": 16, "columns_per_beam": 16},
     }  # fmt: skip
     mount = {}
     if kind in ("Sonar", "Profiler"):
@@ -81,7 +82,12 @@ def drawn(folder, seed, noisy):
     links.append((last, "log.ping"))
     policy = {"type": "buffer", "size": 64}
     write_wall(folder, wall)
-    made = {"schedule": "lockstep", "seed": int(seed), "tasks": tasks, "connections": [{"from": a, "to": b, "policy": policy} for a, b in links]}
+    made = {
+        "schedule": "lockstep",
+        "seed": int(seed),
+        "tasks": tasks,
+        "connections": [{"from": a, "to": b, "policy": policy} for a, b in links],
+    }
     (folder / "d.yml").write_text(json.dumps(made))
     return folder / "d.yml", wall, last
 

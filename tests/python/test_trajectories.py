@@ -119,7 +119,12 @@ def test_clocks_and_units_are_the_same_path(tmp_path, seed):
 def test_a_sweep_takes_the_keys_of_a_trajectorys_clock(tmp_path, deploy):
     """Samples of a file since 1970 are those of the same file from 0."""
     stamps, records = [0, 1, 2, 3], []
-    for epoch, scale, keys in ((0, 1, ""), (1.6e9, 1e3, ", start: first_pose"), (1.6e9, 1, ", start_s: 1.6e9"), (0, 1e6, ", time_unit: us")):
+    for epoch, scale, keys in (
+        (0, 1, ""),
+        (1.6e9, 1e3, ", start: first_pose"),
+        (1.6e9, 1, ", start_s: 1.6e9"),
+        (0, 1e6, ", time_unit: us"),
+    ):
         folder = tmp_path / str(len(records))
         folder.mkdir()
         rows = [f"{(t + epoch) * scale:.0f},{3 + t},-4,-5{QUATERNION}" for t in stamps]

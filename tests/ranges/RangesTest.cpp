@@ -41,7 +41,9 @@ Case randomCase(std::mt19937& random) {
     config.beam_count = 1 + 2 * static_cast<int>(random() % 3);
     config.field_of_view_deg = 2.0 * config.beam_count;
     if (random() % 3 == 0) {  // at irregular angles, which are multiples of one for a LaserScan
-        const auto step = [&](int most) { return 3.0 * static_cast<double>(1 + random() % static_cast<unsigned>(most)); };
+        const auto step = [&](int most) {
+            return 3.0 * static_cast<double>(1 + random() % static_cast<unsigned>(most));
+        };
         config.field_of_view_deg.reset();
         config.beam_width_deg = 2;
         config.bearings_deg = {-step(3) - 3, -3, 0, step(5), 18 + step(4)};

@@ -40,9 +40,9 @@ struct Chain {
     types::SonarPtr pingOf(double wall) {
         const auto scene = test::sceneOf({test::wall(static_cast<float>(wall))}, -20);
         in.port.write(std::make_shared<const types::Snapshot>(test::snapshotOf(scene)));
-        for (framework::TaskContext* task : {static_cast<framework::TaskContext*>(&sonar),
-                                             static_cast<framework::TaskContext*>(&noise),
-                                             static_cast<framework::TaskContext*>(&receiver)})
+        for (framework::TaskContext* task :
+             {static_cast<framework::TaskContext*>(&sonar), static_cast<framework::TaskContext*>(&noise),
+              static_cast<framework::TaskContext*>(&receiver)})
             if (task != &receiver || has_receiver) task->update();
         types::SonarPtr ping;
         out.port.readNew(ping);
@@ -58,7 +58,8 @@ TEST(ScanTest, NoRangeIsNearerThanTheScansRangeMinAndTheWallIsThere) {
         const double near = draw.between(0.05, 6), blanked = draw.between(0.05, 6), range = draw.between(12, 40);
         Chain chain(draw.once(2));
         const int bins = 30 + draw.upTo(300);
-        SCOPED_TRACE(fmt::format("seed {}: {} bins to {} m, range_min {}, blanking {}", seed, bins, range, near, blanked));
+        SCOPED_TRACE(
+            fmt::format("seed {}: {} bins to {} m, range_min {}, blanking {}", seed, bins, range, near, blanked));
         chain.set(chain.sonar, {{"range", fmt::format("{}", range)},
                                 {"bin_count", fmt::format("{}", bins)},
                                 {"range_min", fmt::format("{}", near)},
@@ -71,8 +72,9 @@ TEST(ScanTest, NoRangeIsNearerThanTheScansRangeMinAndTheWallIsThere) {
                                 {"quality", "{rows: 16, columns_per_beam: 16}"},
                                 {"pulse", chain.has_receiver ? "{duration_us: 50}" : ringing}});
         chain.set(chain.noise, {{"speckle", "{law: gamma, looks: 50}"}});
-        if (chain.has_receiver) chain.set(chain.receiver, {{"blanking", fmt::format("{{range_min: {}}}", blanked)},
-                                                           {"tvg", "{log_coefficient: 20}"}});
+        if (chain.has_receiver)
+            chain.set(chain.receiver,
+                      {{"blanking", fmt::format("{{range_min: {}}}", blanked)}, {"tvg", "{log_coefficient: 20}"}});
         ros::SonarOptions options;
         options.returns = framework::upstreamReturnRules(chain.out.port, types::left_receiver);
         const double least = chain.has_receiver ? std::max(near, blanked) : near;

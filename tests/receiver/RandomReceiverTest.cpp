@@ -56,8 +56,7 @@ types::Sonar drawPing(Draw& draw) {
                                         static_cast<uint32_t>(20 + draw.upTo(600)));
     ping.time.microseconds = static_cast<int64_t>(draw.between(1, 1e15));
     ping.speed_of_sound = static_cast<float>(draw.between(1400, 1600));
-    for (float& bin : ping.bins)
-        bin = draw.once(8) ? 0.0f : static_cast<float>(std::pow(10, draw.between(-14, 2)));
+    for (float& bin : ping.bins) bin = draw.once(8) ? 0.0f : static_cast<float>(std::pow(10, draw.between(-14, 2)));
     return ping;
 }
 
@@ -128,11 +127,10 @@ TEST(RandomReceiverTest, EachBinIsByTheFormulas) {
             const double bin = static_cast<double>(k % ping.bin_count);
             const bool is_blanked = config.blanking && ping.binStart(bin) < config.blanking->range_min * (1 - 1e-9);
             const double wanted = expected(config, double{one.ping.bins[k]}, ping.binStart(bin + 0.5), is_blanked);
-            const double tolerance = config.output == Output::Code      ? 0.5 + 1e-5 * wanted + 1e-3
-                                     : config.output == Output::LevelDb ? 1e-3
-                                     : config.output == Output::ReceivedLevelDb
-                                         ? 1e-3
-                                         : 1e-5 * wanted;
+            const double tolerance = config.output == Output::Code              ? 0.5 + 1e-5 * wanted + 1e-3
+                                     : config.output == Output::LevelDb         ? 1e-3
+                                     : config.output == Output::ReceivedLevelDb ? 1e-3
+                                                                                : 1e-5 * wanted;
             ASSERT_NEAR(ping.bins[k], wanted, tolerance) << "bin " << k;
             const bool is_whole = ping.bins[k] == std::round(ping.bins[k]);
             ASSERT_TRUE(config.output != Output::Code || is_whole) << ping.bins[k];
@@ -162,7 +160,8 @@ TEST(RandomReceiverTest, TheOrderOfBeamsDoesNotMatter) {
                                  ping.bins.end() - (beam + 1) * ping.bin_count);
             return ping;
         };
-        const auto there = received(receiver, one.ping).bins, back = reversed(received(receiver, reversed(one.ping))).bins;
+        const auto there = received(receiver, one.ping).bins,
+                   back = reversed(received(receiver, reversed(one.ping))).bins;
         const float step = receiver["output"] == "code" ? 1.0f : 0.0f;
         for (size_t k = 0; k < there.size(); ++k)
             ASSERT_NEAR(there[k], back[k], 1e-5f * std::abs(there[k]) + step) << "bin " << k;
@@ -182,8 +181,7 @@ TEST(RandomReceiverTest, NoiseDoesNotDependOnTheSizeOfThePingOrOnPingsBefore) {
         adding.add(one.ping, first);
         adding.add(shorter, second);
         for (size_t k = 0; k < second.bins.size(); ++k)
-            ASSERT_EQ(second.bins[k],
-                      first.bins[k / shorter.bin_count * one.ping.bin_count + k % shorter.bin_count]);
+            ASSERT_EQ(second.bins[k], first.bins[k / shorter.bin_count * one.ping.bin_count + k % shorter.bin_count]);
         adding.add(one.ping, second);
         EXPECT_EQ(second.bins, first.bins);
     });

@@ -52,8 +52,9 @@ TEST(VertexRoundingTest, ANoticeNamesTheObjectsAndTheirPoseDoesNotMatter) {
     auto geometry = test::sceneOf({pipeAt(1000, 0.002), pipeAt(0, 0.002)}, 0, {{0, 0, 0}, {1e5, 0, 0}});
     noteRounding(geometry);
     ASSERT_EQ(geometry->notices.size(), 1u);
-    EXPECT_THAT(geometry->notices[0], testing::AllOf(testing::HasSubstr("object_0, up to 1000 m away in steps of 0.061 mm"),
-                                                     testing::Not(testing::HasSubstr("object_1"))));
+    EXPECT_THAT(geometry->notices[0],
+                testing::AllOf(testing::HasSubstr("object_0, up to 1000 m away in steps of 0.061 mm"),
+                               testing::Not(testing::HasSubstr("object_1"))));
     types::GeometryPtr good = test::sceneOf({pipeAt(0, 0.002)}, 0, {{1e6, 0, 0}});
     const types::GeometryPtr before = good;
     noteRounding(good);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,8 @@ struct RandomSonar {
     std::map<std::string, std::string> properties;
     std::vector<RandomObject> objects;
     bool is_coherent = false;
+    std::optional<double> water_surface;  ///< Its height [m].
+    std::vector<types::PointTarget> targets;
 
     static constexpr int scan_pings = 5;  ///< Of one turn of a scanning sonar.
     int pings() const { return kind == Kind::Scanning ? scan_pings : 1; }
@@ -50,10 +53,11 @@ struct RandomSonar {
         std::string text = fmt::format("type: {}\nproperties:\n", type());
         for (const auto& [name, value] : properties) text += fmt::format("  {}: {}\n", name, value);
         for (const RandomObject& object : objects)
-            text += fmt::format("# {}: {} triangles at [{:.17g}, {:.17g}, {:.17g}], {:.9g} dB {}, reflection {}, slope {}\n",
-                                object.name, object.mesh.indices.size() / 3, object.place.x, object.place.y,
-                                object.place.z, object.material.lambert_db, object.material.seabed,
-                                object.material.reflection, object.material.roughness_slope.value_or(0));
+            text += fmt::format(
+                "# {}: {} triangles at [{:.17g}, {:.17g}, {:.17g}], {:.9g} dB {}, reflection {}, slope {}\n",
+                object.name, object.mesh.indices.size() / 3, object.place.x, object.place.y, object.place.z,
+                object.material.lambert_db, object.material.seabed, object.material.reflection,
+                object.material.roughness_slope.value_or(0));
         return text;
     }
     RandomSonar with(const std::string& name, const std::string& value) const {
@@ -61,7 +65,14 @@ struct RandomSonar {
         other.properties[name] = value;
         return other;
     }
-    types::Snapshot scene() const { return sceneOf(objects); }
+    types::Snapshot scene() const { return with(objects); }
+    /** Returns the scene with other objects. */
+    types::Snapshot with(const std::vector<RandomObject>& others) const {
+        types::Snapshot scene = sceneOf(others);
+        scene.water_surface = water_surface;
+        scene.targets = targets;
+        return scene;
+    }
 
     static types::Snapshot sceneOf(const std::vector<RandomObject>& objects) {
         auto geometry = std::make_shared<types::Geometry>();
@@ -156,8 +167,8 @@ inline void drawGrid(Draw& draw, RandomSonar& made) {
     }
     if (is_fan || made.kind == Kind::Scanning) p["beam_geometry"] = draw.once(2) ? "conical" : "planar";
     if (made.kind == Kind::Grid) {
-        p["horizontal"] = fmt::format("{{beam_count: {}, field_of_view_deg: {:.2f}}}", 1 + draw.upTo(6),
-                                      draw.between(30, 80));
+        p["horizontal"] =
+            fmt::format("{{beam_count: {}, field_of_view_deg: {:.2f}}}", 1 + draw.upTo(6), draw.between(30, 80));
         p["vertical"] =
             fmt::format("{{beam_count: {}, field_of_view_deg: {:.2f}}}", 1 + draw.upTo(5), draw.between(10, 40));
         p["beam_height_deg"] = fmt::format("{:.2f}", draw.between(3, 12));
@@ -255,6 +266,24 @@ inline RandomSonar randomSonar(uint64_t seed) {
         made.objects.push_back(std::move(object));
     }
     return made;
+}
+
+/** Adds what changes how sound travels: walls, mirrors, the water surface, edges, targets and errors of the device. */
+inline RandomSonar withPaths(RandomSonar one, Draw& draw) {
+    auto& p = one.properties;
+    for (RandomObject& object : one.objects) {
+        const int choice = draw.upTo(4);
+        if (choice == 0) object.material.shell = {.thickness = 0.004, .density = 7800, .sound_speed = 5900};
+        if (choice == 0) object.material.shell->shear_speed = 3200;
+        if (choice == 1) object.material.mirror = true;
+    }
+    if (draw.once(2)) p["multipath"] = fmt::format("{{surface: {{wind_m_s: 3}}, bounces: {}}}", 1 + draw.upTo(2));
+    if (draw.once(2)) p["effects"] = "{edge_diffraction: {min_turn_deg: 60}}";
+    if (draw.once(2))
+        p["imperfections"] = "{beam_gain_error_db: 1, dead_beam_share: 0.1, crosstalk_db: -25, clock_jitter_us: 20}";
+    one.water_surface = 2.5;
+    one.targets = {{{6, 0.5, 0.2}, -15}, {{9, -1, -0.3}, -25}};
+    return one;
 }
 
 /** Calls `hold` with each drawn sonar, and with numbers for the property that it tests. */

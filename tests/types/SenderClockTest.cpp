@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "types/SenderClock.hpp"
 
 namespace insonify::types {
@@ -103,6 +105,30 @@ TEST(SenderClockTest, TimesFollowOurClockWhenItIsSetBack) {
     SenderClock clock;
     clock.read(at(1), at(ahead + 3600));
     EXPECT_EQ(clock.read(at(1.1), at(ahead)).time, at(ahead));
+}
+
+/** A stream of 50 messages a second, while the clock of one side or of both is set by ten minutes. */
+TEST(SenderClockTest, AStreamGoesOnWhenEitherClockIsSetByTenMinutes) {
+    for (const double ours : {-600.0, 0.0, 600.0})
+        for (const double senders : {-600.0, 0.0, 600.0})
+            for (const double apart : {0.0, 0.3, 4.0}) {  // between the two steps [s]
+                SenderClock clock;
+                int dropped = 0;
+                Time worst;
+                for (int i = 0; i < 1000; ++i) {
+                    const double now = 0.02 * i, delay = 0.001 * (i * 37 % 18);
+                    const Time stamp = at(2000 + now + (now >= 5 ? senders : 0));
+                    const double set = now + delay >= 5 + apart ? ours : 0;
+                    const Time arrival = at(ahead + 2000 + now + delay + set);
+                    const auto [order, time] = clock.read(stamp, arrival);
+                    dropped += order == Order::Late || order == Order::Repeated;
+                    EXPECT_LE(time, arrival);
+                    if (order == Order::Next || order == Order::Restarted) worst = std::max(worst, arrival - time);
+                }
+                const Time longest = SenderClock::max_lag + SenderClock::max_doubt + at(0.04);
+                EXPECT_LE(worst, longest) << ours << ", " << senders << ", " << apart;
+                EXPECT_LE(dropped, 1) << ours << ", " << senders << ", " << apart;
+            }
 }
 
 }  // namespace
