@@ -121,22 +121,22 @@ private:
     std::string gap_text_;  ///< Warning of a long gap between two samples; empty: there is none.
     log::LoggerClock clock_;
     Outputs outputs_{this};
-    std::vector<Outputs::Output*> by_stream_;   ///< The output of each stream of the log; null without a connection.
-    size_t next_ = 0;                           ///< Index into the log's samples.
-    types::Time next_time_;                     ///< When that sample is due, on the log's clock.
-    types::Time shift_;                         ///< Shift of the stamps after jumps.
-    types::Time gap_{1'000'000};                ///< Between the last two instants.
-    types::Time pause_;                         ///< In addition to `gap_`, before the next instant, after a late jump.
-    std::atomic<double> pace_{1};               ///< Other threads read the clock, too.
-    std::function<types::Time()> wall_;         ///< In realtime.
+    std::vector<Outputs::Output*> by_stream_;  ///< The output of each stream of the log; null without a connection.
+    size_t next_ = 0;                          ///< Index into the log's samples.
+    types::Time next_time_;                    ///< When that sample is due, on the log's clock.
+    types::Time shift_;                        ///< Shift of the stamps after jumps.
+    types::Time gap_{1'000'000};               ///< Between the last two instants.
+    types::Time pause_;                        ///< In addition to `gap_`, before the next instant, after a late jump.
+    std::atomic<double> pace_{1};              ///< Other threads read the clock, too.
+    std::function<types::Time()> wall_;        ///< In realtime.
     /** Start of the log's time on the wall clock, without pauses; negative: it stands, -1 - the time since its start.
      *  The tasks of the deployment read it with every look at the clock, without a lock. */
     std::atomic<int64_t> clock_us_{-1};
     bool is_paused_ = false;
-    std::atomic<int64_t> first_us_{0};          ///< The instant at which the replay starts, on the log's clock.
-    std::atomic<int64_t> played_us_{0};         ///< The instant being played; 0: none yet.
-    std::atomic<int64_t> at_us_{0};             ///< The last sample played, after the log's first.
-    std::atomic<double> span_s_{-1};            ///< Span of the log; negative: the log is not open.
+    std::atomic<int64_t> first_us_{0};   ///< The instant at which the replay starts, on the log's clock.
+    std::atomic<int64_t> played_us_{0};  ///< The instant being played; 0: none yet.
+    std::atomic<int64_t> at_us_{0};      ///< The last sample played, after the log's first.
+    std::atomic<double> span_s_{-1};     ///< Span of the log; negative: the log is not open.
     std::atomic<bool> finished_{false};
 };
 

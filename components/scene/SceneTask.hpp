@@ -132,11 +132,11 @@ private:
     mutable std::optional<MosaicConfig> scene_map_;  ///< The mosaic whose classes are among the materials of scene_.
     types::GeometryPtr geometry_;                    ///< From file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
-    std::vector<Movable> movables_;       ///< Outer nodes before inner nodes, once configured.
-    size_t part_count_ = 0;               ///< Parts of all movables; their memory is allocated before they move.
+    std::vector<Movable> movables_;  ///< Outer nodes before inner nodes, once configured.
+    size_t part_count_ = 0;          ///< Parts of all movables; their memory is allocated before they move.
     std::shared_ptr<const std::vector<uint32_t>> movable_objects_;  ///< Null: no port moves an object.
-    std::vector<const Movable*> mover_;   ///< For each object, the movable that moves it now.
-    std::unique_ptr<Animator> animator_;  ///< Null: nothing moves by itself, nor is deformed.
+    std::vector<const Movable*> mover_;                             ///< For each object, the movable that moves it now.
+    std::unique_ptr<Animator> animator_;                            ///< Null: nothing moves by itself, nor is deformed.
     std::vector<Timed> timed_;
     std::vector<DrivenNode> driven_;  ///< One per movable, for the animator.
     std::vector<PlacedTarget> targets_;

@@ -165,9 +165,8 @@ void border(std::string_view way, uint32_t cells) {
     for (int i = 0; i < 1300; ++i) {
         const auto start = Clock::now();
         const double angle = 0.005 * i;
-        const glm::dvec3 place =
-            middle + (way == "circle" ? 20.0 * glm::dvec3(std::cos(angle), std::sin(angle), 0)
-                                      : glm::dvec3(0.1 * i - 46, 0, 0));
+        const glm::dvec3 place = middle + (way == "circle" ? 20.0 * glm::dvec3(std::cos(angle), std::sin(angle), 0)
+                                                           : glm::dvec3(0.1 * i - 46, 0, 0));
         types::Snapshot snapshot = at(place, i);
         snapshot.geometry = geometry;
         const double start_busy = busyMs();

@@ -76,8 +76,9 @@ TEST_F(ReplayPaceTest, StartsBehindAStepOfTheClockBySecondsAndByDates) {
             log.close();
         }
         const auto startOf = [&](const std::string& from) {
-            EXPECT_THAT(callInsonify(folder_, {"replay", "stepped.0.log", "wall.yml", "--out", "again", "--from", from}),
-                        succeeds())
+            EXPECT_THAT(
+                callInsonify(folder_, {"replay", "stepped.0.log", "wall.yml", "--out", "again", "--from", from}),
+                succeeds())
                 << from << ", " << step;
             return Time{1000 * stamps().front()} - first;
         };
@@ -89,8 +90,9 @@ TEST_F(ReplayPaceTest, StartsBehindAStepOfTheClockBySecondsAndByDates) {
             EXPECT_EQ(startOf(log::readable(stampOf(4, step))), Time::fromSeconds(behind));
         }
         EXPECT_EQ(startOf(std::to_string(behind + 1)), Time::fromSeconds(behind + 1)) << "the last";
-        EXPECT_THAT(callInsonify(folder_, {"replay", "stepped.0.log", "wall.yml", "--from", std::to_string(behind + 2)}),
-                    isRefused(HasSubstr("; the log ends ")));
+        EXPECT_THAT(
+            callInsonify(folder_, {"replay", "stepped.0.log", "wall.yml", "--from", std::to_string(behind + 2)}),
+            isRefused(HasSubstr("; the log ends ")));
     }
 }
 

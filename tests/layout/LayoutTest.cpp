@@ -110,9 +110,7 @@ TEST(LayoutTest, ThreadsAreStartedAndForksNoticedInOnePlace) {
                     << source.path << ": types::startThread() and types::OwnProcess instead: " << line;
 }
 
-std::string trimmed(const std::string& line) {
-    return line.substr(std::min(line.size(), line.find_first_not_of(' ')));
-}
+std::string trimmed(const std::string& line) { return line.substr(std::min(line.size(), line.find_first_not_of(' '))); }
 
 /** Returns the functions of several lines in a source, each as its text without indents. */
 std::vector<std::string> functionsIn(const Source& source) {
@@ -124,8 +122,7 @@ std::vector<std::string> functionsIn(const Source& source) {
         const auto end = std::find(source.lines.begin() + static_cast<std::ptrdiff_t>(i), source.lines.end(), "}");
         const auto size = static_cast<size_t>(end - source.lines.begin()) - i;
         std::string text;
-        for (size_t k = i; k < i + size; ++k)
-            text += trimmed(source.lines[k]) + '\n';
+        for (size_t k = i; k < i + size; ++k) text += trimmed(source.lines[k]) + '\n';
         if (size >= several) functions.push_back(text);
     }
     return functions;

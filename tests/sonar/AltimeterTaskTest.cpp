@@ -93,8 +93,8 @@ TEST_F(AltimeterTaskTest, TheRangeIsUnknownWithoutAReturn) {
     EXPECT_TRUE(rangeAt(20).isKnown());
 }
 
-/** A floor out of reach, and a tile below the sonar that is another in each scene, as over a survey: 0.5 m away in every
- *  second scene, else out of reach as well. */
+/** A floor out of reach, and a tile below the sonar that is another in each scene, as over a survey: 0.5 m away in
+ * every second scene, else out of reach as well. */
 std::vector<types::GeometryPtr> scenesOfTiles(size_t count) {
     std::vector<types::Mesh> meshes(1, test::hills(60));
     const auto always = sceneOf(std::move(meshes), -20);

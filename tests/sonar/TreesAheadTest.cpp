@@ -91,8 +91,9 @@ TEST(TreesAheadTest, PingsAreThoseOfNewRenderers) {
 TEST(TreesAheadTest, NoPingTakesTheTimeOfATree) {
     const types::GeometryPtr geometry = hilly(400);
     SonarRenderer renderer(fan(), geometry, {.threads = 1});
-    const double tree = test::processorSeconds(
-        [&] { RayVisibility(*geometry).place(test::snapshotOf(geometry, {200, 10, -5})); });
+    const double tree = test::processorSeconds([&] {
+        RayVisibility(*geometry).place(test::snapshotOf(geometry, {200, 10, -5}));
+    });
     std::vector<double> times;
     double slowest = 0;
     for (const glm::dvec3& place : line({200, 10, -5}, {300, 10, -5}, 0.5)) {
@@ -141,7 +142,7 @@ TEST(TreesAheadTest, TheNumberOfTrianglesInTreesIsBounded) {
     const types::Mesh mesh = test::hills(100);
     const auto triangles = static_cast<int>(mesh.indices.size() / 3);
     for (const auto& [count, expected] : {std::pair(1, 8), std::pair(16'000'000 / 5 / triangles, 5),
-                                         std::pair(16'000'000 / 3 / triangles, 3), std::pair(900, 2)}) {
+                                          std::pair(16'000'000 / 3 / triangles, 3), std::pair(900, 2)}) {
         TreesAhead ahead;
         EXPECT_EQ(neededAtACorner(ahead, copiesOf(mesh, count)), expected) << count * triangles << " triangles";
         EXPECT_TRUE(ahead.needs({0, 0, 0})) << "its own, the nearest";

@@ -128,7 +128,7 @@ private:
     TreesAhead::Objects still_;            ///< Objects of the tree at rest, in the world; null: to be sorted out.
     std::vector<TreeObject> apart_;        ///< Objects at rest with trees of their meshes, in the world.
     TreesAhead trees_ahead_;
-    std::vector<bool> deforms_;            ///< Whether each object deforms; empty if no object does.
+    std::vector<bool> deforms_;  ///< Whether each object deforms; empty if no object does.
     DeformingTrees deforming_;
     std::vector<glm::dmat4> deforming_places_;  ///< Places of the deforming objects about the origin.
     bool is_fitted_ = false;                    ///< Whether the trees match these places and the present meshes.

@@ -70,13 +70,13 @@ void TreesAhead::send() {
     MadeAhead::Items items;
     for (const glm::dvec3& origin : origins_.needed()) {
         const glm::dvec3 cell = origin / origin_spacing;
-        items.push_back({{version_, static_cast<int64_t>(cell.x), static_cast<int64_t>(cell.y),
-                          static_cast<int64_t>(cell.z)},
-                         [objects = objects_, origin](const std::atomic<bool>& quits) {
-                             const auto tree = StillTree::of(objectsAbout(*objects, origin));
-                             tree->tree(&quits);
-                             return tree;
-                         }});
+        items.push_back(
+            {{version_, static_cast<int64_t>(cell.x), static_cast<int64_t>(cell.y), static_cast<int64_t>(cell.z)},
+             [objects = objects_, origin](const std::atomic<bool>& quits) {
+                 const auto tree = StillTree::of(objectsAbout(*objects, origin));
+                 tree->tree(&quits);
+                 return tree;
+             }});
     }
     ahead_.take(std::move(items));
 }
