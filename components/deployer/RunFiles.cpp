@@ -65,9 +65,12 @@ std::string drawingCommand(const fs::path& folder, const Files& files, const fra
 FolderListing listingOf(const fs::path& folder) {
     FolderListing listing;
     std::error_code failed;
-    for (const auto& entry : fs::recursive_directory_iterator(folder, failed))
-        if (entry.is_regular_file(failed))
-            listing[entry.path().lexically_relative(folder)] = {entry.file_size(failed), entry.last_write_time(failed)};
+    fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, failed);
+    for (; entry != fs::recursive_directory_iterator() && !failed; entry.increment(failed)) {
+        std::error_code gone;  // a file that another program removes meanwhile
+        if (entry->is_regular_file(gone))
+            listing[entry->path().lexically_relative(folder)] = {entry->file_size(gone), entry->last_write_time(gone)};
+    }
     return listing;
 }
 

@@ -92,7 +92,7 @@ def show_scenes(scenes):
     for row in scenes["borders"]:
         median, p99, slowest = row["busy_ms"]
         print(f"{row['way']:6} over borders, processor time median {median:7.2f} ms, p99 {p99:7.2f}, max {slowest:7.2f}: "
-              f"{slowest / median:.2f} times; {row['mb_first']:.0f} MB after the first ping, at most {row['mb']:.0f}")
+              f"{slowest / median:.2f} times, by the clock {row['ms'][2] / row['ms'][0]:.2f} times; {row['mb_first']:.0f} MB after the first ping, at most {row['mb']:.0f}")
     for row in scenes["memory"]:
         print(f"{row['sonars']:2} sonars of {row['triangles']} triangles: {row['mb']:.1f} MB, of which the scene without "
               f"sonars is {row['mb_scene']:.1f} MB")

@@ -1,5 +1,6 @@
 // What a run prints at its end.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include "components/deployer/RunFiles.hpp"
 #include "tests/deployer/Wall.hpp"
@@ -94,6 +95,28 @@ TEST(RunFilesTest, FilesAreTheRunsIfTheyHaveChangedWhateverTheClockSays) {
     stamp("below/new_in_the_past", -100);
     EXPECT_THAT(writtenSince(before, folder.path()),
                 testing::ElementsAre("below/new_in_the_past", "grown", "new", "rewritten", "set_back"));
+}
+
+TEST(RunFilesTest, AFolderThatMayNotBeReadHidesNoOtherFile) {
+    const TestFolder folder;
+    for (const char* name : {"a/secret/file", "b/file", "file"}) {
+        fs::create_directories((folder / name).parent_path());
+        writeFile(folder / name, "");
+    }
+    fs::permissions(folder.path(), fs::perms::all);
+    fs::permissions(folder / "a/secret", fs::perms::none);
+    const uid_t user = geteuid();
+    if (user == 0) {  // root may read everything
+        ASSERT_EQ(seteuid(65534), 0);
+    }
+    const FolderListing listing = listingOf(folder.path());
+    if (user == 0) {
+        ASSERT_EQ(seteuid(0), 0);
+    }
+    fs::permissions(folder / "a/secret", fs::perms::all);
+    EXPECT_EQ(listing.size(), 2u);
+    EXPECT_TRUE(listing.contains("b/file") && listing.contains("file"));
+    EXPECT_TRUE(listingOf(folder / "missing").empty());
 }
 
 TEST(RunFilesTest, AFileFromTheFutureIsNotOfThisRun) {

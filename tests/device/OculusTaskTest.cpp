@@ -181,7 +181,7 @@ TEST_F(OculusTaskTest, AFullDiskEndsTheRecordingAndNotThePings) {
     EXPECT_EQ(task().state(), framework::TaskState::Stopped);
 }
 
-/** Other threads read the notices while the task counts: each has the whole reason. */
+/** Other threads read the notices while the task counts: each has the whole reason. ThreadSanitizer sees a race. */
 TEST_F(OculusTaskTest, NoticesOfAFullDiskHaveTheirReasonFromTheFirst) {
     const Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "dive.oculus");

@@ -139,15 +139,20 @@ TEST_F(TooNearTest, TheSearchKeepsTheTreesOfWhatStaysInTheScene) {
     EXPECT_EQ(after - before, 1u);
 }
 
-/** Pings without a return take at most half as long again with the search, also where each has another geometry. */
+/** The search is a second ping, of few samples: pings without a return take at most three times as long with it, also
+ *  where each has another geometry. */
 TEST_F(TooNearTest, TheSearchCostsLittle) {
     const std::vector<types::GeometryPtr> scenes = scenesOfTiles(40);
     const auto secondsWith = [&](double range_min) {
         startWith(range_min);
         for (size_t i = 0; i < 4; ++i) isTooNear(scenes[i]);
-        return test::processorSeconds([&] {
-            for (size_t i = 4; i < scenes.size(); ++i) isTooNear(scenes[i]);
+        double seconds = 0;
+        task_.activity().call([&] {  // whose thread renders
+            seconds = test::processorSeconds([&] {
+                for (size_t i = 4; i < scenes.size(); ++i) isTooNear(scenes[i]);
+            });
         });
+        return seconds;
     };
     double without = secondsWith(0), with = secondsWith(1);
     for (int again = 0; again < 4; ++again) {
@@ -155,7 +160,7 @@ TEST_F(TooNearTest, TheSearchCostsLittle) {
         with = std::min(with, secondsWith(1));
     }
     RecordProperty("ratio", std::to_string(with / without));
-    EXPECT_LT(with, 1.5 * without) << 1e3 * with / 36 << " and " << 1e3 * without / 36 << " ms per ping";
+    EXPECT_LT(with, 3 * without) << 1e3 * with / 36 << " and " << 1e3 * without / 36 << " ms per ping";
 }
 
 }  // namespace

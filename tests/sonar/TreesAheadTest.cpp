@@ -171,7 +171,13 @@ TEST(TreesAheadTest, OtherObjectsAreAskedForOnce) {
     const auto same = std::make_shared<const std::vector<TreeObject>>(*objects);
     EXPECT_FALSE(ahead.follow({242, 0, 0}, same)) << "an equal list, as of a scene whose tiles have changed";
     EXPECT_TRUE(ahead.follow({243, 0, 0}, copiesOf(mesh, 3)));
-    EXPECT_FALSE(ahead.follow({243, 0, 0}, copiesOf(mesh, 4))) << "it rests";
+    const auto others = copiesOf(mesh, 4);
+    EXPECT_TRUE(ahead.follow({243, 0, 0}, others)) << "it rests, and gives up the trees of objects that are gone";
+    EXPECT_FALSE(ahead.needs(originNear({243, 0, 0})));
+    EXPECT_FALSE(ahead.follow({243, 0, 0}, others)) << "it rests";
+    EXPECT_TRUE(ahead.follow({244, 0, 0}, others));
+    EXPECT_TRUE(ahead.follow({-5000, 0, 0}, others)) << "it jumps";
+    EXPECT_FALSE(ahead.needs(originNear({244, 0, 0})));
 }
 
 TEST(TreesAheadTest, ATreeThatNobodyWaitsForIsGivenUp) {

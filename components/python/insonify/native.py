@@ -191,7 +191,10 @@ def step(simulation: Handle, poses: dict[str, NDArray], time: float | None, coun
 
 
 def time(simulation: Handle) -> float:
-    return _functions.time(simulation.pointer)
+    value = _functions.time(simulation.pointer)
+    if value != value:  # NaN: it failed
+        _raise()
+    return value
 
 
 def reset(simulation: Handle, seed: int | None) -> None:

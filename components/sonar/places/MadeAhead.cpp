@@ -1,7 +1,10 @@
 #include "components/sonar/places/MadeAhead.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
+#include <mutex>
+#include <set>
 
 namespace insonify::sonar {
 namespace {
@@ -12,24 +15,68 @@ std::shared_ptr<const void> madeOf(const MadeAhead::Item& item, const std::atomi
     return nullptr;
 }
 
+/** All that have a thread. A program may end by exit() while it has sonars; threads must end before the data that all
+ *  share, and the libraries that they use, are destroyed. */
+struct Running {
+    std::mutex mutex;
+    std::set<MadeAhead*> all;
+
+    static Running& get() {
+        static Running& running = *new Running;  // NOLINT: never destroyed
+        return running;
+    }
+};
+
 }  // namespace
 
 MadeAhead::~MadeAhead() {
+    if (!worker_.joinable()) return;
+    if (process_.isForked()) {
+        worker_.detach();                     // a child has no such thread,
+        static_cast<void>(asked_.release());  // for which the end of the condition would wait
+        return;
+    }
+    {
+        const std::lock_guard alone(Running::get().mutex);
+        Running::get().all.erase(this);
+    }
+    end();
+}
+
+void MadeAhead::end() {
     {
         const std::lock_guard alone(mutex_);
         quits_ = true;
     }
-    asked_.notify_one();
+    asked_->notify_one();
     if (worker_.joinable()) worker_.join();
 }
 
+void MadeAhead::start() {
+    worker_ = types::startThread(what_, [this] { work(); });
+    static const types::OwnProcess process;
+    static const int registered = std::atexit([] {
+        if (process.isForked()) return;
+        const std::lock_guard alone(Running::get().mutex);
+        for (MadeAhead* each : Running::get().all) each->end();
+    });
+    static_cast<void>(registered);
+    const std::lock_guard alone(Running::get().mutex);
+    Running::get().all.insert(this);
+}
+
 void MadeAhead::take(Items items) {
+    if (process_.isForked() || quits_) return;
+    if (!worker_.joinable()) try {
+            start();
+        } catch (const std::runtime_error&) {
+            return;  // the system permits no more threads: pings make what they need themselves
+        }
     {
         const std::lock_guard alone(mutex_);
         next_ = std::make_unique<const Items>(std::move(items));
     }
-    if (!worker_.joinable()) worker_ = types::startThread(what_, [this] { work(); });
-    asked_.notify_one();
+    asked_->notify_one();
 }
 
 bool MadeAhead::isDone() const {
@@ -41,7 +88,7 @@ void MadeAhead::work() {
     types::useDefaultScheduling();
     for (std::unique_lock<std::mutex> lock(mutex_);;) {
         is_working_ = false;
-        asked_.wait(lock, [this] { return quits_ || next_; });
+        asked_->wait(lock, [this] { return quits_ || next_; });
         if (quits_) return;
         is_working_ = true;
         const std::unique_ptr<const Items> items = std::exchange(next_, nullptr);

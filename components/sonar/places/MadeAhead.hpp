@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "types/OwnProcess.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::sonar {
@@ -28,25 +29,28 @@ public:
     };
     using Items = std::vector<Item>;
 
-    /** @param what is made, for the error of a system that permits no more threads */
     explicit MadeAhead(std::string what) : what_(std::move(what)) {}
     ~MadeAhead();
     MadeAhead(const MadeAhead&) = delete;
     MadeAhead& operator=(const MadeAhead&) = delete;
 
-    /** Sets the values that will be needed, the most urgent first. Does not wait. */
+    /** Sets the values that will be needed, the most urgent first. Does not wait. Without effect where the system
+     * permits no more threads, and in a forked child: then pings make what they need. */
     void take(Items items);
     /** Returns whether all values of the newest list are made. */
     bool isDone() const;
 
 private:
     using Made = std::pair<std::array<int64_t, 4>, std::shared_ptr<const void>>;
+    void start();
+    void end();
     void work();
 
     std::string what_;
+    types::OwnProcess process_;
     std::thread worker_;
     mutable types::PriorityMutex mutex_;
-    std::condition_variable asked_;
+    std::unique_ptr<std::condition_variable> asked_ = std::make_unique<std::condition_variable>();
     std::unique_ptr<const Items> next_;  ///< Items that the worker has not received yet.
     bool is_working_ = false;
     std::atomic<bool> quits_{false};

@@ -50,7 +50,7 @@ std::vector<float> mapDensityOf(const types::Mesh& mesh) {
 }  // namespace
 
 std::shared_ptr<MeshFacts> MeshFacts::of(const types::MeshPtr& mesh) {
-    static SharedValues<const types::Mesh*, MeshFacts> all;
+    static auto& all = *new SharedValues<const types::Mesh*, MeshFacts>;  // threads may use it until the process ends
     return all.of(mesh.get(), [&] { return std::make_shared<MeshFacts>(mesh); });
 }
 

@@ -65,7 +65,8 @@ NormalMapping::NormalMapping(const types::Geometry& geometry) : geometry_(geomet
 
 std::shared_ptr<const NormalMapping::Map> NormalMapping::sharedMap(
     const std::shared_ptr<const types::NormalMap>& source, float scale) {
-    static SharedValues<std::pair<const types::NormalMap*, float>, const Map> all;
+    static auto& all = *new SharedValues<std::pair<const types::NormalMap*, float>,
+                                         const Map>;  // threads may use it until the process ends
     return all.of({source.get(), scale}, [&] { return std::make_shared<const Map>(mapOf(source, scale)); });
 }
 

@@ -100,7 +100,7 @@ void EmbreeScene::recommit() {
 }
 
 std::shared_ptr<MeshTree> MeshTree::of(const types::MeshPtr& mesh) {
-    static SharedValues<const types::Mesh*, MeshTree> all;
+    static auto& all = *new SharedValues<const types::Mesh*, MeshTree>;  // threads may use it until the process ends
     return all.of(mesh.get(), [&] { return std::make_shared<MeshTree>(mesh); });
 }
 
@@ -121,7 +121,8 @@ const EmbreeScene& MeshTree::tree() {
 }
 
 std::shared_ptr<StillTree> StillTree::of(const std::vector<TreeObject>& objects) {
-    static SharedValues<std::vector<uint64_t>, StillTree> all;
+    static auto& all =
+        *new SharedValues<std::vector<uint64_t>, StillTree>;  // threads may use it until the process ends
     return all.of(keyOf(objects), [&] { return std::make_shared<StillTree>(objects); });
 }
 

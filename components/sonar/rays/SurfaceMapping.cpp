@@ -13,7 +13,8 @@ namespace insonify::sonar {
 namespace {
 
 std::shared_ptr<const MapLevels> sharedLevels(const std::shared_ptr<const types::SurfaceMap>& map) {
-    static SharedValues<std::shared_ptr<const types::SurfaceMap>, const MapLevels> all;
+    static auto& all = *new SharedValues<std::shared_ptr<const types::SurfaceMap>,
+                                         const MapLevels>;  // threads may use it until the process ends
     return all.of(map, [&] { return std::make_shared<const MapLevels>(*map); });
 }
 

@@ -1,6 +1,7 @@
 #include "components/sonar/rays/TreesAhead.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -28,10 +29,10 @@ std::vector<TreeObject> objectsAbout(const std::vector<TreeObject>& in_world, co
 bool TreesAhead::follow(const glm::dvec3& sonar, const Objects& objects) {
     const double way = before_ ? glm::distance(*before_, sonar) : 0;
     before_ = sonar;
-    if (!(way > 0 && way <= near)) return false;
     const int64_t version = version_;
     if (objects != objects_) takeObjects(objects);
-    const Origins origins = originsAround(sonar);
+    if (way == 0 && version == version_) return false;
+    const Origins origins = way > 0 && way <= near ? originsAround(sonar) : Origins();
     if (origins.count == 0 && origins_.count == 0) return false;
     if (version == version_ && std::ranges::is_permutation(origins.needed(), origins_.needed())) return false;
     origins_ = origins;
@@ -69,14 +70,13 @@ bool TreesAhead::needs(const glm::dvec3& origin) const { return std::ranges::cou
 void TreesAhead::send() {
     MadeAhead::Items items;
     for (const glm::dvec3& origin : origins_.needed()) {
-        const glm::dvec3 cell = origin / origin_spacing;
-        items.push_back(
-            {{version_, static_cast<int64_t>(cell.x), static_cast<int64_t>(cell.y), static_cast<int64_t>(cell.z)},
-             [objects = objects_, origin](const std::atomic<bool>& quits) {
-                 const auto tree = StillTree::of(objectsAbout(*objects, origin));
-                 tree->tree(&quits);
-                 return tree;
-             }});
+        items.push_back({{version_, std::bit_cast<int64_t>(origin.x), std::bit_cast<int64_t>(origin.y),
+                          std::bit_cast<int64_t>(origin.z)},
+                         [objects = objects_, origin](const std::atomic<bool>& quits) {
+                             const auto tree = StillTree::of(objectsAbout(*objects, origin));
+                             tree->tree(&quits);
+                             return tree;
+                         }});
     }
     ahead_.take(std::move(items));
 }

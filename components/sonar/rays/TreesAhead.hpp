@@ -32,7 +32,7 @@ public:
     static constexpr size_t max_triangles = 16'000'000;
 
     /** Follows a sonar through the objects at rest, at their places in the world; the list must not change. A sonar
-     *  that rests, or jumps further than `near`, needs nothing. Returns whether other origins are needed now, for
+     *  that jumps further than `near`, or rests in new objects, needs nothing, and what it needed is given up. Returns whether other origins are needed now, for
      *  send(). */
     bool follow(const glm::dvec3& sonar, const Objects& objects);
     /** Has the trees of the origins built. Does not wait. */
