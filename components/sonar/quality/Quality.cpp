@@ -11,7 +11,7 @@ namespace insonify::sonar {
 namespace {
 
 constexpr int max_rows = 2048, max_columns = 256, rungs_per_doubling = 8;
-constexpr int max_steps = 12, max_lowerings = 2;
+constexpr int max_steps = 12, max_lowerings = 3;
 constexpr double step_of_samples = 4, worth_a_step = 0.95, worth_lowering = 0.8, worth_halving = 1.5;
 constexpr double margin = 1.2, margin_of_means = 1.5;   ///< Predicted error over the measured difference [1].
 constexpr double max_margin = 2, margin_of_lag = 1.15;  ///< Where finer pings change in the same direction [1].

@@ -109,7 +109,7 @@ struct QualityGoal {
  *  within the max samples, from `start`, at which `ping` has been rendered.
  *
  *  Each step goes where the parts of the last measured error lead, to at most four times its samples. All steps
- *  together take the time of 25 to 60 pings at the last quality. Leaves `ping` rendered at the quality that it returns
+ *  together take the time of 25 to 75 pings at the last quality. Leaves `ping` rendered at the quality that it returns
  *  with its error, and the renderer at any. */
 ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRenderer& renderer,
                  const types::Snapshot& scene, const Quality& start, const QualityGoal& goal, types::Sonar& ping);
