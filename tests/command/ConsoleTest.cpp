@@ -95,10 +95,23 @@ TEST(ConsoleTest, APipeThatNobodyReadsHoldsUpNoCallerAndKeepsTheOrder) {
     printDiagnostic("the end\n");  // prints on this thread
     error.back();
     std::vector<std::string> lines = linesOf(pipe.text());
-    ASSERT_EQ(lines.size(), count - dropped + 2);
+    ASSERT_FALSE(lines.empty());
     EXPECT_EQ(lines.back(), "the end");
-    EXPECT_THAT(lines[lines.size() - 2], HasSubstr(std::to_string(dropped) + " lines are missing here"));
-    for (size_t i = 0; i < count - dropped; ++i) EXPECT_EQ(std::stoul(lines[i]), i);
+    lines.pop_back();
+    uint64_t next = 0, missing = 0;  // once, or again if the thread of the console began late
+    for (const std::string& line : lines) {
+        const std::string_view note = "insonify: ";
+        if (line.starts_with(note)) {
+            ASSERT_THAT(line, HasSubstr(" lines are missing here"));
+            const uint64_t number = std::stoull(line.substr(note.size()));
+            missing += number;
+            next += number;
+        } else {
+            ASSERT_EQ(std::stoull(line), next++);
+        }
+    }
+    EXPECT_EQ(missing, dropped);
+    EXPECT_EQ(next, uint64_t{count});
 }
 
 TEST(ConsoleTest, WhatCannotBeWrittenIsCountedAndThrowsNothing) {
