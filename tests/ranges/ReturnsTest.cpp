@@ -1,10 +1,12 @@
 // Detection in the water of the open sea, with a ring-down.
 #include <gtest/gtest.h>
 
+#include "components/output/SideScanImage.hpp"
 #include "components/ros/Clouds.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/sonar/AltimeterTask.hpp"
 #include "components/sonar/ProfilerTask.hpp"
+#include "components/sonar/SideScanTask.hpp"
 #include "components/sonar/Sonar3dTask.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"
@@ -124,6 +126,56 @@ TEST_F(Sea3dTest, RangeImagesShowTheBottomOrNothing) {
         }
     const auto none = answerTo(lookingDown(0));
     for (const float distance : none->distances) EXPECT_EQ(distance, types::DepthMap::too_far);
+}
+
+struct SeaSideScanTest : test::TaskBench<SideScanTask, types::SnapshotPtr, types::SonarPtr> {
+    SeaSideScanTest() : TaskBench(&SideScanTask::snapshot, &SideScanTask::ping) {}
+
+    /** Returns the range along the ground of the brightest column between 15 and 35 m to port [m]. */
+    static double targetIn(const types::Sonar& ping, const types::ReturnRules& returns) {
+        output::SideScanPictureConfig config;
+        config.width = 1200;
+        config.reference_db = -40;
+        config.dynamic_range_db = 120;
+        config.colour_map = output::ColourMap::Gray;
+        config.ground_range.emplace();
+        output::SideScanImage image(config);
+        image.setReturns(returns);
+        types::Image picture;
+        image.paint(ping, picture);
+        const cv::Rect water = image.water();
+        const double per_pixel = 2 * ping.binStart(ping.bin_count) / water.width;
+        double brightest = -1, at = 0;
+        for (int x = water.x; x < water.x + water.width / 2; ++x) {
+            const double ground = (water.x + water.width / 2.0 - x - 0.5) * per_pixel;
+            const double level =
+                picture.image[static_cast<size_t>(water.y) * picture.row_size + 3 * static_cast<size_t>(x)];
+            if (ground > 15 && ground < 35 && level > brightest) brightest = level, at = ground;
+        }
+        return at;
+    }
+};
+
+TEST_F(SeaSideScanTest, PicturesAlongTheGroundBeginAtTheBottom) {
+    for (const double volume_db : {-90.0, -75.0, -60.0})
+        for (const double depth : {5.0, 20.0}) {
+            SideScanConfig config;
+            putToSea(volume_db, config.sonar);
+            config.depression_deg = 50;
+            config.sonar.beam_height_deg = 90;  // to the bottom below
+            config.sonar.quality.rows = 8;
+            config.sonar.quality.columns_per_beam = 2048;
+            task_.stop();
+            task_.cleanup();
+            startWith(config);
+            types::Snapshot scene = test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-depth))}, -27));
+            scene.targets = {{{0, 25, -depth + 0.5}, -25}};  // weaker than the bottom
+            const types::SonarPtr ping = answerTo(std::make_shared<types::Snapshot>(scene));
+            ASSERT_TRUE(ping);
+            EXPECT_NEAR(targetIn(*ping, returnRulesOf(config.acrossTrack())), 25, 0.5)
+                << volume_db << " dB, " << depth << " m";
+            EXPECT_GT(std::abs(targetIn(*ping, {}) - 25), 0.4) << "the ring-down, where nothing is known of the sonar";
+        }
 }
 
 TEST(SeaScanTest, LaserScansAndRangesShowTheWallAndMarkWhatIsTooNear) {
