@@ -156,8 +156,8 @@ ErrorModel ErrorEstimator::measure(SonarRenderer& renderer, const types::Snapsho
     }
     const double least = std::max(min_part * to_finest, 1e-12);
     ErrorModel model{quality, std::max(of_rows, least), std::max(of_columns, least)};
-    const double least_margin = config_.model == Model::Physical ? margin : margin_of_means;
-    measured *= std::clamp(margin_of_lag * (1 + 2 * lagging), least_margin, max_margin);
+    const double min_margin = config_.model == Model::Physical ? margin : margin_of_means;
+    measured *= std::clamp(margin_of_lag * (1 + 2 * lagging), min_margin, max_margin);
     model = model.scaled(measured / std::hypot(model.of_rows, model.of_columns));
     model.at.error = measured;
     return model;
