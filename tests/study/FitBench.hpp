@@ -70,7 +70,7 @@ inline bool expectTruth(const RecordingFit& fit, const auto& truth, double range
     const double ratio = fit.chain.sonar.speckle->scatterers_per_m2.value_or(0) / truth.density;
     const double true_shape = shape->found.value / ratio;  // because the cell is the same
     EXPECT_TRUE(shape->found.low < true_shape && true_shape < shape->found.high) << shape->text();
-    if (shape->is_determined) {  // then the interval is narrow, and its ends are no excuse
+    if (shape->is_determined) {  // then the interval is narrow
         EXPECT_NEAR(ratio, 1, 0.9 * shape->found.half() / true_shape) << shape->text();
         EXPECT_LT(shape->found.half(), 0.5 * shape->found.value) << shape->text();
     }
