@@ -34,7 +34,7 @@ private:
 class Reader {
 public:
     /** @param arrived may be empty; is called on one of Cyclone's threads and must not block it
-     *  @param largest max message [B]; larger messages arrive empty
+     *  @param maximum max message [B]; larger messages arrive empty
      *  The node must outlive the reader. Throws types::ConfigError. */
     Reader(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
            const Quality& quality, std::function<void()> arrived, size_t maximum = any_size);

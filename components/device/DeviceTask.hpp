@@ -25,8 +25,7 @@ inline constexpr types::Field listen_address{"address", "",
  *  from a sonar with the driver's settings.
  *
  *  Each cycle processes the clients' bytes, then the pings, then the time. A cycle runs when one of these has news.
- *  Drivers use the wall clock, so the schedule is realtime.
- *  something new. What talks to a driver keeps the wall clock's time, so the schedule is realtime. */
+ *  Drivers use the wall clock, so the schedule is realtime. */
 class DeviceTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;

@@ -162,7 +162,7 @@ Bytes oculusLog(uint16_t source, uint16_t part, const std::string& text);
  *  an impossible size, it continues at the next header. A damaged line thus costs only the damaged messages. */
 class OculusFramer final : public Framer {
 public:
-    /** @param largest max payload of a message; a header with a larger payload is not accepted [B] */
+    /** @param maximum max payload of a message; a header with a larger payload is not accepted [B] */
     explicit OculusFramer(size_t maximum = size_t{1} << 28) : Framer(CutOff::Waits), maximum_(maximum) {}
 
     /** Returns the next complete message; empty: there is none yet. */

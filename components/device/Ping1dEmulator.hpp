@@ -36,7 +36,7 @@ Ping1dReturn ping1dReturn(std::span<const float> codes, size_t first = 0);
  *  keeps the strongest echo between a quarter and all of the scale. */
 class Ping1dEmulator final : public PingDevice {
 public:
-    /** @param most the max code of the receiver that the pings come from */
+    /** @param max_code the max code of the receiver that the pings come from */
     explicit Ping1dEmulator(const Ping1dConfig& config, double max_code = 65535);
 
 private:

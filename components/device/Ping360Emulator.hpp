@@ -34,7 +34,7 @@ struct Ping360Config {
  *  stop clockwise, seen from above. It then reverses if the sector is at most half a turn, else it starts again. */
 class Ping360Emulator final : public PingDevice {
 public:
-    /** @param most the max code of the receiver that the pings come from */
+    /** @param max_code the max code of the receiver that the pings come from */
     explicit Ping360Emulator(const Ping360Config& config, double max_code = 65535);
 
     uint16_t angle() const { return state_.angle; }  ///< Present or next angle of the head [gradian].

@@ -21,7 +21,7 @@
 
 namespace insonify::sonar {
 
-/** Base of the sonar tasks: renders one ping for each input that an TriggeredTask takes.
+/** Base of the sonar tasks: renders one ping for each input that a TriggeredTask takes.
  *
  *  The renderer is made at the first ping, when the geometry is known. When the geometry changes, the renderer keeps
  *  its threads, its quality and its data of meshes that are still in use. A scene that cannot be rendered leads to

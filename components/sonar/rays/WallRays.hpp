@@ -31,8 +31,7 @@ struct Reverberation {
 };
 
 /** Follows the rays of a tile through walls that ring, into bodies with a fill, and back and forth between walls
- *  (ACOUSTICS.md 5.26). Surfaces are
- *  processed layer by layer, each layer once per echo. Allocates nothing. */
+ *  (ACOUSTICS.md 5.26). Surfaces are processed layer by layer, each layer once per echo. Allocates nothing. */
 class WallRays {
 public:
     static constexpr double min_passed = WallRay::min_passed;  ///< [1]
