@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +14,8 @@ struct Diagnostic {
     std::string message;  ///< The value that is wrong, and the values that are allowed.
     std::string file = {};
     int line = 0, column = 0;  ///< From 1; 0: the place is unknown.
+    enum class Kind : uint8_t { Value, UnknownKey };
+    Kind kind = Kind::Value;
 
     /** Returns `file:line:column: path: message`, without unknown parts. */
     std::string text() const;

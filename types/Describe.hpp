@@ -53,11 +53,6 @@ struct EnumSymbol {
 template <class E>
 struct EnumTable;
 
-/** The value of a key that has moved to another task. Any value in a file is an error with the doc of the field. */
-struct MovedTo {
-    static void describe(auto&, auto&) {}
-};
-
 /** A described struct that validates its fields together: `void check(types::Diagnostics&) const`. */
 template <class T>
 concept Checked = requires(const T& value, Diagnostics& diagnostics) {

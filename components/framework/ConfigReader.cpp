@@ -141,7 +141,8 @@ YAML::Node child(const YAML::Node& map, std::string_view key) {
     return YAML::Node(YAML::NodeType::Undefined);
 }
 
-void ConfigReader::report(const YAML::Node& node, const std::string& path, const std::string& message) {
+void ConfigReader::report(const YAML::Node& node, const std::string& path, const std::string& message,
+                          types::Diagnostic::Kind kind) {
     Origin origin{file_, path, fallback_};
     size_t longest = 0;
     for (const auto& [covered, from] : origins_) {
@@ -156,9 +157,9 @@ void ConfigReader::report(const YAML::Node& node, const std::string& path, const
             if (from.isOption() && covered.starts_with(path + ".")) origin.file = from.file;
     if (has_place) origin.mark = node.Mark();
     if (origin.file.empty() || origin.isOption() || origin.mark.is_null())
-        diagnostics_.push_back({origin.path, message, origin.file});
+        diagnostics_.push_back({origin.path, message, origin.file, 0, 0, kind});
     else
-        diagnostics_.push_back({origin.path, message, origin.file, origin.mark.line + 1, origin.mark.column + 1});
+        diagnostics_.push_back({origin.path, message, origin.file, origin.mark.line + 1, origin.mark.column + 1, kind});
 }
 
 void ConfigReader::report(const YAML::Node& block, const std::string& path, const types::Diagnostics& diagnostics) {
@@ -193,7 +194,8 @@ void ConfigReader::refuseUnknown(const YAML::Node& map, const std::string& path,
         if (!entry.first.IsScalar()) continue;
         const std::string& key = entry.first.Scalar();
         if (std::find(known.begin(), known.end(), key) == known.end())
-            report(entry.first, below(path, key), "is not a key here; " + suggestion(key, known));
+            report(entry.first, below(path, key), "is not a key here; " + suggestion(key, known),
+                   types::Diagnostic::Kind::UnknownKey);
     }
 }
 

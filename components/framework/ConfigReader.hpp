@@ -34,7 +34,8 @@ public:
         : file_(std::move(file)), origins_(std::move(origins)) {}
 
     const types::Diagnostics& diagnostics() const { return diagnostics_; }
-    void report(const YAML::Node& node, const std::string& path, const std::string& message);
+    void report(const YAML::Node& node, const std::string& path, const std::string& message,
+                types::Diagnostic::Kind kind = types::Diagnostic::Kind::Value);
     /** Makes null remove values: it empties an optional and resets any other value to its default. Maps of names are
      *  merged as well. */
     void takeOutByNull() { null_takes_out_ = true; }

@@ -109,20 +109,6 @@ public:
     types::PropertyValue logged(const void* value) const override { return flowYaml(*this, value); }
 };
 
-class MovedType final : public TypeOf<types::MovedTo, ValueType> {
-public:
-    bool read(ConfigReader& reader, const YAML::Node& node, const std::string& path, const types::Field& field,
-              void*) const override {
-        return reader.report(node, path, field.doc), false;
-    }
-    std::string name() const override { return "block"; }
-    std::string text(const void*) const override { return ""; }
-    void emit(YAML::Emitter&, const void*) const override {}
-    types::PropertyValue logged(const void*) const override { return ""; }
-    bool isAbsent(const void*) const override { return true; }
-    bool isMoved() const override { return true; }
-};
-
 template <class Type>
 const ValueType& only() {
     static const Type type;
@@ -162,7 +148,6 @@ template <> const ValueType& plainType<double>() { return only<NumberType<double
 template <> const ValueType& plainType<std::string>() { return only<TextType>(); }
 template <> const ValueType& plainType<glm::dvec3>() { return only<VectorType>(); }
 template <> const ValueType& plainType<YAML::Node>() { return only<NodeType>(); }
-template <> const ValueType& plainType<types::MovedTo>() { return only<MovedType>(); }
 // clang-format on
 
 bool OptionalType::read(ConfigReader& reader, const YAML::Node& node, const std::string& path,
@@ -241,7 +226,6 @@ types::PropertyValue BlockType::logged(const void* value) const { return flowYam
 
 void BlockType::list(const std::string& prefix, const void* value, std::vector<PropertyInfo>& list) const {
     visit(unconst(value), [&](const types::Field& field, const ValueType& type, void* member) {
-        if (type.isMoved()) return;
         const std::string name = below(prefix, field.name);
         list.push_back({name, type.name(), field.unit, type.text(member), field.min, field.max, field.doc});
         type.list(name, member, list);
@@ -267,7 +251,7 @@ bool readBlock(ConfigReader& reader, const YAML::Node& node, const std::string& 
     std::vector<std::string> known;
     type.visit(value, [&](const types::Field& field, const ValueType& member_type, void* member) {
         const YAML::Node entry = child(node, field.name);
-        if (!member_type.isMoved() || entry.IsDefined()) known.push_back(field.name);
+        known.push_back(field.name);
         if (entry.IsDefined() && entry.IsNull() && reader.nullTakesOut())
             giveDefault(type, field, member_type, member);
         else if (entry.IsDefined())

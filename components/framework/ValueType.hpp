@@ -38,10 +38,8 @@ public:
     /** The form in a log: numbers, booleans and texts unchanged, all else in flow YAML. */
     virtual types::PropertyValue logged(const void* value) const = 0;
     virtual void assign(void* to, const void* from) const = 0;
-    /** Whether nothing is to be written: an absent optional, a moved block. */
+    /** Whether nothing is to be written: an absent optional. */
     virtual bool isAbsent(const void* /*value*/) const { return false; }
-    /** Whether the key belongs to another task now. */
-    virtual bool isMoved() const { return false; }
     /** Adds the fields of a block, or of the block in an optional, list or map, with the name `prefix`. */
     virtual void list(const std::string& /*prefix*/, const void* /*value*/, std::vector<PropertyInfo>& /*list*/) const {
     }
@@ -68,7 +66,6 @@ public:
     void emit(YAML::Emitter& out, const void* value) const override { inner().emit(out, get(value)); }
     types::PropertyValue logged(const void* value) const override { return inner().logged(get(value)); }
     bool isAbsent(const void* value) const override { return !get(value) || inner().isAbsent(get(value)); }
-    bool isMoved() const override { return inner().isMoved(); }
     void list(const std::string& prefix, const void* value, std::vector<PropertyInfo>& list) const override {
         inner().list(prefix, get(value) ? get(value) : inner().fresh(), list);
     }
@@ -175,8 +172,7 @@ concept Number = std::integral<T> || std::floating_point<T>;
 
 /** Types without inner types; each is defined in ValueType.cpp. */
 template <class T>
-concept Plain = Number<T> || std::same_as<T, std::string> || std::same_as<T, glm::dvec3> ||
-    std::same_as<T, YAML::Node> || std::same_as<T, types::MovedTo>;
+concept Plain = Number<T> || std::same_as<T, std::string> || std::same_as<T, glm::dvec3> || std::same_as<T, YAML::Node>;
 template <Plain T>
 const ValueType& plainType();
 

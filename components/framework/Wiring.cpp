@@ -19,9 +19,6 @@ std::vector<std::string> typesOf(const Registry& registry) {
     return types;
 }
 
-constexpr const char* unknown_key = "is not a key here; ";  // as ConfigReader writes it
-
-/** Whether the property exists or has moved; the task itself reports a moved property. */
 bool knows(PropertiesBase& properties, const std::string& key) {
     YAML::Node block(YAML::NodeType::Map);
     block.force_insert(key, YAML::Node());
@@ -29,7 +26,7 @@ bool knows(PropertiesBase& properties, const std::string& key) {
     reader.takeOutByNull();
     properties.load(reader, block, "");
     return std::ranges::none_of(reader.diagnostics(), [&](const types::Diagnostic& diagnostic) {
-        return diagnostic.path == key && diagnostic.message.starts_with(unknown_key);
+        return diagnostic.path == key && diagnostic.kind == types::Diagnostic::Kind::UnknownKey;
     });
 }
 
@@ -138,6 +135,21 @@ void Wiring::makeTasks() {
     }
 }
 
+/** Returns "; receiver::ReceiverTask has it" for a key of few other types, as of a key that was written into the wrong
+ *  task; otherwise "". */
+std::string Wiring::otherOwners(const std::string& key) const {
+    constexpr size_t few = 2;
+    std::vector<std::string> owners;
+    registry_.loadAll();
+    for (const Registry::Entry& entry : registry_.list()) {
+        const auto task = entry.make("task");
+        const auto has = [&](const PropertiesBase* each) { return std::ranges::count(topLevel(*each), key) > 0; };
+        if (std::ranges::any_of(task->properties(), has)) owners.push_back(entry.type);
+    }
+    if (owners.empty() || owners.size() > few) return "";
+    return fmt::format("; {} {} it", fmt::join(owners, " and "), owners.size() > 1 ? "have" : "has");
+}
+
 void Wiring::loadProperties(uint64_t seed) {
     for (const auto& task : graph_.tasks()) {
         TaskSpec& spec = *spec_.task(task->name());
@@ -152,7 +164,11 @@ void Wiring::loadProperties(uint64_t seed) {
             continue;
         }
         unreliable_.push_back(task.get());
-        diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());
+        for (types::Diagnostic each : reader.diagnostics()) {
+            if (each.kind == types::Diagnostic::Kind::UnknownKey && each.path.starts_with(path + "."))
+                each.message += otherOwners(each.path.substr(path.size() + 1));
+            diagnostics_.push_back(std::move(each));
+        }
     }
 }
 
@@ -195,7 +211,8 @@ YAML::Node Wiring::withoutUnknown(const TaskContext& task, const TaskSpec& spec,
         if (const auto inner = within(aliases, key); entry.second.IsMap() && !inner.empty())
             reader.refuseUnknown(entry.second, path, inner);
         else
-            reader.report(entry.first, path, unknown_key + suggestion(key, unique(names)));
+            reader.report(entry.first, path, "is not a key here; " + suggestion(key, unique(names)),
+                          types::Diagnostic::Kind::UnknownKey);
     }
     return known.size() == spec.properties.size() ? spec.properties : known;
 }

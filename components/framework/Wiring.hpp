@@ -24,6 +24,7 @@ private:
     void loadLibraries();
     void makeTasks();
     std::unique_ptr<TaskContext> makeTask(const TaskSpec& spec);
+    std::string otherOwners(const std::string& key) const;
     void loadProperties(uint64_t seed);
     /** Returns the aliases and switches of a task that lead to properties, or to ports. */
     std::vector<std::string> aliasesOfProperties(const TaskSpec& spec) const;

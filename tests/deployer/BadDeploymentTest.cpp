@@ -61,7 +61,7 @@ const BadDeployment cases[] = {
     edited("MultipathThatIsDrawn", "range: 20", "range: 20\n      visibility: gl\n      multipath: {}",
            {"wall.yml:17:", "visibility: is gl with multipath, which needs rays"}),
     edited("KeyOfTheReceiver", "range: 20", "range: 20\n      tvg: {log_coefficient: 40}",
-           {"wall.yml:17:12: tasks.sonar.properties.tvg: has moved", "receiver::ReceiverTask after the noise"}),
+           {"wall.yml:17:7: tasks.sonar.properties.tvg: is not a key here", "; receiver::ReceiverTask has it"}),
     targets("TargetWithoutAPlace", "{name: buoy, strength_db: 0}",
             {"wall.yml:11:", "tasks.scene.properties.targets[0].position: is missing", "or attached_to"}),
     targets("TargetWithoutAStrength", "{name: buoy, position: [1, 2, 3]}",

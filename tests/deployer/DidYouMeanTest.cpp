@@ -46,9 +46,13 @@ TEST(DidYouMeanTest, NamesOfTasksPortsPropertiesEnumsAndMaterials) {
     });
 }
 
-TEST(DidYouMeanTest, KnownKeysMayBeGiven) {
-    EXPECT_THAT(diagnosticsWith("range: 20", "rang: 20"), Not(HasSubstr("tvg"))) << "of the receiver since it moved";
-    EXPECT_THAT(diagnosticsWith("range: 20", "tvg: 20"), Not(HasSubstr("is not a key here")));
+TEST(DidYouMeanTest, NamesTheTaskThatHasTheKey) {
+    for (const char* key : {"tvg: {log_coefficient: 40}", "gain_db: 3", "source_level_db: 210"})
+        EXPECT_THAT(diagnosticsWith("range: 20", std::string("range: 20\n      ") + key),
+                    AllOf(HasSubstr("is not a key here; "), HasSubstr("; receiver::ReceiverTask has it\n")));
+    EXPECT_THAT(diagnosticsWith("law: rayleigh}", "law: rayleigh}, beam_count: 16"), Not(HasSubstr("it\n")))
+        << "of many types";
+    EXPECT_THAT(diagnosticsWith("law: rayleigh}", "law: rayleigh, tvg: {}}"), Not(HasSubstr("it\n"))) << "in a block";
 }
 
 TEST(DidYouMeanTest, ShowsTheRightFormOfANumberWithItsUnit) {

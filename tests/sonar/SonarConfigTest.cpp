@@ -206,17 +206,6 @@ TEST(SonarConfigTest, BeamsAndPulsesNeedTheirParameters) {
         testing::IsEmpty());
 }
 
-TEST(SonarConfigTest, KeysOfTheReceiverAreErrorsThatNameTheirPlace) {
-    for (const char* yaml :
-         {"tvg: {log_coefficient: 40}", "gain: 0.5", "output: level_db", "output: intensity", "source_level_db: 210"}) {
-        const std::string key = std::string(yaml).substr(0, std::string(yaml).find(':'));
-        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml),
-                    ElementsAre(AllOf(HasSubstr(key + ": has moved"), HasSubstr("receiver::ReceiverTask"))))
-            << yaml;
-        EXPECT_EQ(diagnosticsOf<ScanningSonarConfig>(yaml).size(), 1u) << yaml;
-    }
-}
-
 TEST(SonarConfigTest, ReportsContradictoryValues) {
     struct Case {
         const char* yaml;

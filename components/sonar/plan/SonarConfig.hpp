@@ -213,7 +213,6 @@ struct SonarConfig {
     std::optional<ImperfectionsConfig> imperfections;
     std::optional<CrosstalkConfig> crosstalk;
     std::map<std::string, std::map<std::string, double>> effects;
-    std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
     /** Returns whether there is more than one layer of scattering water, or one with bounds. */
     bool hasLayers() const { return volume.size() > 1 || (!volume.empty() && (volume[0].top_m || volume[0].bottom_m)); }
@@ -273,7 +272,6 @@ struct SonarConfig {
     /** Describes the properties that a scanning sonar has as well. */
     static void describeBeam(auto& self, auto& visit);
     /** Describes the keys that have moved to the receiver. */
-    static void describeMoved(auto& self, auto& visit);
     void check(types::Diagnostics& diagnostics) const;
     /** Appends the diagnostics of a fan that is given by `beam_width_deg`. */
     void checkFan(types::Diagnostics& diagnostics) const;
@@ -332,23 +330,6 @@ void SonarConfig::describeBeam(auto& self, auto& visit) {
            "numbers of effects, by name: `edge_diffraction: {min_turn_deg: 60}` for echoes of straight edges, and "
            "effects of other libraries (components/sonar/README.md)"},
           self.effects);
-    describeMoved(self, visit);
-}
-
-void SonarConfig::describeMoved(auto& self, auto& visit) {
-    visit({"tvg", "", "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
-          self.tvg);
-    visit({"gain", "",
-           "has moved: a sonar gives intensities; gain_db belongs to a receiver::ReceiverTask after the "
-           "noise, and so does Rock's gain, as brightness: {gain}"},
-          self.gain);
-    visit({"output", "",
-           "has moved: a sonar gives intensities; output belongs to a receiver::ReceiverTask after the noise"},
-          self.output);
-    visit({"source_level_db", "",
-           "has moved: a sonar gives intensities relative to its source; source_level_db belongs to a "
-           "receiver::ReceiverTask after the noise, for output: received_level_db"},
-          self.source_level_db);
 }
 
 }  // namespace insonify::sonar
