@@ -10,6 +10,7 @@
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
+#include "components/deployer/Pipeline.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
 #include "components/study/ErrorEffects.hpp"
 #include "components/study/ErrorReport.hpp"
@@ -66,11 +67,11 @@ std::string nameOf(const std::string& file) {
     return std::ranges::count(sceneNames(), name) == 0 ? name : "deployment_" + name;
 }
 
-StudyScene studied(const std::string& file, const SonarAt& sonar) {
+StudyScene studied(const std::string& file, const deployer::SonarAt& sonar) {
     return {nameOf(file), file, plain(sonar.config, file), sonar.snapshot, {}};
 }
 
-std::vector<StudyScene> scenesOf(const Options& options, const FindSonar& sonarAt) {
+std::vector<StudyScene> scenesOf(const Options& options) {
     const std::vector<std::string> names = sceneNames();
     for (const std::string& name : options.scenes)
         if (std::ranges::count(names, name) == 0)
@@ -84,7 +85,7 @@ std::vector<StudyScene> scenesOf(const Options& options, const FindSonar& sonarA
         for (const SceneMaker& scene : makers)
             if (wanted(scene.name)) scenes.push_back(scene.make());
     if (!options.deployment.empty())
-        scenes.push_back(studied(options.deployment, sonarAt(options.deployment, options.ping)));
+        scenes.push_back(studied(options.deployment, deployer::sonarAt(options.deployment, options.ping)));
     for (size_t i = 0, plain = scenes.size(); options.effects && i < plain; ++i)
         for (const Effect effect : effects) scenes.push_back(withEffect(scenes[i], effect));
     return scenes;
@@ -154,8 +155,8 @@ Json toJson(const ErrorResult& result) {
     return json;
 }
 
-int runStudy(Options options, const FindSonar& sonarAt) {
-    const std::vector<StudyScene> scenes = scenesOf(options, sonarAt);
+int runStudy(Options options) {
+    const std::vector<StudyScene> scenes = scenesOf(options);
     command::OutputFolder folder(options.out, "study_error");
     command::StudyProgress progress(!options.quiet, scenes.size());
     size_t scene = 0;
@@ -187,7 +188,7 @@ int runStudy(Options options, const FindSonar& sonarAt) {
 
 }  // namespace
 
-void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
+void addErrorStudy(CLI::App& study, command::Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = study.add_subcommand("error", "Error against run time, for each way to estimate an echo");
     command->add_option(
@@ -214,8 +215,7 @@ void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& so
                      "number of poses over which pings with coherent speckle are averaged")
         ->check(CLI::Range(2, 100000));
     command->add_flag("--quiet", options->quiet, "no progress");
-    command->callback(
-        [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
+    command->callback([options, &action] { action = [options] { return runStudy(*options); }; });
 }
 
 }  // namespace insonify::study

@@ -7,6 +7,7 @@
 
 #include "components/command/Console.hpp"
 #include "components/command/ProgressLine.hpp"
+#include "components/deployer/FittedDeployment.hpp"
 #include "components/study/FitReport.hpp"
 #include "components/study/RecordingFit.hpp"
 #include "components/study/commands/StudyCommand.hpp"
@@ -45,7 +46,7 @@ void printFindings(const RecordingFit& fit) {
     command::printResult("{:<20} {:.1f} dB rms\n", "levels unexplained", fit.levels.rms_db);
 }
 
-int runFit(const FitOptions& options, const FindChain& chainAt, const WriteDeployment& write, const ReadLog& readLog) {
+int runFit(const FitOptions& options) {
     refuseFiles(options);
     ChainAt at = chainAt(options.deployment, options.ping, {});
     const receiver::CodeConfig law = at.chain.code();
@@ -59,8 +60,10 @@ int runFit(const FitOptions& options, const FindChain& chainAt, const WriteDeplo
                                             fmt::format(": {} pings.", recorded.size()),
                                         "Intervals are of 95 %. Properties that the recording does not determine have "
                                         "values consistent with the others."};
+    std::vector<deployer::CommentedSetting> settings;
+    for (const FitSetting& each : settingsOf(fit, at.tasks)) settings.push_back({each.path, each.value, each.comment});
     std::ofstream file(options.out, std::ios::binary);
-    if (!(file << write(options.deployment, settingsOf(fit, at.tasks), fs::absolute(options.out).parent_path(), head))
+    if (!(file << deployer::deploymentWith(options.deployment, settings, fs::absolute(options.out).parent_path(), head))
              .flush())
         throw types::ConfigError(options.out, "--out", "cannot be written");
     const fs::path page = writePage(fit, recorded, options.out);
@@ -71,8 +74,7 @@ int runFit(const FitOptions& options, const FindChain& chainAt, const WriteDeplo
 
 }  // namespace
 
-void addFit(CLI::App& app, command::Action& action, const FindChain& chainAt, const WriteDeployment& write,
-            const ReadLog& readLog) {
+void addFit(CLI::App& app, command::Action& action) {
     const auto options = std::make_shared<FitOptions>();
     CLI::App* command = app.add_subcommand("fit", "Finds the properties of a real sonar from its recordings");
     command
@@ -90,9 +92,7 @@ void addFit(CLI::App& app, command::Action& action, const FindChain& chainAt, co
     command->add_option("--ping", options->ping, "ping of the deployment at the place of the recording")
         ->check(CLI::PositiveNumber);
     command->add_flag("--quiet", options->quiet, "no progress");
-    command->callback([options, chainAt, write, readLog, &action] {
-        action = [options, chainAt, write, readLog] { return runFit(*options, chainAt, write, readLog); };
-    });
+    command->callback([options, &action] { action = [options] { return runFit(*options); }; });
 }
 
 }  // namespace insonify::study

@@ -7,6 +7,7 @@
 #include "components/command/Console.hpp"
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
+#include "components/deployer/Pipeline.hpp"
 #include "components/study/CodedPing.hpp"
 #include "components/study/LikenessReport.hpp"
 #include "components/study/commands/StudyCommand.hpp"
@@ -67,8 +68,7 @@ struct LikenessOptions : RecordingOptions {
 };
 
 /** Returns the settings that place the deployment's lines at those of a recording. */
-std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOptions& options,
-                                     const FindChain& chainAt) {
+std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOptions& options) {
     if (!recorded.is_waterfall)
         throw types::ConfigError(recorded.file, "--lines", "is recorded; the recording is not of a side-scan");
     if (recorded.places.empty())
@@ -82,15 +82,14 @@ std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOp
 }
 
 /** Returns the deployment's simulation of a recording: a ping, or the number of lines of its waterfall. */
-CodedPing simulatedLike(const CodedPing& recorded, const LikenessOptions& options, const FindPings& pingsAt,
-                        const FindChain& chainAt) {
+CodedPing simulatedLike(const CodedPing& recorded, const LikenessOptions& options) {
     const size_t count = recorded.is_waterfall ? recorded.beam_count : 1;
     std::vector<std::string> settings = options.set;
     if (options.lines == "recorded") {
-        const std::vector<std::string> way = recordedWay(recorded, options, chainAt);
+        const std::vector<std::string> way = recordedWay(recorded, options);
         settings.insert(settings.end(), way.begin(), way.end());
     }
-    const PingsAt found = pingsAt(options.deployment, options.ping, count, settings);
+    const deployer::PingsAt found = deployer::codedPingsAt(options.deployment, options.ping, count, settings);
     if (!recorded.is_waterfall) return codedPing(found.pings.front(), found.code, "simulated");
     for (CodedPing& side : codedLines(found.pings, found.code, "simulated"))
         if (side.bearings.front() * recorded.bearings.front() > 0) {
@@ -112,14 +111,13 @@ std::vector<CodedPing> ofOneKind(std::vector<CodedPing> recorded, const std::str
     return recorded;
 }
 
-int runStudy(const LikenessOptions& options, const FindPings& pingsAt, const FindChain& chainAt,
-             const ReadLog& readLog) {
+int runStudy(const LikenessOptions& options) {
     std::optional<receiver::CodeConfig> law;
-    if (!options.deployment.empty()) law = pingsAt(options.deployment, 1, 1, options.set).code;
+    if (!options.deployment.empty()) law = deployer::codedPingsAt(options.deployment, 1, 1, options.set).code;
     const std::vector<CodedPing> recorded =
         ofOneKind(recordedPings(options.real, law ? &*law : nullptr, readLog), options.side);
     std::optional<CodedPing> simulated;
-    if (law) simulated = simulatedLike(recorded.front(), options, pingsAt, chainAt);
+    if (law) simulated = simulatedLike(recorded.front(), options);
     const LikenessResult result = studyLikeness(recorded, simulated ? &*simulated : nullptr);
     command::OutputFolder folder(options.out, "study_likeness");
     folder.keep();
@@ -133,8 +131,7 @@ int runStudy(const LikenessOptions& options, const FindPings& pingsAt, const Fin
 
 }  // namespace
 
-void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings& pingsAt, const FindChain& chainAt,
-                      const ReadLog& readLog) {
+void addLikenessStudy(CLI::App& study, command::Action& action) {
     const auto options = std::make_shared<LikenessOptions>();
     CLI::App* command = study.add_subcommand("likeness", "Compares simulated pings with recordings of a real sonar");
     options->addTo(*command, "a YAML file whose receiver outputs codes; absent: statistics of the recordings only")
@@ -151,9 +148,7 @@ void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings&
         ->check(CLI::IsMember({"deployment", "recorded"}));
     command->add_option("--set", options->set,
                         "task.property.path=value: a property other than in the file; may be repeated");
-    command->callback([options, pingsAt, chainAt, readLog, &action] {
-        action = [options, pingsAt, chainAt, readLog] { return runStudy(*options, pingsAt, chainAt, readLog); };
-    });
+    command->callback([options, &action] { action = [options] { return runStudy(*options); }; });
 }
 
 }  // namespace insonify::study

@@ -11,6 +11,7 @@
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
+#include "components/deployer/Pipeline.hpp"
 #include "components/study/OmissionStudy.hpp"
 #include "components/study/commands/StudyCommand.hpp"
 
@@ -65,8 +66,8 @@ std::string sheet(const std::string& deployment, const std::vector<OmissionRow>&
     return text;
 }
 
-int runStudy(const Options& options, const FindSonar& sonarAt) {
-    const SonarAt sonar = sonarAt(options.deployment, options.ping);
+int runStudy(const Options& options) {
+    const deployer::SonarAt sonar = deployer::sonarAt(options.deployment, options.ping);
     command::OutputFolder folder(options.out, "study_omission");
     command::StudyProgress progress(!options.quiet);
     const std::vector<OmissionRow> rows =
@@ -86,7 +87,7 @@ int runStudy(const Options& options, const FindSonar& sonarAt) {
 
 }  // namespace
 
-void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
+void addOmissionStudy(CLI::App& study, command::Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = study.add_subcommand("omission", "Bins and time with and without each omission of the plan");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file whose sonar and scene are studied")->required();
@@ -94,8 +95,7 @@ void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar&
     command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
     command->add_option("--pings", options->pings, "pings timed for each")->check(CLI::Range(1, 1000));
     command->add_flag("--quiet", options->quiet, "no progress");
-    command->callback(
-        [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
+    command->callback([options, &action] { action = [options] { return runStudy(*options); }; });
 }
 
 }  // namespace insonify::study

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "components/command/Json.hpp"
+#include "components/deployer/Pipeline.hpp"
 #include "components/study/commands/StudyCommand.hpp"
 #include "components/study/oracles/EmbreeTracer.hpp"
 
@@ -58,8 +59,8 @@ RayTimes timeRays(const sonar::SonarConfig& config, const types::Snapshot& scene
     return result;
 }
 
-int runStudy(const Options& options, const FindSonar& sonarAt) {
-    const SonarAt sonar = sonarAt(options.deployment, options.ping);
+int runStudy(const Options& options) {
+    const deployer::SonarAt sonar = deployer::sonarAt(options.deployment, options.ping);
     const RayTimes times = timeRays(sonar.config, sonar.snapshot, options.pings);
     command::print({{"rays", times.rays},
                     {"met", times.met},
@@ -72,7 +73,7 @@ int runStudy(const Options& options, const FindSonar& sonarAt) {
 
 }  // namespace
 
-void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
+void addRaysStudy(CLI::App& study, command::Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
         study.add_subcommand("rays", "Times ray tracing (Embree) with the number of rays of a sonar's quality");
@@ -80,8 +81,7 @@ void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& son
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file with a sonar")->required();
     command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
     command->add_option("--pings", options->pings, "pings timed of each kind")->check(CLI::Range(1, 100000));
-    command->callback(
-        [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
+    command->callback([options, &action] { action = [options] { return runStudy(*options); }; });
 }
 
 }  // namespace insonify::study

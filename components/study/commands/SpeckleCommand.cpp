@@ -7,7 +7,7 @@
 #include "components/command/Console.hpp"
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
-#include "components/sonar/EchoRenderer.hpp"
+#include "components/deployer/Pipeline.hpp"
 #include "components/study/CodedPing.hpp"
 #include "components/study/SpeckleStudy.hpp"
 #include "components/study/StudyScene.hpp"
@@ -58,7 +58,7 @@ bool printClaims(const std::vector<Claim>& claims) {
     return std::ranges::none_of(claims, &Claim::fails);
 }
 
-std::vector<SpeckleRow> recordedRows(const std::vector<std::string>& real, const ReadLog& readLog) {
+std::vector<SpeckleRow> recordedRows(const std::vector<std::string>& real) {
     std::vector<SpeckleRow> rows;
     if (real.empty()) return rows;
     const std::vector<CodedPing> pings = recordedPings(real, nullptr, readLog);
@@ -72,19 +72,19 @@ std::vector<SpeckleRow> recordedRows(const std::vector<std::string>& real, const
 }
 
 /** Returns the sonar over the flat bottom of the study of the error. */
-SonarAt ownSonar() {
+deployer::SonarAt ownSonar() {
     const StudyScene scene =
         std::ranges::find(closedFormScenes(), std::string("flat_bottom"), &SceneMaker::name)->make();
     return {scene.config, scene.snapshot};
 }
 
-int runStudy(const RecordingOptions& options, const FindSonar& sonarAt, const ReadLog& readLog) {
-    std::vector<SpeckleRow> rows = recordedRows(options.real, readLog);
+int runStudy(const RecordingOptions& options) {
+    std::vector<SpeckleRow> rows = recordedRows(options.real);
     std::vector<Claim> claims = lawClaims();
-    if (sonar::haveRays())
-        for (const Claim& claim : coherentClaims()) claims.push_back(claim);
+    for (const Claim& claim : coherentClaims()) claims.push_back(claim);
     for (const Claim& claim : recordedClaims(rows)) claims.push_back(claim);
-    const SonarAt found = options.deployment.empty() ? ownSonar() : sonarAt(options.deployment, options.ping);
+    const deployer::SonarAt found =
+        options.deployment.empty() ? ownSonar() : deployer::sonarAt(options.deployment, options.ping);
     for (SpeckleRow& row : simulatedRows(found.config, found.snapshot)) rows.push_back(std::move(row));
     command::OutputFolder folder(options.out, "study_speckle");
     folder.keep();
@@ -98,13 +98,11 @@ int runStudy(const RecordingOptions& options, const FindSonar& sonarAt, const Re
 
 }  // namespace
 
-void addSpeckleStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt, const ReadLog& readLog) {
+void addSpeckleStudy(CLI::App& study, command::Action& action) {
     const auto options = std::make_shared<RecordingOptions>();
     CLI::App* command = study.add_subcommand("speckle", "Statistics of speckle, simulated and recorded");
     options->addTo(*command, "a YAML file whose sonar and scene are studied; absent: a fan over a flat bottom");
-    command->callback([options, sonarAt, readLog, &action] {
-        action = [options, sonarAt, readLog] { return runStudy(*options, sonarAt, readLog); };
-    });
+    command->callback([options, &action] { action = [options] { return runStudy(*options); }; });
 }
 
 }  // namespace insonify::study

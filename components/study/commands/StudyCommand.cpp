@@ -1,20 +1,47 @@
 // insonify study error|likeness|multipath|omission|speckle|stability
 #include "components/study/commands/StudyCommand.hpp"
 
+#include "components/deployer/CodedLog.hpp"
+#include "components/deployer/FittedDeployment.hpp"
+
 namespace insonify::study {
 
-void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPings& pingsAt,
-                const FindChain& chainAt, const ReadLog& readLog) {
+ChainAt chainAt(const std::string& deployment, uint64_t ping, const std::vector<std::string>& settings) {
+    deployer::ChainAt at = deployer::chainAt(deployment, ping, settings);
+    return {.chain = {.sonar = std::move(at.sonar),
+                      .snapshot = std::move(at.snapshot),
+                      .noise = std::move(at.noise),
+                      .receiver = std::move(at.receiver),
+                      .looks_abeam = at.looks_abeam},
+            .tasks = {.vehicle = at.vehicle_task,
+                      .scene = at.scene_task,
+                      .sonar = at.sonar_task,
+                      .noise = at.noise_task,
+                      .receiver = at.receiver_task,
+                      .period = at.period,
+                      .mount = at.mount}};
+}
+
+std::optional<LoggedPings> readLog(const std::filesystem::path& file) {
+    std::optional<deployer::CodedLog> log = deployer::codedLog(file);
+    if (!log) return std::nullopt;
+    return LoggedPings{.pings = std::move(log->pings),
+                       .code = log->code,
+                       .law_known = log->law_known,
+                       .frequency_khz = log->frequency_khz,
+                       .sonars = std::move(log->sonars),
+                       .altitudes = std::move(log->altitudes)};
+}
+
+void addCommand(CLI::App& app, command::Action& action) {
     CLI::App* study = app.add_subcommand("study", "Measures the simulator itself");
     study->require_subcommand(1);
-#ifdef INSONIFY_EMBREE
-    addErrorStudy(*study, action, sonarAt);
-    addRaysStudy(*study, action, sonarAt);
+    addErrorStudy(*study, action);
+    addRaysStudy(*study, action);
     addMultipathStudy(*study, action);
-#endif
-    addLikenessStudy(*study, action, pingsAt, chainAt, readLog);
-    addOmissionStudy(*study, action, sonarAt);
-    addSpeckleStudy(*study, action, sonarAt, readLog);
+    addLikenessStudy(*study, action);
+    addOmissionStudy(*study, action);
+    addSpeckleStudy(*study, action);
     addStabilityStudy(*study, action);
 }
 
