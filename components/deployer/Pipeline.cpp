@@ -9,7 +9,6 @@
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Port.hpp"
 #include "components/receiver/ReceiverTask.hpp"
-#include "components/sonar/EchoRenderer.hpp"
 #include "components/sonar/PingTask.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Sonar.hpp"
@@ -59,8 +58,7 @@ std::vector<std::string> pinnedRays(const DeploymentSpec& spec) {
         const std::string visibility = textOf("visibility");
         const bool is_drawn =
             textOf("deposit") == "gpu" || framework::child(task.properties, "published").as<bool>(false);
-        if (task.type.starts_with("sonar::") && sonar::haveRays() && !is_drawn &&
-            (visibility.empty() || visibility == "auto"))
+        if (task.type.starts_with("sonar::") && !is_drawn && (visibility.empty() || visibility == "auto"))
             assignments.push_back(task.name + ".visibility=cpu");
     }
     return assignments;

@@ -61,12 +61,9 @@ public:
     virtual std::string notice() const { return {}; }
 };
 
-/** Returns whether this build can trace rays. */
-bool haveRays();
-
 /** Makes a renderer that traces rays on the processor, without OpenGL. Threads take beams as they become free. One
  *  thread traces a beam's rays, deposits them and fills its bins, while they are in its cache. Throws
- *  std::runtime_error where the build has no rays, or Embree refuses the scene. */
+ *  std::runtime_error where Embree refuses the scene. */
 std::unique_ptr<EchoRenderer> makeRayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
 
 /** Makes a renderer that rasterises pings by OpenGL. Make it, use it and destroy it on one thread, under

@@ -17,22 +17,18 @@ namespace {
 
 constexpr double max_rays = 1e6, max_triangles = 1e5;  ///< Max for the computation of kappa, which takes time.
 
-/** Returns the max number of bins that one pixel covers; NaN if the ray tracer does not support the beams, would take
- *  too long, or is not built. */
+/** Returns the max number of bins that one pixel covers; NaN if the ray tracer does not support the beams, or would
+ * take too long. */
 double kappa(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
     const double rays = static_cast<double>(config.rows()) * config.columnsPerBeam() * config.beams();
     const bool planar = config.bearings_deg.empty() && config.beam_geometry == sonar::BeamGeometry::Planar;
     if (!planar || rays > max_rays || static_cast<double>(snapshot.geometry->triangleCount()) > max_triangles)
         return NAN;
-#ifdef INSONIFY_EMBREE
     EmbreeTracer tracer(snapshot);
     std::vector<float> unused;
     tracer.prepare(config);
     tracer.render(snapshot.sonar, unused);
     return tracer.kappaMax();
-#else
-    return NAN;
-#endif
 }
 
 /** Returns the loudest material relative to the mean of all [dB]. */

@@ -27,7 +27,6 @@ const std::vector<Package> packages = {
      {"insonify_device", "insonify_mavlink", "insonify_study", "insonify_viewer", "oculus_bench", "viewer_test"}},
     {"cppzmq", "cppzmq (cppzmq-dev)", {"insonify_gazebo", "gazebo_test"}},
     {"CycloneDDS", "CycloneDDS 0.10 (cyclonedds-dev)", {"insonify_dds", "dds_test", "dds_bench"}},
-    {"embree", "Embree (libembree-dev)", {"sonar_test", "acoustics_test"}},
     {"fastrtps", "", {"dds_fast_peer"}},
     {"GDAL", "GDAL (libgdal-dev)", {"insonify_survey", "survey_test"}},
     {"GTest", "GTest::gmock", {"acoustics_test", "framework_bench"}},

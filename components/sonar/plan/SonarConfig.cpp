@@ -7,7 +7,6 @@
 
 #include "components/acoustics/SoundSpeed.hpp"
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/EchoRenderer.hpp"
 #include "components/sonar/effects/Effects.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
@@ -50,7 +49,6 @@ void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostic
 void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const std::string name = config.needsRays();
     if (name.empty()) return;
-    if (!haveRays()) diagnostics.push_back({name, "needs rays, and this build has none (Embree)"});
     if (config.visibility == Visibility::Gl)
         diagnostics.push_back({"visibility", "is gl with " + name + ", which needs rays; may be auto or cpu"});
     if (config.deposit == Deposit::Gpu)
@@ -117,8 +115,6 @@ void checkElements(const SonarConfig& config, types::Diagnostics& diagnostics) {
 void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics) {
     checkNeedOfRays(config, diagnostics);
     if (config.visibility != Visibility::Cpu) return;
-    if (!haveRays())
-        diagnostics.push_back({"visibility", "is cpu; this build has no rays (Embree), may be auto or gl"});
     if (config.published)
         diagnostics.push_back({"visibility", "is cpu with published: true, which is an image; may be gl"});
     if (config.deposit == Deposit::Gpu)
@@ -220,7 +216,7 @@ std::string SonarConfig::needsRays() const {
 std::optional<bool> SonarConfig::choosesRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
     if (!needsRays().empty()) return true;
-    if (!haveRays() || published || deposit == Deposit::Gpu) return false;
+    if (published || deposit == Deposit::Gpu) return false;
     if (!fitsImages(*this) || (water && water->profile) || motion_in_ping) return true;
     if (gpu::EglContext::isAskedFor(device)) return false;
     return {};

@@ -536,8 +536,6 @@ void RayEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stag
 
 }  // namespace
 
-bool haveRays() { return true; }
-
 std::unique_ptr<EchoRenderer> makeRayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects) {
     return std::make_unique<RayEchoes>(plan, std::move(geometry), effects);
 }
