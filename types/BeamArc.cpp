@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace insonify::types {
@@ -27,6 +28,26 @@ size_t beginOf(const std::vector<double>& ascending) {
 }
 
 }  // namespace
+
+ArcOrder alongArc(std::span<const double> directions, double turn) {
+    ArcOrder arc;
+    arc.order.resize(directions.size());
+    std::iota(arc.order.begin(), arc.order.end(), size_t{0});
+    std::ranges::stable_sort(arc.order, {}, [&](size_t i) { return directions[i]; });
+    if (directions.empty()) return arc;
+    const auto at = [&](size_t k) { return directions[arc.order[k]]; };
+    // Gaps that differ only by rounding do not move the seam.
+    double widest = (at(0) + turn - at(directions.size() - 1)) * (1 + 1e-6) + 1e-9 * turn;
+    size_t first = 0;
+    for (size_t k = 1; k < directions.size(); ++k)
+        if (at(k) - at(k - 1) > widest) {
+            widest = at(k) - at(k - 1);
+            first = k;
+        }
+    std::ranges::rotate(arc.order, arc.order.begin() + static_cast<ptrdiff_t>(first));
+    arc.turned = first;
+    return arc;
+}
 
 void BeamArc::take(const Sonar& ping, double lone_width) {
     const std::span<const Angle> table(ping.bearings);

@@ -9,7 +9,6 @@
 
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/effects/MotionInPing.hpp"
 #include "components/sonar/places/Motion.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
 #include "components/sonar/rays/RayPaths.hpp"

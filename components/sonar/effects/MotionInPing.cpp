@@ -1,10 +1,7 @@
-#include "components/sonar/effects/MotionInPing.hpp"
-
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/rays/RayPaths.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -41,18 +38,7 @@ public:
 
 }  // namespace
 
-double dopplerCoupling(const SonarConfig& config) {
-    if (!config.motion_in_ping || !config.pulse || !config.pulse->chirp_us) return 0;
-    return 1e-6 * *config.pulse->chirp_us * config.frequency_khz.value() / config.pulse->bandwidth_khz.value();
-}
-
 bool followsMotion(const SonarConfig& config) { return config.motion_in_ping; }
-
-MotionBound motionBound(const SonarConfig& config, const BinGrid& grid) {
-    const double flight = 2 * grid.range_max / grid.speed_of_sound;
-    const double seconds = std::max(flight, dopplerCoupling(config));
-    return {grid.bin_width / (2 * seconds), types::radians(config.beamWidthDeg()) / (2 * flight)};
-}
 
 const Effect& motionInPing() { return only<MotionInPing>(); }
 

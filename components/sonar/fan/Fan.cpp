@@ -4,6 +4,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "types/BeamArc.hpp"
+
 namespace insonify::sonar {
 namespace {
 
@@ -28,33 +30,13 @@ std::vector<std::pair<size_t, size_t>> swapsTo(const std::vector<size_t>& rows) 
 
 }  // namespace
 
-ArcOrder alongArc(std::span<const double> directions, double turn) {
-    ArcOrder arc;
-    arc.order.resize(directions.size());
-    std::iota(arc.order.begin(), arc.order.end(), size_t{0});
-    std::ranges::stable_sort(arc.order, {}, [&](size_t i) { return directions[i]; });
-    if (directions.empty()) return arc;
-    const auto at = [&](size_t k) { return directions[arc.order[k]]; };
-    // Gaps that differ only by rounding do not move the seam.
-    double widest = (at(0) + turn - at(directions.size() - 1)) * (1 + 1e-6) + 1e-9 * turn;
-    size_t first = 0;
-    for (size_t k = 1; k < directions.size(); ++k)
-        if (at(k) - at(k - 1) > widest) {
-            widest = at(k) - at(k - 1);
-            first = k;
-        }
-    std::ranges::rotate(arc.order, arc.order.begin() + static_cast<ptrdiff_t>(first));
-    arc.turned = first;
-    return arc;
-}
-
 Fan::Fan(const std::vector<Beam>& table) {
     for (const Beam& beam : table) {
         if (!std::isfinite(beam.centre) || !(beam.low < beam.high) || !std::isfinite(beam.high - beam.low))
             throw std::invalid_argument("a beam of a fan has no extent, or a bearing that is not finite");
         bearings_.push_back(beam.centre);
     }
-    const ArcOrder arc = alongArc(bearings_, whole_turn);
+    const types::ArcOrder arc = types::alongArc(bearings_, whole_turn);
     rows_ = arc.order;
     for (size_t k = 0; k < rows_.size(); ++k) {
         const Beam& beam = table[rows_[k]];

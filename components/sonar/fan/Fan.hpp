@@ -13,16 +13,6 @@ struct Beam {
     double centre, low, high;
 };
 
-/** The order of directions along the smallest arc that holds them all. */
-struct ArcOrder {
-    std::vector<size_t> order;  ///< Indices of the directions, from one end of the arc to the other.
-    size_t turned = 0;  ///< Number of the last in `order` that are beyond the seam; they have a whole turn added [1].
-};
-
-/** Sorts directions within one whole `turn` (360, or 2 pi). The arc crosses the seam at half a turn only where the
- *  widest gap between neighbours is elsewhere. Equal directions keep their order. */
-ArcOrder alongArc(std::span<const double> directions, double turn);
-
 /** The beams of a sonar, or the azimuth cells from which beams are formed, sorted along the arc that they cover.
  *
  *  A table of bearings may be in any order, with gaps and overlaps, and may cross +-180 degrees. Beam k of a fan is the

@@ -1,21 +1,14 @@
 #pragma once
-#include <span>
 #include <vector>
 
 #include "components/gpu/Objects.hpp"
 #include "components/sonar/echo/FacetLobes.hpp"
 #include "components/sonar/echo/Interface.hpp"
 #include "components/sonar/echo/MaterialLaws.hpp"
+#include "components/sonar/places/Planes.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {
-
-/** Returns the planes of a mesh's triangles. */
-std::vector<PlaneRecord> planesOf(const types::Mesh& mesh);
-/** Fills a list of that size with the planes of a mesh's triangles. */
-void findPlanes(const types::Mesh& mesh, std::span<PlaneRecord> planes);
-/** Returns the planes of all meshes' triangles, mesh after mesh, as SurfaceScene::planes(). */
-std::vector<PlaneRecord> planesOf(const types::Geometry& geometry);
 
 /** A geometry on the device: all meshes in sequence, a plane for each triangle, materials, normal maps. */
 class SurfaceScene {

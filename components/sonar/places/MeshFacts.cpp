@@ -8,8 +8,8 @@
 
 #include "components/sonar/echo/FacetCurves.hpp"
 #include "components/sonar/echo/FacetLobes.hpp"
-#include "components/sonar/pictures/SurfaceScene.hpp"
 #include "components/sonar/places/NearestPoint.hpp"
+#include "components/sonar/places/Planes.hpp"
 
 namespace insonify::sonar {
 namespace {

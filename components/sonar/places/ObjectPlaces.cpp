@@ -63,13 +63,6 @@ std::vector<std::array<int64_t, 3>> cornersWithin(const types::Mesh& mesh, const
 
 }  // namespace
 
-Reach reachOf(const RenderPlan& plan) {
-    const double half_elevation = types::radians(plan.sampled.beam_height_deg) / 2;
-    double half_azimuth = plan.cells.farthestAside();
-    if (plan.features.has(Feature::Conical)) half_azimuth = coneAzimuth(half_azimuth, half_elevation);
-    return {plan.grid.range_max, half_azimuth, half_elevation};
-}
-
 ObjectPlaces::ObjectPlaces(const types::Geometry& geometry, const Reach& reach, bool all)
     : geometry_(geometry), reach_(reach), all_(all), meshes_(MeshFacts::ofAll(geometry)) {
     records_.resize(geometry.objects.size());

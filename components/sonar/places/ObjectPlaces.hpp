@@ -5,7 +5,6 @@
 
 #include "components/sonar/echo/Interface.hpp"
 #include "components/sonar/places/MeshFacts.hpp"
-#include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::sonar {
@@ -16,7 +15,6 @@ struct Reach {
     double half_azimuth = std::numbers::pi;                      ///< [rad]
     double half_elevation = std::numbers::pi / 2;                ///< [rad]
 };
-Reach reachOf(const RenderPlan& plan);
 
 /** The places of a scene's objects relative to the sonar in this ping. */
 class ObjectPlaces {

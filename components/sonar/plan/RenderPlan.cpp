@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/sonar/effects/Effects.hpp"
+#include "types/Angle.hpp"
 #include "types/Ascii.hpp"
 
 namespace insonify::sonar {
@@ -71,6 +72,13 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     for (const Effect* effect : effects())
         if (effect->plan(geometry, plan)) plan.effects.push_back(effect);
     return plan;
+}
+
+Reach reachOf(const RenderPlan& plan) {
+    const double half_elevation = types::radians(plan.sampled.beam_height_deg) / 2;
+    double half_azimuth = plan.cells.farthestAside();
+    if (plan.features.has(Feature::Conical)) half_azimuth = coneAzimuth(half_azimuth, half_elevation);
+    return {plan.grid.range_max, half_azimuth, half_elevation};
 }
 
 types::ReturnRules returnRulesOf(const SonarConfig& config) {

@@ -13,6 +13,7 @@
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
 #include "components/sonar/fan/Directivity.hpp"
+#include "components/sonar/places/ObjectPlaces.hpp"
 #include "components/sonar/plan/SonarConfig.hpp"
 #include "types/Geometry.hpp"
 #include "types/ReturnLevels.hpp"
@@ -129,6 +130,9 @@ struct RenderPlan {
 
 RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry,
                           const RenderOptions& options = {});
+
+/** Returns the part of space that the sonar of a plan covers. */
+Reach reachOf(const RenderPlan& plan);
 
 /** Returns the configured absorption; none when the block is absent. A law needs `water`. */
 acoustics::Absorption makeAbsorption(const SonarConfig& config);

@@ -16,7 +16,6 @@
 #include "components/sonar/echo/TruthGrid.hpp"
 #include "components/sonar/effects/Effects.hpp"
 #include "components/sonar/field/EchoField.hpp"
-#include "components/sonar/pictures/SurfaceScene.hpp"
 #include "components/sonar/places/DeformedMeshes.hpp"
 #include "components/sonar/places/MeshesAhead.hpp"
 #include "components/sonar/places/ObjectPlaces.hpp"

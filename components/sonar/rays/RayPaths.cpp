@@ -6,8 +6,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "components/sonar/effects/MotionInPing.hpp"
 #include "components/sonar/plan/WaterView.hpp"
+#include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -19,6 +19,17 @@ glm::dvec3 acrossOf(const glm::dvec3& direction) {
 }
 
 }  // namespace
+
+double dopplerCoupling(const SonarConfig& config) {
+    if (!config.motion_in_ping || !config.pulse || !config.pulse->chirp_us) return 0;
+    return 1e-6 * *config.pulse->chirp_us * config.frequency_khz.value() / config.pulse->bandwidth_khz.value();
+}
+
+MotionBound motionBound(const SonarConfig& config, const BinGrid& grid) {
+    const double flight = 2 * grid.range_max / grid.speed_of_sound;
+    const double seconds = std::max(flight, dopplerCoupling(config));
+    return {grid.bin_width / (2 * seconds), types::radians(config.beamWidthDeg()) / (2 * flight)};
+}
 
 RayPaths::RayPaths(const RenderPlan& plan, const types::Geometry& geometry)
     : plan_(plan), coupling_(dopplerCoupling(plan.config)), share_(plan.beams.size() == 1 ? 0.5 : 1), stretch_(1) {

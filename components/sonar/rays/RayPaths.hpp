@@ -25,6 +25,18 @@ struct EchoPoint {
     double focus;      ///< Intensity relative to straight rays of the same range [1].
 };
 
+/** Velocities above which motion within a ping changes it: by half a bin at the far edge, or by half the width of a
+ *  beam (ACOUSTICS.md 12). */
+struct MotionBound {
+    double speed;  ///< [m/s]
+    double turn;   ///< [rad/s]
+};
+MotionBound motionBound(const SonarConfig& config, const BinGrid& grid);
+
+/** Returns the range that a chirp adds to an echo per m/s at which its object recedes, f T / B [s]. 0 without a chirp
+ *  or without motion within a ping. */
+double dopplerCoupling(const SonarConfig& config);
+
 /** Sound paths that are not straight to the places of objects: bent by a sound speed profile, or because sonar and
  *  objects move and turn while sound travels. The place that returns an echo depends on the echo's direction and slant
  *  range (ACOUSTICS.md 5.19, 5.20).
