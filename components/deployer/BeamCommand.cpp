@@ -10,8 +10,8 @@
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
-#include "components/sonar/PingTask.hpp"
-#include "components/sonar/echo/EchoGrid.hpp"
+#include "components/sonar/bins/EchoGrid.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::deployer {

@@ -8,7 +8,7 @@
 
 #include "components/deployer/RecordedLog.hpp"
 #include "components/pose/TrajectoryTask.hpp"
-#include "components/sonar/SonarTask.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "types/Angle.hpp"
 #include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"

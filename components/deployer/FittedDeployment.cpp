@@ -10,8 +10,8 @@
 #include "components/noise/NoiseTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/scene/SceneTask.hpp"
-#include "components/sonar/SideScanTask.hpp"
-#include "components/sonar/SonarTask.hpp"
+#include "components/sonar/tasks/SideScanTask.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 
 namespace insonify::deployer {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "components/noise/NoiseConfig.hpp"
 #include "components/receiver/ReceiverConfig.hpp"
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 #include "types/Mount.hpp"
 #include "types/Snapshot.hpp"
 

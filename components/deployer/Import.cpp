@@ -11,7 +11,7 @@
 #include "components/output/FanFile.hpp"
 #include "components/output/SideScanFile.hpp"
 #include "components/pose/TrajectoryTask.hpp"
-#include "components/sonar/SideScanTask.hpp"
+#include "components/sonar/tasks/SideScanTask.hpp"
 #include "types/Range.hpp"
 
 namespace insonify::deployer {

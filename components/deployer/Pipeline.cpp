@@ -9,7 +9,7 @@
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Port.hpp"
 #include "components/receiver/ReceiverTask.hpp"
-#include "components/sonar/PingTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Sonar.hpp"
 

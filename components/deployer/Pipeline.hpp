@@ -7,7 +7,7 @@
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/receiver/ReceiverTask.hpp"
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 

@@ -14,7 +14,7 @@
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
-#include "components/sonar/PingTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 
 namespace insonify::deployer {
 namespace {

@@ -21,7 +21,7 @@
 #include "components/framework/YamlText.hpp"
 #include "components/log/LoggerClock.hpp"
 #include "components/replay/ReplayTask.hpp"
-#include "components/sonar/PingTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "types/Ascii.hpp"
 #include "types/TaskRecord.hpp"
 

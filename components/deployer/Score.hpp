@@ -6,7 +6,7 @@
 #include "components/deployer/Json.hpp"
 #include "components/log/Reader.hpp"
 #include "components/output/PictureConfig.hpp"
-#include "components/sonar/quality/Metrics.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
 
 namespace insonify::deployer {
 

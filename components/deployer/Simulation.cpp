@@ -15,7 +15,7 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Wiring.hpp"
-#include "components/sonar/PingTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {

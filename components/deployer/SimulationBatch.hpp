@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "components/deployer/Simulation.hpp"
-#include "components/sonar/ThreadPool.hpp"
+#include "components/sonar/base/ThreadPool.hpp"
 
 namespace insonify::deployer {
 

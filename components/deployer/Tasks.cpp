@@ -10,7 +10,7 @@
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "components/scene/SceneTask.hpp"
-#include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
 
 namespace insonify::deployer {
 

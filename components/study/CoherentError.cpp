@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::study {

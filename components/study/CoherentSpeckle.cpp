@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "components/acoustics/BeamPattern.hpp"
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/SpeckleStatistics.hpp"

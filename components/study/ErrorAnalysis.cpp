@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "components/sonar/quality/Quality.hpp"
+#include "components/sonar/renderer/Quality.hpp"
 
 namespace insonify::study {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/study/Probe.hpp"
 
 namespace insonify::study {

@@ -10,10 +10,10 @@
 #include <memory>
 #include <stdexcept>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/quality/Quality.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/rays/AngularView.hpp"
+#include "components/sonar/renderer/Quality.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/CoherentError.hpp"
 #include "components/study/oracles/EmbreeTracer.hpp"
 #include "components/study/oracles/PathTracer.hpp"

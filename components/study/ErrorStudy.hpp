@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "components/sonar/quality/Metrics.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
 #include "components/study/StudyScene.hpp"
 
 namespace insonify::study {

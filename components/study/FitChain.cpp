@@ -7,8 +7,8 @@
 
 #include "components/noise/Noise.hpp"
 #include "components/receiver/Receiver.hpp"
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 

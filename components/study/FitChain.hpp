@@ -4,7 +4,7 @@
 
 #include "components/noise/NoiseConfig.hpp"
 #include "components/receiver/ReceiverConfig.hpp"
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/CodedPing.hpp"
 #include "types/Snapshot.hpp"
 

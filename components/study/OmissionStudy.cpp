@@ -8,12 +8,12 @@
 #include <map>
 #include <memory>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/effects/Effects.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "components/sonar/quality/Metrics.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 
 namespace insonify::study {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/fan/BeamFan.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/oracles/EmbreeTracer.hpp"
 #include "types/Angle.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "components/receiver/Receiver.hpp"
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/FitLooks.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "components/noise/Noise.hpp"
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 
 namespace insonify::study {
 namespace {

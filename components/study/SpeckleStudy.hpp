@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/ErrorAnalysis.hpp"
 #include "components/study/SpeckleStatistics.hpp"
 #include "types/Snapshot.hpp"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "components/receiver/Receiver.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StabilityStudy.hpp"

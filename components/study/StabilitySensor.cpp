@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StabilityStudy.hpp"

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/oracles/Truth.hpp"
 #include "types/Snapshot.hpp"
 

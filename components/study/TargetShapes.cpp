@@ -5,7 +5,7 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <numbers>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 

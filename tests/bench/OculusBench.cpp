@@ -14,7 +14,7 @@
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/scene/SceneTask.hpp"
-#include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "tests/support/OculusDriver.hpp"
 #include "tests/support/Paths.hpp"
 

@@ -22,7 +22,7 @@
 
 #include "components/scene/Bathymetry.hpp"
 #include "components/scene/Clusters.hpp"
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Shapes.hpp"
 
 namespace insonify {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "components/sonar/ways/TargetWays.hpp"
+#include "components/sonar/multipath/TargetWays.hpp"
 #include "components/study/Shapes.hpp"
 
 namespace insonify {

@@ -12,7 +12,7 @@ namespace {
 const char* const program = R"(#include <cstdio>
 #include <memory>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 using namespace insonify;
 
 int main() {

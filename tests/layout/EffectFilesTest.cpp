@@ -22,22 +22,23 @@ const std::map<std::string, size_t> known{
 
 /** Folders and files in which the word has another meaning. */
 const std::multimap<std::string, std::string> other_meanings{
-    {"crosstalk", "components/sonar/effects/Imperfections.cpp"},     // Between a device's neighbouring beams.
-    {"crosstalk", "components/sonar/plan/ImperfectionsConfig.hpp"},  // The same.
-    {"volume", "components/acoustics/Seabed"},                       // Scattering within a sediment.
-    {"volume", "components/deployer/BackscatterCommand.cpp"},        // The same.
-    {"volume", "components/scene/Clusters.cpp"},                     // The inside of a mesh.
-    {"volume", "components/scene/GltfFile.cpp"},                     // An extension of glTF.
-    {"volume", "components/sonar/field/"},                           // The space between the axes of a lattice.
-    {"volume", "components/sonar/rays/RayVisibility.cpp"},           // The space between the axes of an object.
-    {"volume", "types/MeshRays.hpp"},                                // The space between a triangle and a ray.
+    {"crosstalk", "components/sonar/effects/Imperfections.cpp"},       // Between a device's neighbouring beams.
+    {"crosstalk", "components/sonar/config/ImperfectionsConfig.hpp"},  // The same.
+    {"volume", "components/acoustics/Seabed"},                         // Scattering within a sediment.
+    {"volume", "components/deployer/BackscatterCommand.cpp"},          // The same.
+    {"volume", "components/scene/Clusters.cpp"},                       // The inside of a mesh.
+    {"volume", "components/scene/GltfFile.cpp"},                       // An extension of glTF.
+    {"volume", "components/sonar/rays/Scatterers"},                    // The space between the axes of a lattice.
+    {"volume", "components/sonar/rays/RayVisibility.cpp"},             // The space between the axes of an object.
+    {"volume", "types/MeshRays.hpp"},                                  // The space between a triangle and a ray.
 };
 
-/** Code without its comments, in lower case and without underscores: one spelling for all of an effect's names. */
+/** Code without its comments and includes, in lower case and without underscores: one spelling for all of an effect's names. */
 std::string namesIn(const Source& source) {
     static const std::regex line_comment("//.*");
     std::string text;
-    for (const std::string& line : source.lines) text += std::regex_replace(line, line_comment, "") + "\n";
+    for (const std::string& line : source.lines)
+        if (!line.starts_with("#include ")) text += std::regex_replace(line, line_comment, "") + "\n";
     for (size_t at = 0; (at = text.find("/*", at)) != std::string::npos;)
         text.erase(at, std::min(text.find("*/", at), text.size()) + 2 - at);
     std::erase(text, '_');
@@ -57,7 +58,7 @@ std::vector<std::string> effectNames() {
     static const std::regex declaration(R"(^const Effect& (\w+)\(\);)");
     std::vector<std::string> names;
     for (const std::string& line :
-         readSource(std::filesystem::path(insonify::test::source_dir) / "components/sonar/effects/Effects.cpp").lines)
+         readSource(std::filesystem::path(insonify::test::source_dir) / "components/sonar/plan/Effects.cpp").lines)
         if (std::smatch found; std::regex_search(line, found, declaration)) names.push_back(found[1]);
     return names;
 }

@@ -10,21 +10,6 @@ using namespace insonify::layout;
 
 namespace {
 
-struct Include {
-    std::string target;
-    bool ours = false;  ///< In quotes, from the root.
-};
-
-std::vector<Include> includesOf(const Source& source) {
-    std::vector<Include> found;
-    for (const std::string& line : source.lines) {
-        if (!line.starts_with("#include ")) continue;
-        const bool ours = line[9] == '"';
-        found.push_back({line.substr(10, line.find_first_of(ours ? "\"" : ">", 10) - 10), ours});
-    }
-    return found;
-}
-
 /** Folders from which the files of a folder may include. */
 const std::map<std::string, std::set<std::string>> neighbours = {
     {"dataset", {"command", "log", "output", "pose"}},
@@ -143,8 +128,8 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/gpu/Context.hpp", "types/Sonar.hpp"));
     EXPECT_TRUE(allowed("components/gpu/Context.cpp", "types/Thread.hpp"));
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/log/Reader.hpp"));
-    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarTask.hpp"));
-    EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarRenderer.hpp"));
+    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/tasks/SonarTask.hpp"));
+    EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/renderer/SonarRenderer.hpp"));
     EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/command/Json.hpp"));
     EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/study/ErrorStudy.hpp"));
     EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/command/Json.hpp"));
@@ -154,7 +139,7 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/command/Json.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseConfig.cpp", "components/acoustics/AmbientNoise.hpp"));
-    EXPECT_FALSE(allowed("components/acoustics/Water.hpp", "components/sonar/plan/SonarConfig.hpp"));
+    EXPECT_FALSE(allowed("components/acoustics/Water.hpp", "components/sonar/config/SonarConfig.hpp"));
     EXPECT_FALSE(allowed("components/receiver/Receiver.cpp", "components/acoustics/Water.hpp"));
     EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/log/Writer.hpp"));
     EXPECT_FALSE(allowed("components/logger/LoggerTask.cpp", "components/log/pocolog/Writer.hpp"));
@@ -173,6 +158,6 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_TRUE(allowed("components/dds/Node.cpp", "components/ros/Cdr.hpp"));
     EXPECT_TRUE(allowed("components/gazebo/PoseTask.hpp", "components/pose/ListenerTask.hpp"));
     EXPECT_FALSE(allowed("components/gazebo/Poses.hpp", "components/pose/Trajectory.hpp"));
-    EXPECT_TRUE(allowed("components/sonar/SonarRenderer.cpp", "components/gpu/Context.hpp"));
+    EXPECT_TRUE(allowed("components/sonar/renderer/SonarRenderer.cpp", "components/gpu/Context.hpp"));
     EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/NoiseTask.hpp"));
 }

@@ -45,4 +45,19 @@ inline std::vector<Source> sourcesIn(const std::string& folder, const std::vecto
     return found;
 }
 
+struct Include {
+    std::string target;
+    bool ours = false;  ///< In quotes, from the root.
+};
+
+inline std::vector<Include> includesOf(const Source& source) {
+    std::vector<Include> found;
+    for (const std::string& line : source.lines) {
+        if (!line.starts_with("#include ")) continue;
+        const bool ours = line[9] == '"';
+        found.push_back({line.substr(10, line.find_first_of(ours ? "\"" : ">", 10) - 10), ours});
+    }
+    return found;
+}
+
 }  // namespace insonify::layout

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/viewer/FanPicture.hpp"
 #include "components/viewer/PingPicture.hpp"
 #include "tests/support/Draw.hpp"

@@ -8,7 +8,7 @@
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/ros/Clouds.hpp"
 #include "components/ros/Pings.hpp"
-#include "components/sonar/SonarTask.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/support/Draw.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

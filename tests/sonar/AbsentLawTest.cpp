@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
-#include "components/sonar/AltimeterTask.hpp"
-#include "components/sonar/Sonar3dTask.hpp"
-#include "components/sonar/fan/SentPower.hpp"
+#include "components/sonar/beams/SentPower.hpp"
+#include "components/sonar/tasks/AltimeterTask.hpp"
+#include "components/sonar/tasks/Sonar3dTask.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Pings.hpp"

@@ -1,12 +1,12 @@
 // No operator new on the sonars' threads after the first pings, even when more is in view later.
 #include <gmock/gmock.h>
 
-#include "components/sonar/AltimeterTask.hpp"
-#include "components/sonar/ProfilerTask.hpp"
-#include "components/sonar/ScanningSonarTask.hpp"
-#include "components/sonar/SideScanTask.hpp"
-#include "components/sonar/Sonar3dTask.hpp"
-#include "components/sonar/SonarTask.hpp"
+#include "components/sonar/tasks/AltimeterTask.hpp"
+#include "components/sonar/tasks/ProfilerTask.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
+#include "components/sonar/tasks/SideScanTask.hpp"
+#include "components/sonar/tasks/Sonar3dTask.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "components/framework/Activity.hpp"
-#include "components/sonar/AltimeterTask.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
+#include "components/sonar/tasks/AltimeterTask.hpp"
 #include "tests/support/Hills.hpp"
 #include "tests/support/TaskBench.hpp"
 

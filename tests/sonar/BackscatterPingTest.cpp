@@ -7,7 +7,7 @@
 
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
-#include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/fan/BeamFan.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "components/sonar/echo/Beamformer.hpp"
-#include "components/sonar/fan/Directivity.hpp"
+#include "components/sonar/beams/Directivity.hpp"
+#include "components/sonar/bins/Beamformer.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "components/sonar/quality/QualityKeeper.hpp"
+#include "components/sonar/renderer/QualityKeeper.hpp"
 
 namespace insonify::sonar {
 namespace {

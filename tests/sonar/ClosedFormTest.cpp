@@ -3,8 +3,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "components/sonar/echo/FacetCurves.hpp"
-#include "components/sonar/quality/Metrics.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
+#include "components/sonar/surfaces/FacetCurves.hpp"
 #include "components/study/FractalFloor.hpp"
 #include "components/study/StudyScene.hpp"
 #include "tests/support/ClosedForms.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/scene/Clusters.hpp"
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 

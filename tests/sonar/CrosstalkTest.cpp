@@ -11,9 +11,9 @@
 
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
-#include "components/sonar/OthersReceived.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/ways/Waveform.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/multipath/Waveform.hpp"
+#include "components/sonar/renderer/OthersReceived.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"

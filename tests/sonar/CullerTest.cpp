@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/pictures/Culler.hpp"
+#include "components/sonar/raster/Culler.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 
 namespace insonify::sonar {

@@ -6,10 +6,10 @@
 #include <random>
 
 #include "components/scene/Animator.hpp"
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/pictures/SurfaceScene.hpp"
-#include "components/sonar/places/DeformedMeshes.hpp"
-#include "components/sonar/places/Motion.hpp"
+#include "components/sonar/raster/SurfaceScene.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
+#include "components/sonar/surfaces/DeformedMeshes.hpp"
+#include "components/sonar/surfaces/Motion.hpp"
 #include "tests/scene/AnimatedFiles.hpp"
 #include "tests/sonar/MovingFan.hpp"
 #include "tests/support/Deformed.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/plan/Effects.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/sonar/pictures/Culler.hpp"
+#include "components/sonar/raster/Culler.hpp"
 #include "components/study/FractalFloor.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 #include "types/Angle.hpp"

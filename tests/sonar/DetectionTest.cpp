@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "components/sonar/echo/Detection.hpp"
+#include "components/sonar/bins/Detection.hpp"
 #include "tests/support/Pings.hpp"
 
 namespace insonify::sonar {

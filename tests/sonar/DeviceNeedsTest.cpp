@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/effects/Effects.hpp"
-#include "components/sonar/pictures/DeviceNeeds.hpp"
+#include "components/sonar/plan/Effects.hpp"
+#include "components/sonar/raster/DeviceNeeds.hpp"
 #include "tests/support/PromisedLimits.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Sonars.hpp"

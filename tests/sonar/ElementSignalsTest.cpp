@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/SonarTask.hpp"
-#include "components/sonar/field/LineArray.hpp"
+#include "components/sonar/bins/LineArray.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"

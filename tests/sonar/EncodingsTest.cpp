@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Scenes.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/echo/Detection.hpp"
+#include "components/sonar/bins/Detection.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "tests/support/Tables.hpp"
 #include "types/Angle.hpp"

@@ -1,8 +1,8 @@
 // Tables of bearings in any order, with gaps and overlaps, and across the seam at 180 degrees.
 #include <gmock/gmock.h>
 
-#include "components/sonar/fan/BeamFan.hpp"
-#include "components/sonar/fan/Fan.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
+#include "components/sonar/beams/Fan.hpp"
 #include "tests/support/Tables.hpp"
 #include "types/Angle.hpp"
 

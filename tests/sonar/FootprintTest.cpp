@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "components/sonar/echo/Limb.hpp"
+#include "components/sonar/bins/Limb.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -10,7 +10,7 @@
 #include "components/pose/Trajectory.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Paths.hpp"
 #include "types/Angle.hpp"
 

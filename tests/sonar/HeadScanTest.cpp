@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/fan/HeadScan.hpp"
+#include "components/sonar/beams/HeadScan.hpp"
 #include "tests/support/Refused.hpp"
 
 namespace insonify::sonar {

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/fan/Directivity.hpp"
+#include "components/sonar/beams/Directivity.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/sonar/field/LineArray.hpp"
+#include "components/sonar/bins/LineArray.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::sonar {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "components/sonar/places/MadeAhead.hpp"
+#include "components/sonar/base/MadeAhead.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -7,7 +7,7 @@
 #include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
-#include "components/sonar/echo/MaterialLaws.hpp"
+#include "components/sonar/surfaces/MaterialLaws.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <filesystem>
 
-#include "components/sonar/places/MeshFacts.hpp"
-#include "components/sonar/places/MeshesAhead.hpp"
+#include "components/sonar/rays/MeshesAhead.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
+#include "components/sonar/surfaces/MeshFacts.hpp"
 #include "components/study/Shapes.hpp"
 #include "tests/support/Priorities.hpp"
 #include "tests/support/Waiting.hpp"

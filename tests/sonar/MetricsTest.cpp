@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "components/sonar/quality/Metrics.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
 
 namespace insonify::sonar {
 namespace {

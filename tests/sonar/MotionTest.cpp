@@ -7,12 +7,11 @@
 #include <limits>
 #include <random>
 
-#include "components/sonar/ScanningSonarTask.hpp"
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/places/Motion.hpp"
-#include "components/sonar/plan/PlanReport.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
-#include "components/sonar/rays/RayVisibility.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
+#include "components/sonar/surfaces/Motion.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "tests/sonar/MovingFan.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"

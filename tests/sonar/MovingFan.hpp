@@ -1,6 +1,6 @@
 #pragma once
 // The fan of the tests of motion within a ping.
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 
 namespace insonify::sonar {
 

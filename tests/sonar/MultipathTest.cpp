@@ -5,8 +5,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/ways/Mirrors.hpp"
+#include "components/sonar/multipath/Mirrors.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"

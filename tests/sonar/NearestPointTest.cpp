@@ -6,8 +6,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "components/scene/Clusters.hpp"
-#include "components/sonar/places/NearestPoint.hpp"
-#include "components/sonar/places/ObjectPlaces.hpp"
+#include "components/sonar/surfaces/NearestPoint.hpp"
+#include "components/sonar/surfaces/ObjectPlaces.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 #include "tests/support/Scenes.hpp"
 

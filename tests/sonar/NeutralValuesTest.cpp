@@ -4,10 +4,10 @@
 #include <functional>
 #include <string>
 
-#include "components/sonar/AltimeterTask.hpp"
-#include "components/sonar/SideScanTask.hpp"
-#include "components/sonar/Sonar3dTask.hpp"
-#include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/plan/Effects.hpp"
+#include "components/sonar/tasks/AltimeterTask.hpp"
+#include "components/sonar/tasks/SideScanTask.hpp"
+#include "components/sonar/tasks/Sonar3dTask.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Weightings.hpp"

@@ -8,11 +8,11 @@
 #include <optional>
 #include <set>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/effects/Effects.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Sonars.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/sonar/OthersReceived.hpp"
+#include "components/sonar/renderer/OthersReceived.hpp"
 #include "types/Transmission.hpp"
 
 namespace insonify::sonar {

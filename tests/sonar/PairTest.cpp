@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "components/sonar/echo/Limb.hpp"
+#include "components/sonar/bins/Limb.hpp"
 
 namespace insonify::sonar {
 namespace {

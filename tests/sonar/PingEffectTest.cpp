@@ -5,7 +5,7 @@
 #include <atomic>
 #include <random>
 
-#include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"

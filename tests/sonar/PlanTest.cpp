@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
 
 namespace insonify::sonar {
 namespace {

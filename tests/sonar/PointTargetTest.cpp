@@ -9,8 +9,8 @@
 
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/sonar/BeamCut.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Pings.hpp"

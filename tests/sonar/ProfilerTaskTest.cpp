@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "components/sonar/ProfilerTask.hpp"
+#include "components/sonar/tasks/ProfilerTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"

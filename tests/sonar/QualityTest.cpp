@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
-#include "components/sonar/ScanningSonarTask.hpp"
-#include "components/sonar/SonarTask.hpp"
-#include "components/sonar/quality/Quality.hpp"
-#include "components/sonar/quality/QualityKeeper.hpp"
+#include "components/sonar/renderer/Quality.hpp"
+#include "components/sonar/renderer/QualityKeeper.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "components/study/FractalFloor.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "components/sonar/SonarTask.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/support/Draw.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "components/sonar/echo/RangeResponse.hpp"
+#include "components/sonar/beams/RangeResponse.hpp"
 
 namespace insonify::sonar {
 namespace {

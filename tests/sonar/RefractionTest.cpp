@@ -6,10 +6,10 @@
 #include <functional>
 
 #include "components/acoustics/SoundProfile.hpp"
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/SonarTask.hpp"
 #include "components/sonar/effects/Refraction.hpp"
-#include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"

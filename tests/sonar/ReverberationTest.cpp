@@ -5,8 +5,8 @@
 #include <iostream>
 #include <numbers>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 #include "tests/support/Pings.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/TaskBench.hpp"
 #include "types/Angle.hpp"

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <random>
 
-#include "components/sonar/echo/FacetCurves.hpp"
-#include "components/sonar/echo/FacetLobes.hpp"
-#include "components/sonar/echo/MeshEdges.hpp"
-#include "components/sonar/echo/StraightEdges.hpp"
+#include "components/sonar/surfaces/FacetCurves.hpp"
+#include "components/sonar/surfaces/FacetLobes.hpp"
+#include "components/sonar/surfaces/MeshEdges.hpp"
+#include "components/sonar/surfaces/StraightEdges.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "components/sonar/ScanningSonarTask.hpp"
-#include "components/sonar/Sonar3dTask.hpp"
-#include "components/sonar/SonarTask.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
+#include "components/sonar/tasks/Sonar3dTask.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "types/Angle.hpp"

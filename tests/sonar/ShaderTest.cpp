@@ -8,9 +8,9 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/gpu/Program.hpp"
-#include "components/sonar/effects/Effects.hpp"
-#include "components/sonar/pictures/BinDeposit.hpp"
+#include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
+#include "components/sonar/raster/BinDeposit.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"

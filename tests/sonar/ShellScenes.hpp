@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "components/acoustics/Plate.hpp"
-#include "components/sonar/echo/WallLaws.hpp"
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
+#include "components/sonar/surfaces/WallLaws.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 

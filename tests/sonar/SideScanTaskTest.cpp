@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "components/sonar/SideScanTask.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/tasks/SideScanTask.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"

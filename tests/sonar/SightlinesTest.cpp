@@ -1,7 +1,7 @@
 // Lines from the sonar compared with every triangle of a scene, and sonars inside of meshes.
 #include <gmock/gmock.h>
 
-#include "components/sonar/places/Sightlines.hpp"
+#include "components/sonar/surfaces/Sightlines.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 #include "tests/support/Surfaces.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "components/sonar/Sonar3dTask.hpp"
+#include "components/sonar/tasks/Sonar3dTask.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"
 

@@ -2,12 +2,12 @@
 
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/YamlText.hpp"
-#include "components/sonar/AltimeterTask.hpp"
-#include "components/sonar/ProfilerTask.hpp"
-#include "components/sonar/SideScanTask.hpp"
-#include "components/sonar/Sonar3dTask.hpp"
-#include "components/sonar/fan/HeadScan.hpp"
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/beams/HeadScan.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
+#include "components/sonar/tasks/AltimeterTask.hpp"
+#include "components/sonar/tasks/ProfilerTask.hpp"
+#include "components/sonar/tasks/SideScanTask.hpp"
+#include "components/sonar/tasks/Sonar3dTask.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"

@@ -6,8 +6,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/SonarTask.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"

@@ -7,8 +7,8 @@
 #include <memory>
 #include <random>
 
-#include "components/sonar/echo/FacetLobes.hpp"
-#include "components/sonar/places/MeshFacts.hpp"
+#include "components/sonar/surfaces/FacetLobes.hpp"
+#include "components/sonar/surfaces/MeshFacts.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/TargetShapes.hpp"
 #include "tests/support/EveryWay.hpp"

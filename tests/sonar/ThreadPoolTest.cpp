@@ -4,7 +4,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "components/sonar/ThreadPool.hpp"
+#include "components/sonar/base/ThreadPool.hpp"
 #include "tests/support/ThreadLimit.hpp"
 
 namespace insonify::sonar {

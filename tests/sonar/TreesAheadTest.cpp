@@ -9,8 +9,8 @@
 #include <numbers>
 #include <thread>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/rays/RayVisibility.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Hills.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Waiting.hpp"

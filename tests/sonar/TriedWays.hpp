@@ -5,8 +5,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
 
-#include "components/sonar/ways/Mirrors.hpp"
-#include "components/sonar/ways/TargetWays.hpp"
+#include "components/sonar/multipath/Mirrors.hpp"
+#include "components/sonar/multipath/TargetWays.hpp"
 #include "types/MeshRays.hpp"
 
 namespace insonify::sonar {

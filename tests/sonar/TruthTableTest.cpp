@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/sonar/echo/TruthTable.hpp"
+#include "components/sonar/bins/TruthTable.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/pictures/Culler.hpp"
-#include "components/sonar/pictures/SurfacePass.hpp"
+#include "components/sonar/raster/Culler.hpp"
+#include "components/sonar/raster/SurfacePass.hpp"
 #include "components/sonar/rays/RayVisibility.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Refused.hpp"

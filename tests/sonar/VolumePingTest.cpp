@@ -2,7 +2,7 @@
 // wrong variant, which must fail by the same measure.
 #include <gmock/gmock.h>
 
-#include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "components/acoustics/Plate.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 #include "tests/support/Pings.hpp"
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <memory>
 
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <numeric>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 #include "tests/support/Pings.hpp"
 #include "types/Angle.hpp"

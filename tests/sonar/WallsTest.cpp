@@ -7,7 +7,7 @@
 #include <random>
 
 #include "components/acoustics/Plate.hpp"
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"

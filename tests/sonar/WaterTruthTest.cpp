@@ -7,8 +7,8 @@
 #include <optional>
 #include <random>
 
-#include "components/sonar/Sonar3dTask.hpp"
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
+#include "components/sonar/tasks/Sonar3dTask.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/quality/Metrics.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StudyScene.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/ErrorAnalysis.hpp"
 #include "components/study/ErrorEffects.hpp"
 #include "components/study/ErrorReport.hpp"

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <numeric>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/oracles/RayTree.hpp"
 #include "tests/support/Sonars.hpp"

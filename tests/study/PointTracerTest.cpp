@@ -5,9 +5,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/quality/Metrics.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StudyScene.hpp"

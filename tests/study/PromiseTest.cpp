@@ -7,10 +7,10 @@
 #include <iostream>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/SonarTask.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/quality/Metrics.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
+#include "components/sonar/tasks/SonarTask.hpp"
 #include "components/study/FractalFloor.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/quality/Metrics.hpp"
-#include "components/sonar/quality/Quality.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
+#include "components/sonar/renderer/Quality.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/FractalFloor.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"

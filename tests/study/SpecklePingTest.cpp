@@ -8,7 +8,7 @@
 #include <iostream>
 #include <numbers>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/SpeckleStatistics.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Refused.hpp"

@@ -2,7 +2,7 @@
 // The ways to find and sum echoes.
 #include <vector>
 
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 
 namespace insonify::test {
 

@@ -11,8 +11,8 @@
 
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
-#include "components/sonar/PingTask.hpp"
-#include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "tests/support/Draw.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

@@ -2,7 +2,7 @@
 // Small forward-looking sonars, and their pings.
 #include <optional>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
 
 namespace insonify::test {
 

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
 namespace {

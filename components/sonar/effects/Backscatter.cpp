@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "components/acoustics/SeabedBackscatter.hpp"
-#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/beams/Directivity.hpp"
 #include "components/sonar/effects/Places.hpp"
-#include "components/sonar/fan/Directivity.hpp"
+#include "components/sonar/plan/Effect.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

@@ -1,6 +1,6 @@
-#include "components/sonar/effects/Effect.hpp"
-#include "components/sonar/ways/DirectSound.hpp"
-#include "components/sonar/ways/ForeignEchoes.hpp"
+#include "components/sonar/multipath/DirectSound.hpp"
+#include "components/sonar/multipath/ForeignEchoes.hpp"
+#include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
 namespace {

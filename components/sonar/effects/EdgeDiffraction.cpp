@@ -1,5 +1,5 @@
-#include "components/sonar/effects/Effect.hpp"
-#include "components/sonar/ways/EdgeEchoes.hpp"
+#include "components/sonar/multipath/EdgeEchoes.hpp"
+#include "components/sonar/plan/Effect.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

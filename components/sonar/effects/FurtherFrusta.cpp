@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/sonar/effects/Effect.hpp"
 #include "components/sonar/effects/Places.hpp"
+#include "components/sonar/plan/Effect.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::sonar {

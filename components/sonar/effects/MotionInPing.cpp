@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/plan/Effect.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "types/Angle.hpp"
 

@@ -1,6 +1,6 @@
-#include "components/sonar/effects/Effect.hpp"
-#include "components/sonar/ways/Mirrors.hpp"
-#include "components/sonar/ways/PathEchoes.hpp"
+#include "components/sonar/multipath/Mirrors.hpp"
+#include "components/sonar/multipath/PathEchoes.hpp"
+#include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "components/sonar/echo/RangeResponse.hpp"
-#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
 namespace {

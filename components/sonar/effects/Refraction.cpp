@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/plan/Effect.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 
 namespace insonify::sonar {
 

@@ -1,5 +1,5 @@
-#include "components/sonar/effects/Effect.hpp"
-#include "components/sonar/ways/PointTargets.hpp"
+#include "components/sonar/multipath/PointTargets.hpp"
+#include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
 namespace {

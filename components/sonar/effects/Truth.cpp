@@ -1,4 +1,4 @@
-#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "components/sonar/echo/CellDeposit.hpp"
-#include "components/sonar/echo/EchoGrid.hpp"
-#include "components/sonar/echo/Estimators.hpp"
-#include "components/sonar/effects/Effect.hpp"
-#include "components/sonar/field/ScattererLattice.hpp"
+#include "components/sonar/bins/CellDeposit.hpp"
+#include "components/sonar/bins/EchoGrid.hpp"
+#include "components/sonar/bins/Estimators.hpp"
+#include "components/sonar/plan/Effect.hpp"
+#include "components/sonar/plan/ScattererLattice.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

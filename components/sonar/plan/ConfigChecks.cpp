@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/effects/Effects.hpp"
-#include "components/sonar/fan/BeamFan.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
+#include "components/sonar/plan/Effects.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -170,6 +170,34 @@ void checkImages(const SonarConfig& config, types::Diagnostics& diagnostics) {
 }
 
 }  // namespace
+
+void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
+    if (db_per_m && frequency_khz)
+        diagnostics.push_back({"db_per_m", "is given with frequency_khz; give one of the two"});
+}
+
+void BeamPatternConfig::check(types::Diagnostics& diagnostics) const {
+    if (!hasAzimuth() && !hasElevation())
+        diagnostics.push_back({"", "has no law; give azimuth or elevation of transmit or receive"});
+}
+
+void QualityConfig::check(types::Diagnostics& diagnostics) const {
+    const char* const choices =
+        "is given with another choice; give rows and columns_per_beam, or target_error and max_samples, or budget_ms";
+    const auto refuse = [&](const char* name, bool given, bool other) {
+        if (given && (isGiven() || other)) diagnostics.push_back({name, choices});
+    };
+    refuse("target_error", target_error.has_value(), budget_ms.has_value());
+    refuse("max_samples", max_samples.has_value(), budget_ms.has_value());
+    refuse("budget_ms", budget_ms.has_value(), false);
+}
+
+std::string SonarConfig::needsRays() const {
+    if (isCoherent()) return "speckle";
+    if (tracesPaths()) return "multipath";
+    if (motion_in_ping) return "motion_in_ping";
+    return crosstalk && crosstalk->echoes ? "crosstalk.echoes" : "";
+}
 
 std::optional<bool> SonarConfig::choosesRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/plan/Effects.hpp"
 #include "types/Angle.hpp"
 #include "types/Ascii.hpp"
 

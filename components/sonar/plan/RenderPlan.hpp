@@ -9,12 +9,12 @@
 
 #include "components/acoustics/Absorption.hpp"
 #include "components/acoustics/SoundProfile.hpp"
-#include "components/sonar/echo/MaterialLaws.hpp"
-#include "components/sonar/fan/BeamFan.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
-#include "components/sonar/fan/Directivity.hpp"
-#include "components/sonar/places/ObjectPlaces.hpp"
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
+#include "components/sonar/beams/Directivity.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
+#include "components/sonar/surfaces/MaterialLaws.hpp"
+#include "components/sonar/surfaces/ObjectPlaces.hpp"
 #include "types/Geometry.hpp"
 #include "types/ReturnLevels.hpp"
 

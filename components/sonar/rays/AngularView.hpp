@@ -2,7 +2,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 
 namespace insonify::sonar {

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "components/sonar/places/SharedValues.hpp"
+#include "components/sonar/base/SharedValues.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {

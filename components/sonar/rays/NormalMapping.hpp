@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "components/sonar/echo/Interface.hpp"
-#include "components/sonar/places/MeshFacts.hpp"
+#include "components/sonar/base/Interface.hpp"
+#include "components/sonar/surfaces/MeshFacts.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {

@@ -6,7 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "components/sonar/plan/WaterView.hpp"
+#include "components/sonar/beams/WaterView.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

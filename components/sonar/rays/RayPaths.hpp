@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "components/sonar/places/Motion.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/rays/RayTable.hpp"
+#include "components/sonar/surfaces/Motion.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::sonar {

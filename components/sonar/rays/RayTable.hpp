@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/acoustics/SoundProfile.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 
 namespace insonify::sonar {
 

@@ -11,9 +11,9 @@
 #include <optional>
 #include <string>
 
-#include "components/sonar/places/MeshFacts.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
+#include "components/sonar/surfaces/MeshFacts.hpp"
 #include "types/Hash.hpp"
 #include "types/VectorMath.hpp"
 

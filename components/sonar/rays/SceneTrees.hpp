@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "components/sonar/places/SharedValues.hpp"
+#include "components/sonar/base/SharedValues.hpp"
 #include "components/sonar/rays/Embree.hpp"
 #include "types/Geometry.hpp"
 

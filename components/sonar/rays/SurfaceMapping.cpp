@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
-#include "components/sonar/places/SharedValues.hpp"
+#include "components/sonar/base/SharedValues.hpp"
 
 namespace insonify::sonar {
 namespace {

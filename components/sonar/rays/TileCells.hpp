@@ -2,7 +2,7 @@
 #include <cmath>
 #include <span>
 
-#include "components/sonar/echo/CellDeposit.hpp"
+#include "components/sonar/bins/CellDeposit.hpp"
 #include "components/sonar/rays/NormalMapping.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/RayVisibility.hpp"

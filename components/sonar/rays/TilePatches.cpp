@@ -4,8 +4,8 @@
 #include <bit>
 #include <glm/geometric.hpp>
 
-#include "components/sonar/field/Scatterers.hpp"
 #include "components/sonar/rays/MappedCells.hpp"
+#include "components/sonar/rays/Scatterers.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {

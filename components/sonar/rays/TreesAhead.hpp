@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "components/sonar/places/MadeAhead.hpp"
+#include "components/sonar/base/MadeAhead.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
 
 namespace insonify::sonar {
@@ -32,8 +32,8 @@ public:
     static constexpr size_t max_triangles = 16'000'000;
 
     /** Follows a sonar through the objects at rest, at their places in the world; the list must not change. A sonar
-     *  that jumps further than `near`, or rests in new objects, needs nothing, and what it needed is given up. Returns whether other origins are needed now, for
-     *  send(). */
+     *  that jumps further than `near`, or rests in new objects, needs nothing, and what it needed is given up. Returns
+     * whether other origins are needed now, for send(). */
     bool follow(const glm::dvec3& sonar, const Objects& objects);
     /** Has the trees of the origins built. Does not wait. */
     void send();

@@ -11,7 +11,7 @@
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/study/ErrorEffects.hpp"
 #include "components/study/ErrorReport.hpp"
 #include "components/study/commands/StudyCommand.hpp"

@@ -7,8 +7,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "components/acoustics/BeamPattern.hpp"
-#include "components/sonar/fan/BeamFan.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/study/oracles/RayTree.hpp"
 #include "components/study/oracles/Workers.hpp"
 #include "types/Angle.hpp"

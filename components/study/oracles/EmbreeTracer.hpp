@@ -2,7 +2,7 @@
 #include <memory>
 #include <vector>
 
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::study {

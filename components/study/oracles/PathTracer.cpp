@@ -7,8 +7,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 
-#include "components/sonar/fan/BeamFan.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "types/Angle.hpp"
 #include "types/Hash.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/oracles/RayTree.hpp"
 #include "components/study/oracles/Workers.hpp"
 

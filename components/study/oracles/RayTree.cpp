@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "components/sonar/echo/FacetLobes.hpp"
 #include "components/sonar/rays/Embree.hpp"
+#include "components/sonar/surfaces/FacetLobes.hpp"
 
 namespace insonify::study {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "components/sonar/echo/MaterialLaws.hpp"
+#include "components/sonar/surfaces/MaterialLaws.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::study {

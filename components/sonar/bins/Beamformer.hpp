@@ -1,0 +1,76 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "components/sonar/beams/BeamFan.hpp"
+
+namespace insonify::sonar {
+
+/** Forms beams from azimuth cells: beam k is the sum over the cells of its two-way pattern there times the cell's
+ *  echoes (ACOUSTICS.md 5.11). Near its bearing a beam weights each cell. Farther away, where the pattern has only
+ *  sidelobes, it weights groups of cells, by the pattern's mean. */
+class Beamformer {
+public:
+    /** Two-way power at an azimuth, of a beam at a bearing [rad], or the factor of its field; 1 on its axis. */
+    using Pattern = std::function<double(double azimuth, double bearing)>;
+
+    static constexpr size_t group_cells = 8;
+
+    /** Bins before `end` in which beams have another pattern: the pattern of an array that is not focused there. */
+    struct Zone {
+        size_t end;
+        Pattern pattern;
+        double near;
+    };
+    struct Rules {
+        Pattern pattern;
+        double near;             ///< Distance from its bearing within which a beam weights each cell [rad].
+        double floor;            ///< Weights below it, positive or negative, are ignored [1].
+        bool of_fields = false;  ///< Fields are summed. Groups, whose fields have any phase, use the mean of powers.
+        /** Half the width about its bearing within which a beam receives, exactly: a cell that is partly outside has a
+         *  smaller weight [rad]; infinite: as far as the pattern reaches. */
+        double half_box = std::numeric_limits<double>::infinity();
+        std::vector<Zone> nearer = {};  ///< Zones of nearer bins, in order; `pattern` is that of the bins behind them.
+    };
+
+    /** `cells` are adjacent and of equal width. A wider cell counts as a group of its own and must be far from all
+     *  beams. With a box, cells may have gaps and any width. Where the cells form a circle, the cells near a beam
+     * continue across its seam. */
+    Beamformer(const Fan& beams, const Fan& cells, size_t bin_count, const Rules& rules);
+
+    size_t groupCount() const { return groups_.size() - 1; }
+    /** Sums one group of cells: each once per ping, before beams are formed. `echoes`: [cell][bin]. */
+    void sumGroup(size_t group, std::span<const float> echoes);
+    /** Fills the bins of one beam. Allocates nothing. Thread-safe. */
+    void form(size_t beam, std::span<const float> echoes, std::span<float> bins) const;
+
+    /** Returns the weight of each cell in beam k, as it is applied in the farthest bins [1]. */
+    std::vector<double> weights(size_t beam) const;
+
+private:
+    struct Run {
+        size_t first;
+        std::vector<float> weights;
+    };
+    /** Cells near a beam, in two runs where these continue across the seam, and the groups of all other cells. */
+    struct Band {
+        std::array<Run, 2> cells, groups;
+    };
+    Band bandOf(const Beam& beam, const Fan& cells, const Rules& rules) const;
+    /** Bins before `end`, and the bands of all beams there. */
+    struct BandsTo {
+        size_t end;
+        std::vector<Band> of_beams;
+    };
+    size_t cellsIn(size_t group) const { return groups_[group + 1] - groups_[group]; }
+
+    std::vector<size_t> groups_;  ///< First cell of each group, and the number of cells.
+    size_t bin_count_;
+    std::vector<BandsTo> bands_;  ///< From the nearest bins.
+    std::vector<float> grouped_;  ///< [group][bin].
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,272 @@
+#include "components/sonar/bins/EchoField.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+
+#include "components/sonar/base/RandomFields.hpp"
+#include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/bins/EchoGrid.hpp"
+#include "components/sonar/plan/Effects.hpp"
+#include "types/VectorMath.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** fields[j] += weight * from[j]. */
+INSONIFY_VECTOR_CLONES void addScaled(const float* from, float weight, float* __restrict fields, size_t count) {
+    for (size_t j = 0; j < count; ++j) fields[j] += weight * from[j];
+}
+
+/** fields[j] += sum of weights[i] * from[i][j]. */
+INSONIFY_VECTOR_CLONES void addFour(const std::array<const float*, 4>& from, const std::array<float, 4>& weights,
+                                    float* __restrict fields, size_t count) {
+    const float *const a = from[0], *const b = from[1], *const c = from[2], *const d = from[3];
+    for (size_t j = 0; j < count; ++j)
+        fields[j] += (weights[0] * a[j] + weights[1] * b[j]) + (weights[2] * c[j] + weights[3] * d[j]);
+}
+
+/** Computes the fields of every `stride`-th range cell from their sums. */
+INSONIFY_VECTOR_CLONES void scaleSums(const uint64_t* sums, const double* amplitudes, size_t stride, double quantum,
+                                      float* __restrict fields, size_t count) {
+    for (size_t j = 0; j < count; ++j) {
+        const double unit = amplitudes[stride * j] * quantum;
+        const auto real = static_cast<int64_t>(sums[2 * stride * j]),
+                   imaginary = static_cast<int64_t>(sums[2 * stride * j + 1]);
+        fields[2 * j] = static_cast<float>(static_cast<double>(real) * unit);
+        fields[2 * j + 1] = static_cast<float>(static_cast<double>(imaginary) * unit);
+    }
+}
+
+INSONIFY_VECTOR_CLONES void square(const float* fields, float* __restrict intensities, size_t count) {
+    for (size_t j = 0; j < count; ++j)
+        intensities[j] = fields[2 * j] * fields[2 * j] + fields[2 * j + 1] * fields[2 * j + 1];
+}
+
+/** Forms fields by the real or the imaginary part of the patterns. */
+Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers, bool imaginary) {
+    const Directivity& directivity = *plan.directivity;
+    const bool each = plan.config.elements || directivity.isComplex();
+    const auto zoneRules = [&](size_t zone) {
+        if (directivity.hasBoxes())
+            return boxRules([&](double azimuth, double) { return directivity.sentAmplitude(azimuth); }, plan, true);
+        const auto pattern = [&directivity, zone, imaginary](double azimuth, double bearing) {
+            const std::complex<double> field = directivity.azimuthField(azimuth, bearing, zone);
+            return imaginary ? field.imag() : field.real();
+        };
+        return Beamformer::Rules{pattern, each ? 2 * std::numbers::pi : directivity.nearAzimuth(),
+                                 std::sqrt(directivity.floor()), true};
+    };
+    Beamformer::Rules rules = rulesOfZones(plan, numbers / 2, zoneRules);
+    for (Beamformer::Zone& zone : rules.nearer) zone.end *= 2;  // real, imaginary
+    return {plan.beams, plan.cells, numbers, rules};
+}
+
+/** fields[j] += i turned[j], complex numbers. */
+INSONIFY_VECTOR_CLONES void addTurned(const float* turned, float* __restrict fields, size_t count) {
+    for (size_t j = 0; j < count; ++j) {
+        fields[2 * j] -= turned[2 * j + 1];
+        fields[2 * j + 1] += turned[2 * j];
+    }
+}
+
+/** Range cells with equally fine scatterers of the water, and the places of a beam's cells in their cubes. */
+struct Cubes {
+    size_t first, last;       ///< Range cells.
+    float start[3], step[3];  ///< Place of the first range cell, and step to the next [cubes].
+    uint32_t base[3];         ///< Cube that places are relative to.
+    uint32_t seed;            ///< Distinguishes fields in the same cubes.
+};
+
+/** Fills a complex Gaussian field of given intensities, which belongs to the cubes of the middles of range cells. */
+INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* intensities, float* __restrict real,
+                                           float* __restrict imaginary) {
+    const Cubes c = cubes;
+    for (size_t k = c.first; k < c.last; ++k) {
+        const auto on = static_cast<float>(static_cast<int32_t>(k - c.first));
+        uint32_t place = c.seed;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float at = c.start[axis] + on * c.step[axis];
+            const auto whole = static_cast<int32_t>(at);
+            place =
+                mixed(place + c.base[axis] + static_cast<uint32_t>(whole - (at < static_cast<float>(whole) ? 1 : 0)));
+        }
+        const float field = std::sqrt(-intensities[k] * logarithm(uniform(place)));
+        const float phase = uniform(place >> 16), turns = phase - nearest(phase);
+        real[k] = field * cosineOf(turns);
+        imaginary[k] = field * sineOf(turns);
+    }
+}
+
+}  // namespace
+
+FieldResponse::FieldResponse(const RenderPlan& plan) {
+    const FieldSampling sampling = fieldSamplingOf(plan);
+    samples_ = static_cast<size_t>(plan.grid.bin_count * sampling.samples);
+    stride_ = static_cast<size_t>(sampling.parts / sampling.samples);
+    sample_width_ = plan.grid.bin_width / sampling.samples;
+    if (!plan.has(Pass::Pulse)) return;
+    pulse_.emplace(*plan.config.pulse, plan.grid.speed_of_sound);
+    reach_ = pulse_->extent(RangeResponse::floor_db);
+    const double width = sample_width_ / static_cast<double>(stride_);
+    const auto maximum = static_cast<int>(std::min(std::ceil(reach_ / width), static_cast<double>(cells() - 1)));
+    const auto stride = static_cast<int>(stride_);
+    for (int t = -maximum; t <= maximum; ++t) {
+        const double power = pulse_->mean((t - 0.5) * width, (t + 0.5) * width);
+        const int from = (stride - 1) / 2 + t, run = (from % stride + stride) % stride;
+        const ptrdiff_t shift = (from - run) / stride;
+        taps_.push_back({static_cast<size_t>(run), shift,
+                         static_cast<float>(std::copysign(std::sqrt(power), pulse_->amplitude(t * width)))});
+        margin_ = std::max(margin_, static_cast<size_t>(std::abs(shift)));
+    }
+}
+
+void FieldResponse::spread(std::span<const float> sorted, std::span<float> fields) const {
+    if (!pulse_) {
+        std::ranges::copy(sorted, fields.begin());
+        return;
+    }
+    std::ranges::fill(fields, 0.0f);
+    const auto fromOf = [&](const Tap& tap) {
+        return sorted.data() + (static_cast<ptrdiff_t>(tap.run * runLength() + 2 * margin_) + 2 * tap.shift);
+    };
+    size_t t = 0;
+    for (; t + 4 <= taps_.size(); t += 4) {
+        std::array<const float*, 4> from;
+        std::array<float, 4> weights;
+        for (size_t i = 0; i < 4; ++i) from[i] = fromOf(taps_[t + i]), weights[i] = taps_[t + i].weight;
+        addFour(from, weights, fields.data(), fields.size());
+    }
+    for (; t < taps_.size(); ++t) addScaled(fromOf(taps_[t]), taps_[t].weight, fields.data(), fields.size());
+}
+
+double FieldResponse::amplitude(size_t sample, double range) const {
+    const auto number = static_cast<double>(sample);
+    if (pulse_) return pulse_->amplitude((number + 0.5) * sample_width_ - range);
+    return number == binAt(range, sample_width_) ? 1 : 0;
+}
+
+EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), response_(plan) {
+    const BinGrid grid = summedGrid(plan);
+    const BinLevels levels(plan.config, grid);
+    for (int k = 0; k < grid.bin_count; ++k) amplitudes_.push_back(std::sqrt(levels.factor(static_cast<size_t>(k))));
+    cells_.resize(plan.cells.size() * numbers());
+    if (plan.has(Pass::Beamform)) {
+        beamformer_ = fieldBeamformer(plan, numbers(), false);
+        beams_.resize(plan.beams.size() * numbers());
+        if (plan.directivity->isComplex()) {
+            turner_ = fieldBeamformer(plan, numbers(), true);
+            turned_.resize(beams_.size());
+        }
+    }
+    scratch_.resize(static_cast<size_t>(threads));
+    for (Scratch& scratch : scratch_) {
+        scratch.sorted.resize(response_.sortedSize());
+        for (std::vector<float>* each : {&scratch.energies, &scratch.real, &scratch.imaginary})
+            each->resize(response_.cells());
+        scratch.spread.resize(numbers());
+    }
+}
+
+bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread) {
+    Scratch& scratch = scratch_[thread];
+    const double quantum = std::sqrt(solid_angle / rules.strength_scale) / quanta_per_unit;
+    const size_t cells = response_.cells(), samples = response_.samples(), stride = cells / samples;
+    for (size_t run = 0; run < stride; ++run)
+        scaleSums(sums + 2 * run, amplitudes_.data() + run, stride, quantum, &scratch.sorted[response_.place(run)],
+                  samples);
+    if (!rules.own.empty()) {
+        addOwnSums(rules, sums, cell, solid_angle, energies(thread));
+        scatter(cell, scratch.energies, 1, scratch);
+    }
+    response_.spread(scratch.sorted, {&cells_[cell * numbers()], numbers()});
+    return std::any_of(sums, sums + 2 * cells, [](uint64_t sum) { return sum != 0; });
+}
+
+std::span<float> EchoField::energies(size_t thread) {
+    std::ranges::fill(scratch_[thread].energies, 0.0f);
+    return scratch_[thread].energies;
+}
+
+void EchoField::addEnergies(size_t cell, std::span<const float> intensities, size_t thread) {
+    Scratch& scratch = scratch_[thread];
+    for (size_t k = 0; k < response_.cells(); ++k)
+        scratch.sorted[response_.place(k)] = scratch.sorted[response_.place(k) + 1] = 0;
+    scatter(cell, intensities, 2, scratch);
+    response_.spread(scratch.sorted, scratch.spread);
+    addScaled(scratch.spread.data(), 1, &cells_[cell * numbers()], numbers());
+}
+
+void EchoField::scatter(size_t cell, std::span<const float> intensities, uint32_t seed, Scratch& scratch) const {
+    const Beam& azimuth = plan_.cells[cell];
+    const glm::dvec3 ray = sonar_.orientation * glm::dvec3(std::cos(azimuth.centre), std::sin(azimuth.centre), 0);
+    const double width = plan_.grid.bin_width * plan_.grid.bin_count / static_cast<double>(response_.cells());
+    const double spread = azimuth.high - azimuth.low;
+    for (size_t first = 0; first < response_.cells();) {
+        // Cubes as long as a range cell, or at short range as the azimuth cell's width; powers of 2 keep them fixed.
+        const double near = (static_cast<double>(first) + 0.5) * width;
+        const double side = std::exp2(std::floor(std::log2(std::min(width, near * spread))));
+        const double finer_to = 2 * side <= width ? 2 * side / spread : std::numeric_limits<double>::infinity();
+        const double last = std::min(std::ceil(finer_to / width - 0.5), static_cast<double>(response_.cells()));
+        Cubes cubes{first, std::max(static_cast<size_t>(last), first + 1), {}, {}, {}, seed};
+        for (int axis = 0; axis < 3; ++axis) {
+            const double start = (sonar_.position[axis] + near * ray[axis]) / side, base = std::floor(start);
+            cubes.start[axis] = static_cast<float>(start - base);
+            cubes.step[axis] = static_cast<float>(width * ray[axis] / side);
+            cubes.base[axis] = squareOf(base);
+        }
+        scatterInCubes(cubes, intensities.data(), scratch.real.data(), scratch.imaginary.data());
+        first = cubes.last;
+    }
+    for (size_t k = 0; k < response_.cells(); ++k) {
+        scratch.sorted[response_.place(k)] += scratch.real[k];
+        scratch.sorted[response_.place(k) + 1] += scratch.imaginary[k];
+    }
+}
+
+void EchoField::form(ThreadPool& threads) {
+    if (!beamformer_) return;
+    const auto eachOf = [&](size_t count, const auto& work) {
+        threads.run([&](int part, int parts) {
+            for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts)) work(i);
+        });
+    };
+    eachOf(beamformer_->groupCount(), [&](size_t group) {
+        beamformer_->sumGroup(group, cells_);
+        if (turner_) turner_->sumGroup(group, cells_);
+    });
+    eachOf(plan_.beams.size(), [&](size_t beam) {
+        beamformer_->form(beam, cells_, {&beams_[beam * numbers()], numbers()});
+        if (!turner_) return;
+        turner_->form(beam, cells_, {&turned_[beam * numbers()], numbers()});
+        addTurned(&turned_[beam * numbers()], &beams_[beam * numbers()], response_.samples());
+    });
+}
+
+void EchoField::add(size_t beam, double range, std::complex<double> field) {
+    const double width = response_.sampleWidth();
+    const double first = std::max(0.0, binAt(range - response_.reach(), width));
+    const double last = binAt(range + response_.reach(), width);
+    float* const fields = &beams()[beam * numbers()];
+    for (auto sample = static_cast<size_t>(first); sample < response_.samples() && static_cast<double>(sample) <= last;
+         ++sample) {
+        const std::complex<double> received = response_.amplitude(sample, range) * field;
+        fields[2 * sample] += static_cast<float>(received.real());
+        fields[2 * sample + 1] += static_cast<float>(received.imag());
+    }
+}
+
+void EchoField::detect(types::Sonar& ping) const {
+    const size_t per_bin = response_.samples() / ping.bin_count;
+    if (per_bin == 1) return square(beams().data(), ping.bins.data(), ping.bins.size());
+    const float* field = beams().data();
+    for (float& bin : ping.bins) {
+        float sum = 0;
+        for (size_t i = 0; i < per_bin; ++i, field += 2) sum += field[0] * field[0] + field[1] * field[1];
+        bin = sum / static_cast<float>(per_bin);
+    }
+}
+
+}  // namespace insonify::sonar

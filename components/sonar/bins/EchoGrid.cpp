@@ -1,0 +1,77 @@
+#include "components/sonar/bins/EchoGrid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace insonify::sonar {
+
+Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, bool of_fields) {
+    const double half = plan.directivity->boxWidth() / 2, floor = plan.directivity->floor();
+    return {std::move(sent), half, of_fields ? std::sqrt(floor) : floor, of_fields, half};
+}
+
+Beamformer beamformerOf(const RenderPlan& plan) {
+    const Directivity& directivity = *plan.directivity;
+    const auto zoneRules = [&](size_t zone) {
+        if (directivity.hasBoxes()) return boxRules([&](double a, double) { return directivity.sentAzimuth(a); }, plan);
+        return Beamformer::Rules{
+            [&, zone](double azimuth, double bearing) { return directivity.azimuth(azimuth, bearing, zone); },
+            directivity.nearAzimuth(zone), directivity.floor()};
+    };
+    return {plan.beams, plan.cells, static_cast<size_t>(plan.grid.bin_count),
+            rulesOfZones(plan, static_cast<size_t>(plan.grid.bin_count), zoneRules)};
+}
+
+Beamformer::Rules rulesOfZones(const RenderPlan& plan, size_t samples,
+                               const std::function<Beamformer::Rules(size_t zone)>& zoneRules) {
+    const Directivity& directivity = *plan.directivity;
+    Beamformer::Rules rules = zoneRules(directivity.lastZone());
+    const double width = plan.grid.bin_width * plan.grid.bin_count / static_cast<double>(samples);
+    size_t from = 0;
+    for (size_t zone = 0; zone < directivity.lastZone(); ++zone) {  // a sample is in the zone of its middle
+        const double end = std::clamp(std::round(directivity.zoneEnd(zone) / width), 0.0, static_cast<double>(samples));
+        if (static_cast<size_t>(end) <= from) continue;
+        from = static_cast<size_t>(end);
+        Beamformer::Rules own = zoneRules(zone);
+        rules.nearer.push_back({from, std::move(own.pattern), own.near});
+    }
+    return rules;
+}
+
+EchoGrid::EchoGrid(const RenderPlan& plan, int threads)
+    : bin_count_(static_cast<size_t>(plan.grid.bin_count)), beam_count_(plan.beams.size()) {
+    if (plan.has(Pass::Beamform)) beamformer_ = beamformerOf(plan);
+    if (plan.has(Pass::Pulse))
+        response_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound), plan.grid);
+    if (!passes()) echoes_.resize(plan.cells.size() * bin_count_);
+    if (response_)
+        padded_.assign(static_cast<size_t>(threads), std::vector<float>(bin_count_ + 2 * response_->margin()));
+}
+
+void EchoGrid::finishBeam(size_t beam, std::span<float> padded, types::Sonar& ping) const {
+    const std::span<float> bins(ping.bins.data() + beam * bin_count_, bin_count_);
+    const std::span<float> formed = response_ ? padded.subspan(response_->margin(), bin_count_) : bins;
+    if (beamformer_)
+        beamformer_->form(beam, echoes_, formed);
+    else
+        std::copy_n(echoes_.data() + beam * bin_count_, bin_count_, formed.data());
+    if (response_) response_->spread(padded, bins);
+}
+
+void EchoGrid::finish(types::Sonar& ping, ThreadPool& threads) {
+    if (passes()) return;
+    const auto eachOf = [&](size_t count, const auto& work) {
+        threads.run([&](int part, int parts) {
+            for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts))
+                work(i, static_cast<size_t>(part));
+        });
+    };
+    if (beamformer_)
+        eachOf(beamformer_->groupCount(), [&](size_t group, size_t) { beamformer_->sumGroup(group, echoes_); });
+    eachOf(beam_count_, [&](size_t beam, size_t part) {
+        finishBeam(beam, response_ ? std::span<float>(padded_[part]) : std::span<float>(), ping);
+    });
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,37 @@
+#pragma once
+#include <glm/vec3.hpp>
+
+#include "components/sonar/multipath/Mirrors.hpp"
+#include "components/sonar/rays/TileCells.hpp"
+
+namespace insonify::sonar {
+
+/** The directions of a rectangle of samples of a tile. */
+struct CellAngles {
+    glm::dvec3 middle, per_azimuth, per_elevation;  ///< Unit direction of the middle, and its derivatives [1].
+    double width, height, lean;                     ///< [rad], [rad], dazimuth / delevation of its sides [1].
+    double size, weighted;  ///< Solid angle, plain and weighted by the two-way pattern, in cells at elevation 0 [1].
+    int cell;
+
+    /** @param sample  its first sample in the tile
+     *  @param merged  samples, a power of 2 [1] */
+    CellAngles(const TracedView& view, const TracedTile& tile, int sample, int merged);
+};
+
+/** Inverse range of a path whose half is along a direction to a plane and from there to a focus, and its derivatives
+ *  with the direction. */
+struct HalfWay {
+    double inverse, per_azimuth, per_elevation, nearest;  ///< [1/m], [1/m rad], [1/m rad], [1/m].
+    double back;                                          ///< Distance from the plane to the focus [m].
+    glm::dvec3 from_focus;                                ///< Unit.
+
+    /** Adds a slant range to all of it [m]. */
+    void moveAway(double late);
+};
+
+HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const CellAngles& at);
+
+/** Returns the plane of the triangle that ray `i` of a tile has hit, sonar axes. */
+MirrorPlane planeMet(const PlacedScene& scene, const TileHits& hits, int i);
+
+}  // namespace insonify::sonar

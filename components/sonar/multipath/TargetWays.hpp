@@ -1,0 +1,85 @@
+#pragma once
+#include <array>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "components/sonar/multipath/MirrorReach.hpp"
+#include "components/sonar/multipath/WallSights.hpp"
+#include "components/sonar/surfaces/Sightlines.hpp"
+
+namespace insonify::sonar {
+
+/** One sound path between the sonar and a point. */
+struct TargetWay {
+    static constexpr size_t max_mirrors = MultipathConfig::max_bounces;
+
+    double length = 0;                       ///< [m]
+    glm::dvec3 direction{0};                 ///< Unit direction from the sonar, sonar axes [1].
+    glm::dvec3 from_point{0};                ///< Unit direction from the point along the path, world axes [1].
+    double power = 1;                        ///< Share of the sound's power after its mirrors and walls, one way [1].
+    double ringing = 1;                      ///< As in WallArrivals [1].
+    int reflections = 0;                     ///< Number of mirrors [1].
+    int walls = 0;                           ///< Number of thin walls that the sound passes [1].
+    bool by_surface = false;                 ///< Whether one of the mirrors is the water surface.
+    double sine_grazing = 0;                 ///< Sine of the grazing angle at the water surface [1].
+    const WallArrivals* arrivals = nullptr;  ///< Null: one without delay.
+    /** Its mirrors, from the sonar: 1: the water surface, from 2: mirror triangles in the scene's order; 0: none. */
+    std::array<uint32_t, max_mirrors> mirrors{};
+};
+
+/** All unobstructed sound paths between the sonar and points of the world (ACOUSTICS.md 5.23): the straight path, and
+ *  those via the water surface and triangles of mirrors. Uses the image method, in double. */
+class TargetWays {
+public:
+    /** `geometry` must outlive it, and so must `walls`; null: all surfaces hide. */
+    TargetWays(const SonarConfig& config, const types::Geometry& geometry, WallSights* walls = nullptr);
+
+    /** Places mirrors and objects; call it once per ping. Ignores paths longer than twice `range_max` [m]. */
+    void place(const types::Snapshot& snapshot, double range_max);
+    /** Returns the paths in the order of `TargetWay::mirrors`, the straight one first. They are valid until the next
+     *  call. */
+    const std::vector<TargetWay>& waysTo(const glm::dvec3& point);
+
+private:
+    using Chain = std::span<const PlacedMirror* const>;
+
+    void placeMirrors(const types::Snapshot& snapshot, double range_max);
+    /** Adds the paths via one mirror, and computes the point's images. */
+    void addByOne(const glm::dvec3& point);
+    void addByTwo(const glm::dvec3& point);
+    /** Returns whether a line to `image` may hit a mirror within its box. Both distances are from the mirror's plane,
+     *  that of the image with inverted sign [m]. */
+    bool mayMeet(const PlacedMirror& mirror, const glm::dvec3& from, double distance, const glm::dvec3& image,
+                 double image_distance) const;
+    /** Returns arrivals for one more path. */
+    WallArrivals& newArrivals();
+    /** Adds the path via the mirrors of a chain, if there is one. */
+    void addWay(const glm::dvec3& point, Chain chain);
+    /** Returns where the line from a stop to the image hits a mirror, and adds the mirror to the path. */
+    std::optional<glm::dvec3> meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,
+                                   TargetWay& way) const;
+    void addOnce(const TargetWay& way);
+
+    int bounces_;
+    FlatMirrors flat_;
+    Sightlines sightlines_;
+    WallSights* walls_;
+    std::deque<WallArrivals> arrivals_;  ///< Arrivals by the paths through walls.
+    size_t arrivals_count_ = 0;
+    WaterMirror water_;
+    std::vector<PlacedMirror> mirrors_;  ///< The water surface and all flat mirrors.
+    MirrorReach reach_;
+    bool has_reach_ = false;  ///< Whether reach_ is of this ping.
+
+    std::vector<glm::dvec3> images_;  ///< The point's image in each mirror [m].
+    std::vector<double> distances_;   ///< From each mirror's plane to the point [m].
+    std::vector<TargetWay> ways_;
+    glm::dvec3 sonar_{0};
+    glm::dquat sonar_from_world_{1, 0, 0, 0};
+    double longest_ = 0;  ///< [m]
+    double doubt_ = 0;    ///< Bounds the rounding of places [m].
+};
+
+}  // namespace insonify::sonar

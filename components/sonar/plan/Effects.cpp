@@ -1,0 +1,210 @@
+#include "components/sonar/plan/Effects.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <mutex>
+#include <stdexcept>
+
+#include "components/sonar/plan/EchoRules.hpp"
+#include "types/DidYouMean.hpp"
+
+namespace insonify::sonar {
+
+// Each is defined in a file of this folder.
+const Effect& absorption();
+const Effect& backscatter();
+const Effect& publishedMeans();
+const Effect& beamPatterns();
+const Effect& pulse();
+const Effect& ringDown();
+const Effect& volume();
+const Effect& speckle();
+const Effect& multipath();
+const Effect& thinWalls();
+const Effect& furtherFrusta();
+const Effect& refraction();
+const Effect& motionInPing();
+const Effect& normalMaps();
+const Effect& surfaceMaps();
+const Effect& deformingMeshes();
+const Effect& pointTargets();
+const Effect& edgeDiffraction();
+const Effect& imperfections();
+const Effect& crosstalk();
+const Effect& truth();
+
+namespace {
+
+/** All effects. Libraries add some while sonars of other threads use the list: an effect never moves, and counts once
+ *  it is in its place. */
+class List {
+public:
+    std::span<const Effect* const> all() const { return {all_.data(), count_.load(std::memory_order_acquire)}; }
+    void add(std::unique_ptr<const Effect> effect) {
+        const std::lock_guard alone(mutex_);
+        const auto same = [&](const Effect* other) { return !effect->key().empty() && other->key() == effect->key(); };
+        if (std::ranges::any_of(all(), same)) return;
+        if (count_ == all_.size()) throw std::length_error(fmt::format("there are more than {} effects", all_.size()));
+        all_[count_] = effect.get();
+        added_.push_back(std::move(effect));
+        count_.store(count_ + 1, std::memory_order_release);
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<const Effect>> added_;
+    std::array<const Effect*, 256> all_{
+        &absorption(),    &backscatter(), &publishedMeans(), &beamPatterns(),    &pulse(),         &ringDown(),
+        &volume(),        &speckle(),     &multipath(),      &thinWalls(),       &furtherFrusta(), &refraction(),
+        &motionInPing(),  &normalMaps(),  &surfaceMaps(),    &deformingMeshes(), &pointTargets(),  &edgeDiffraction(),
+        &imperfections(), &crosstalk(),   &truth()};
+    std::atomic<size_t> count_{static_cast<size_t>(std::ranges::find(all_, nullptr) - all_.begin())};
+};
+
+List& list() {
+    static List list;
+    return list;
+}
+
+std::vector<std::string> keys() {
+    std::vector<std::string> keys;
+    for (const Effect* effect : effects())
+        if (!effect->key().empty()) keys.push_back(effect->key());
+    return keys;
+}
+
+std::string whyUnknown(const std::string& name, const std::vector<std::string>& known, const char* is,
+                       const char* they) {
+    if (known.empty()) return fmt::format("{}: no library has added any", is);
+    return fmt::format("{}; {}{} are: {}", is, types::didYouMean(name, known), they, fmt::join(known, ", "));
+}
+
+void checkNumbers(const std::string& path, const std::vector<types::Field>& fields,
+                  const std::map<std::string, double>& numbers, types::Diagnostics& diagnostics) {
+    std::vector<std::string> names;
+    for (const types::Field& field : fields) names.emplace_back(field.name);
+    for (const auto& [name, value] : numbers) {
+        const auto field = std::ranges::find(fields, name, &types::Field::name);
+        if (field == fields.end())
+            diagnostics.push_back({path + name, whyUnknown(name, names, "is no number of this effect", "they")});
+        else if (!(value >= field->min && value <= field->max))
+            diagnostics.push_back(
+                {path + name,
+                 fmt::format("is {:g}; must be {:g} to {:g}{}", value, field->min, field->max,
+                             std::string_view(field->unit) == "1" ? "" : fmt::format(" {}", field->unit))});
+    }
+}
+
+}  // namespace
+
+std::span<const Effect* const> effects() { return list().all(); }
+
+void addEffect(std::unique_ptr<const Effect> effect) { list().add(std::move(effect)); }
+
+void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    for (const auto& [key, numbers] : config.effects) {
+        const auto all = effects();
+        const auto found = std::ranges::find(all, key, &Effect::key);
+        if (found == all.end())
+            diagnostics.push_back({"effects." + key, whyUnknown(key, keys(), "is no effect", "effects")});
+        else
+            checkNumbers("effects." + key + ".", (*found)->numbers(), numbers, diagnostics);
+    }
+    for (const Effect* effect : effects()) effect->check(config, diagnostics);
+}
+
+PingEffects::PingEffects(const RenderPlan& plan, const types::Geometry& geometry) {
+    for (const Effect* effect : plan.effects)
+        if (auto made = effect->make(plan, geometry)) {
+            all_.push_back(std::move(made));
+            keys_.push_back(effect->key());
+        }
+}
+
+void PingEffects::takeQuality() {
+    for (const auto& effect : all_) effect->takeQuality();
+}
+
+void PingEffects::takeScene(const types::Geometry& geometry) {
+    for (const auto& effect : all_) effect->takeScene(geometry);
+}
+
+void PingEffects::takeShapes(const types::Snapshot& snapshot) {
+    for (const auto& effect : all_) effect->takeShapes(snapshot);
+}
+
+void PingEffects::begin(const PingStart& start) {
+    for (const auto& effect : all_) effect->begin(start);
+}
+
+void PingEffects::giveRules(EchoRules& rules) const {
+    for (const auto& effect : all_) {
+        effect->giveRules(rules);
+        if (effect->hasSums()) rules.own.push_back(effect.get());
+    }
+}
+
+std::string PingEffects::whyNotOnDevice() const {
+    size_t with_sums = 0;
+    for (size_t i = 0; i < all_.size(); ++i) {
+        if (!all_[i]->hasSums()) continue;
+        if (!all_[i]->isOnDevice())
+            return fmt::format("the compute shader does not sum what the effect '{}' sums", keys_[i]);
+        if (++with_sums > 1) return "the compute shader has sums for one effect, and this sonar has several";
+    }
+    return {};
+}
+
+bool PingEffects::followsRays() const { return std::ranges::any_of(all_, &PingEffect::followsRays); }
+
+void PingEffects::followRays(const TracedPing& ping, std::span<const TracedTile> tiles) {
+    for (const auto& effect : all_)
+        if (effect->followsRays()) effect->followRays(ping, tiles);
+}
+
+bool PingEffects::addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) {
+    bool any = false;
+    for (const auto& effect : all_)
+        if (effect->followsRays()) any |= effect->addEnergies(ping, cell, bins);
+    return any;
+}
+
+void PingEffects::addToTruth(const TracedPing& ping, types::SonarTruth& truth) {
+    for (const auto& effect : all_)
+        if (effect->followsRays()) effect->addToTruth(ping, truth);
+}
+
+void PingEffects::addEchoes(PingInMaking& ping) {
+    for (const auto& effect : all_) effect->addEchoes(ping);
+}
+
+void PingEffects::addToBins(types::Sonar& ping) {
+    for (const auto& effect : all_) effect->addToBins(ping);
+}
+
+void PingEffects::addAlike(types::Sonar& bins) {
+    for (const auto& effect : all_) effect->addAlike(bins);
+}
+
+size_t PingEffects::received() const {
+    size_t received = 0;
+    for (const auto& effect : all_) received += effect->received();
+    return received;
+}
+
+std::vector<Omitted> PingEffects::omissions() const {
+    std::vector<Omitted> all;
+    for (const auto& effect : all_)
+        if (const auto what = effect->omissions()) all.push_back(*what);
+    return all;
+}
+
+void addOwnSums(const EchoRules& rules, const uint64_t* sums, size_t cell, double unit, std::span<float> bins) {
+    for (size_t i = 0; i < rules.own.size(); ++i) rules.own[i]->addToCell(sums + rules.ownOffset(i), cell, unit, bins);
+}
+
+}  // namespace insonify::sonar

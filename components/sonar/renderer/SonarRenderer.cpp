@@ -1,0 +1,249 @@
+#include "components/sonar/renderer/SonarRenderer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include "components/gpu/EglContext.hpp"
+#include "components/sonar/bins/EchoField.hpp"
+#include "components/sonar/bins/LineArray.hpp"
+#include "components/sonar/plan/Effects.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
+#include "components/sonar/surfaces/DeformedMeshes.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr Stages no_time{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
+
+/** Returns the objects whose meshes can deform, ascending. */
+std::vector<uint32_t> deformable(const types::Geometry& geometry) {
+    std::vector<uint32_t> objects;
+    for (size_t i = 0; i < geometry.objects.size(); ++i)
+        if (geometry.meshes[static_cast<size_t>(geometry.objects[i].mesh)].deformation)
+            objects.push_back(static_cast<uint32_t>(i));
+    return objects;
+}
+
+}  // namespace
+
+struct SonarRenderer::Parts {
+    Parts(const SonarConfig& config, types::GeometryPtr given, const RenderOptions& options);
+    ~Parts();
+    void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
+    void start();
+    void makeEchoes();
+    void deform(const types::Snapshot& snapshot);
+    bool takeScene(types::GeometryPtr given);
+    void takeShapes(const types::Snapshot& snapshot);
+    void describePlan();
+    types::SonarTruth* truthOf(const types::Sonar& ping) const { return &ping == reported_ping ? truth : nullptr; }
+
+    types::GeometryPtr scene;                  ///< Geometry of the snapshots.
+    std::unique_ptr<DeformedMeshes> deformed;  ///< Null: no mesh deforms.
+    types::GeometryPtr geometry;               ///< That is rendered: the scene, or that of `deformed`.
+    RenderPlan plan;
+    PingEffects effects;
+    types::Plan reported;
+    Stages stages = no_time;
+    std::unique_ptr<EchoRenderer> echoes;
+    const types::Sonar* reported_ping = nullptr;
+    types::SonarTruth* truth = nullptr;  ///< Filled with `reported_ping`; null: no truth.
+    const types::Sonar* heard_ping = nullptr;
+    types::SonarElements* signals = nullptr;  ///< Filled with `heard_ping`; null: no signals.
+    std::optional<LineArray> array;           ///< Made at the first ping whose signals are taken.
+};
+
+SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr given, const RenderOptions& options)
+    : scene(given), geometry(given), plan(makeRenderPlan(config, *given, options)), effects(plan, *given) {
+    start();
+    describePlan();
+}
+
+/** A rasterising renderer has its scene on the device, so it begins with all objects that can deform. */
+void SonarRenderer::Parts::start() {
+    if (plan.traces_rays || deformable(*scene).empty()) return makeEchoes();
+    types::Snapshot rest;
+    rest.geometry = scene;
+    deform(rest);
+}
+
+void SonarRenderer::Parts::makeEchoes() {
+    if (plan.traces_rays) {
+        echoes = makeRayEchoes(plan, geometry, effects);
+        return;
+    }
+    const auto alone = gpu::EglContext::making();
+    echoes.reset();
+    echoes = makeRasterEchoes(plan, geometry, effects);
+}
+
+void SonarRenderer::Parts::describePlan() {
+    reported = report(plan, *geometry);
+    reported.device = echoes->device();
+    if (const std::string notice = echoes->notice(); !notice.empty()) reported.notices.push_back(notice);
+}
+
+/** Gives each object that a snapshot deforms a mesh of its own; where scenes are rasterised, each that can deform. */
+void SonarRenderer::Parts::deform(const types::Snapshot& snapshot) {
+    const std::vector<uint32_t> others = !plan.traces_rays ? deformable(*scene)
+                                         : deformed        ? deformed->objects()
+                                                           : std::vector<uint32_t>();
+    const auto before = std::exchange(deformed, std::make_unique<DeformedMeshes>(snapshot, others));
+    const types::GeometryPtr geometry_before = std::exchange(geometry, deformed->geometry());
+    effects.takeScene(*geometry);
+    if (!plan.traces_rays) makeEchoes();
+    echoes->deform(deformed.get(), geometry);
+}
+
+void SonarRenderer::Parts::takeShapes(const types::Snapshot& snapshot) {
+    if (!deformed || !deformed->serves(snapshot)) deform(snapshot);
+    if (!deformed->changes(snapshot)) return;
+    echoes->takeShapes(snapshot);
+    effects.takeShapes(snapshot);
+}
+
+bool SonarRenderer::Parts::takeScene(types::GeometryPtr given) {
+    if (given == scene) return false;
+    const std::unique_ptr<DeformedMeshes> deformed_before = std::move(deformed);
+    if (deformed_before && plan.traces_rays) echoes->deform(nullptr, scene);
+    scene = given;
+    const bool same_plan =
+        given->materials == geometry->materials && given->normal_maps.sharesAll(geometry->normal_maps);
+    if (same_plan) {
+        effects.takeScene(*given);
+    } else {
+        plan = makeRenderPlan(plan.config, *given, plan.options);
+        effects = PingEffects(plan, *given);
+    }
+    const types::GeometryPtr before = std::exchange(geometry, given);  // kept until unused
+    if (!echoes->takeScene(std::move(given), same_plan)) start();
+    if (!same_plan) describePlan();
+    return !same_plan;
+}
+
+SonarRenderer::Parts::~Parts() {
+    if (plan.traces_rays) return;
+    const auto alone = gpu::EglContext::making();
+    echoes.reset();
+}
+
+void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const {
+    ping.time = snapshot.time;
+    ping.timestamps.clear();
+    ping.bin_duration.microseconds = plan.grid.bin_duration_us;
+    ping.bin_width = plan.config.range_rounding == RangeRounding::Exact ? plan.grid.bin_width : 0;
+    ping.beam_width = types::Angle::fromDeg(plan.config.beamWidthDeg());
+    ping.beam_height = types::Angle::fromDeg(plan.config.beam_height_deg);
+    ping.bearings.resize(plan.beams.size());
+    for (size_t row = 0; row < plan.beams.size(); ++row)
+        ping.bearings[row] = types::Angle::fromRad(plan.beams.tableBearing(row));
+    ping.speed_of_sound = static_cast<float>(plan.grid.speed_of_sound);
+    ping.bin_count = static_cast<uint32_t>(plan.grid.bin_count);
+    ping.beam_count = static_cast<uint32_t>(plan.beams.size());
+    ping.bins.resize(plan.beams.size() * static_cast<size_t>(plan.grid.bin_count));
+}
+
+SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry, const RenderOptions& options)
+    : parts_(std::make_unique<Parts>(config, std::move(geometry), options)) {}
+
+SonarRenderer::~SonarRenderer() = default;
+
+void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) {
+    parts_->stages = no_time;
+    if (!snapshot.deformed.empty() || parts_->deformed) {
+        const auto start = std::chrono::steady_clock::now();
+        parts_->takeShapes(snapshot);
+        parts_->stages[CullStage].seconds +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+    parts_->fillHeader(snapshot, ping);
+    types::SonarTruth* const truth = parts_->truthOf(ping);
+    if (truth) truth->takeGrid(ping);
+    parts_->effects.begin({snapshot, truth});
+    parts_->echoes->setTruth(truth);
+    parts_->echoes->render(snapshot, ping, parts_->stages);
+    parts_->echoes->setTruth(nullptr);
+    finish(snapshot, ping);
+    if (&ping == parts_->heard_ping && parts_->signals) takeElements(ping, *parts_->signals);
+    if (!truth) return;
+    types::SonarTruth::forEachArray(*truth, [&](const char*, auto& numbers, auto) {
+        parts_->plan.beams.toTableOrder(std::span(numbers), truth->bin_count);
+    });
+}
+
+void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth) {
+    parts_->reported_ping = &ping;
+    parts_->truth = truth;
+}
+
+void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) {
+    const auto start = std::chrono::steady_clock::now();
+    EchoField* const field = parts_->echoes->field();
+    PingInMaking made{snapshot, ping, field, parts_->echoes->bent(), parts_->truthOf(ping)};
+    parts_->effects.addEchoes(made);
+    if (field) field->detect(ping);
+    parts_->effects.addToBins(ping);
+    parts_->plan.beams.toTableOrder(std::span(ping.bins), ping.bin_count);
+    parts_->stages[BeamStage].seconds +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+bool SonarRenderer::takeAlike(const types::Sonar& ping, types::Sonar& alike) const {
+    if (!parts_->plan.has(Pass::RingDown)) return false;
+    alike.time = ping.time;
+    static_cast<types::RangeBins&>(alike) = ping;
+    alike.beam_count = ping.beam_count;
+    alike.bin_count = ping.bin_count;
+    alike.bins.assign(ping.bins.size(), 0);
+    parts_->effects.addAlike(alike);
+    parts_->plan.beams.toTableOrder(std::span(alike.bins), alike.bin_count);
+    return true;
+}
+
+void SonarRenderer::setElements(const types::Sonar& ping, types::SonarElements* signals) {
+    if (signals && !(parts_->echoes->field() && parts_->plan.config.elements))
+        throw std::logic_error("the sonar has no elements");
+    parts_->heard_ping = &ping;
+    parts_->signals = signals;
+}
+
+void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements& signals) {
+    const EchoField* field = parts_->echoes->field();
+    if (!parts_->array) parts_->array.emplace(lineArrayOf(parts_->plan.config));
+    takeSignals(parts_->plan, *field, *parts_->array, signals);
+    signals.time = ping.time;
+}
+
+bool SonarRenderer::forget() {
+    parts_->effects = PingEffects(parts_->plan, *parts_->geometry);
+    if (parts_->deformed) parts_->deformed->forget();
+    return parts_->echoes->forget();
+}
+
+bool SonarRenderer::setGeometry(types::GeometryPtr geometry) { return parts_->takeScene(std::move(geometry)); }
+
+void SonarRenderer::setQuality(int rows, int columns_per_beam) {
+    parts_->plan.setQuality(rows, columns_per_beam);
+    parts_->reported.rows = rows;
+    parts_->reported.columns_per_beam = columns_per_beam;
+    parts_->effects.takeQuality();
+    parts_->echoes->takeQuality();
+}
+
+std::span<const Stage> SonarRenderer::stages() const { return parts_->stages; }
+bool SonarRenderer::hasEchoes() const { return parts_->echoes->hasEchoes(); }
+std::vector<Omitted> SonarRenderer::omissions() const {
+    std::vector<Omitted> all = parts_->echoes->culled();
+    std::ranges::move(parts_->effects.omissions(), std::back_inserter(all));
+    return all;
+}
+size_t SonarRenderer::othersReceived() const { return parts_->effects.received(); }
+const RenderPlan& SonarRenderer::renderPlan() const { return parts_->plan; }
+const types::GeometryPtr& SonarRenderer::geometry() const { return parts_->geometry; }
+const types::Plan& SonarRenderer::plan() const { return parts_->reported; }
+const std::string& SonarRenderer::device() const { return parts_->echoes->device(); }
+
+}  // namespace insonify::sonar

@@ -1,0 +1,350 @@
+#include "components/sonar/surfaces/FacetLobes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <numbers>
+
+#include "components/sonar/surfaces/MeshEdges.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr double flat = 1e-3;  ///< Normals that differ by less are equal [rad].
+constexpr double similar = 4;  ///< Facets share the turn at their edge up to this ratio of areas [1].
+constexpr uint32_t nobody = 0xffffffff;
+
+double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+/** Two unit vectors across a unit normal, and a symmetric tensor in their plane. */
+struct Plane {
+    glm::dvec3 u, v;
+    explicit Plane(const glm::dvec3& normal) {
+        const glm::dvec3 n = glm::abs(normal);
+        const glm::dvec3 minimum = n.x <= n.y && n.x <= n.z ? glm::dvec3(1, 0, 0)
+                                   : n.y <= n.z             ? glm::dvec3(0, 1, 0)
+                                                            : glm::dvec3(0, 0, 1);
+        u = glm::normalize(glm::cross(normal, minimum));
+        v = glm::cross(normal, u);
+    }
+    /** Returns the direction in the plane in which a tensor is largest. */
+    glm::dvec3 maximum(const glm::dmat3& tensor) const {
+        const glm::dvec3 tu = tensor * u;
+        const double uu = glm::dot(u, tu), uv = glm::dot(v, tu), vv = glm::dot(v, tensor * v);
+        const double angle = std::atan2(2 * uv, uu - vv) / 2;
+        return std::cos(angle) * u + std::sin(angle) * v;
+    }
+};
+
+double along(const glm::dmat3& tensor, const glm::dvec3& direction) { return glm::dot(direction, tensor * direction); }
+
+/** The area of a set of triangles and its first two moments. */
+struct Moments {
+    double area = 0;
+    glm::dvec3 first{0};
+    glm::dmat3 second{0};
+
+    void add(double triangle_area, const std::array<glm::dvec3, 3>& corners) {
+        const glm::dvec3 sum = corners[0] + corners[1] + corners[2];
+        area += triangle_area;
+        first += triangle_area / 3 * sum;
+        second += triangle_area / 12 * glm::outerProduct(sum, sum);
+        for (const glm::dvec3& corner : corners) second += triangle_area / 12 * glm::outerProduct(corner, corner);
+    }
+    /** Returns the mean square distances from the middle, as a tensor [m^2]. */
+    glm::dmat3 spread() const {
+        const glm::dvec3 middle = first / area;
+        return second / area - glm::outerProduct(middle, middle);
+    }
+};
+
+/** A flat part of a mesh: facets whose normals equal that of the first facet. */
+struct FlatPart {
+    glm::dvec3 normal;
+    Moments moments;
+    glm::dmat3 steps{0};                  ///< Steps of its facets, weighted by their areas [m^2].
+    glm::dmat3 curvature{0};              ///< Curvatures of its facets, likewise [m].
+    glm::dvec3 lean{0};                   ///< Slopes at its edges, weighted by the squares of the turns there [rad^3].
+    double turns = 0, fourths = 0;        ///< Sums of squares of these turns, and of these times squares of half turns.
+    glm::dvec3 outward{0};                ///< Turns at its edges times their lengths, as vectors across the edges [m].
+    glm::dmat3 bend{0};                   ///< The same as a tensor [m].
+    std::array<glm::dvec3, 2> axes{};     ///< Directions of its longest and of its shortest extent.
+    std::array<double, 2> low{}, high{};  ///< Its ends along `axes` [m].
+    std::array<double, 2> lengths{};      ///< Coherent lengths along `axes` [m].
+
+    void turnAxes() {
+        axes[0] = Plane(normal).maximum(moments.spread());
+        axes[1] = glm::cross(normal, axes[0]);
+        low.fill(INFINITY);
+        high.fill(-INFINITY);
+    }
+    /** Returns whether it is part of a curve in a direction: both sides turn away equally. A part that turns on one
+     *  side only ends there. */
+    bool bendsAlong(const glm::dvec3& axis) const {
+        constexpr double one_sided = 0.7;
+        return std::abs(glm::dot(outward, axis)) < one_sided * along(bend, axis);
+    }
+    void reachTo(const glm::dvec3& corner) {
+        for (size_t k = 0; k < 2; ++k) {
+            const double at = glm::dot(axes[k], corner);
+            low[k] = std::min(low[k], at);
+            high[k] = std::max(high[k], at);
+        }
+    }
+    /** Sets the lengths to the mean of the extent and that of a rectangle with the same second moment. This is exact
+     *  for rectangles, and 2 % too long for slivers that end in a point, whose coherent length is 8/9 of the extent. */
+    void measure() {
+        const glm::dmat3 spread = moments.spread();
+        for (size_t k = 0; k < 2; ++k)
+            lengths[k] = (high[k] - low[k] + std::sqrt(12 * std::max(along(spread, axes[k]), 0.0))) / 2;
+    }
+    /** Returns the inverse squares of the lengths [1/m^2]. */
+    glm::dmat3 perSquare() const {
+        glm::dmat3 sum(0);
+        for (size_t k = 0; k < 2; ++k)
+            sum += glm::outerProduct(axes[k], axes[k]) / std::max(lengths[k] * lengths[k], 1e-12);
+        return sum;
+    }
+};
+
+/** Finds the records of a mesh's facets. */
+class FacetLobes {
+public:
+    FacetLobes(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double wavelength)
+        : mesh_(mesh), world_from_mesh_(world_from_mesh), wavelength_(wavelength) {
+        facets_.resize(mesh.indices.size() / 3);
+        edges_ = edgesOf(mesh);
+        std::vector<bool> has_area(facets_.size());
+        for (const Edge& edge : edges_) has_area[edge.triangle] = true;
+        for (uint32_t t = 0; t < facets_.size(); ++t)
+            if (has_area[t]) measure(t);
+        joinNeighbours();
+        findSmoothParts();
+        findFlatParts();
+    }
+
+    std::vector<FacetRecord> records() const {
+        std::vector<FacetRecord> all;
+        all.reserve(facets_.size());
+        for (uint32_t t = 0; t < facets_.size(); ++t) all.push_back(recordOf(t));
+        return all;
+    }
+
+private:
+    struct Facet {
+        glm::dvec3 normal{0};                                        ///< Unit; 0 where it has no area.
+        double area = 0;                                             ///< [m^2]
+        std::array<uint32_t, 3> neighbours{nobody, nobody, nobody};  ///< Across edges that are not creases.
+        uint32_t smooth = nobody, part = nobody;                     ///< Its smooth part and its flat part.
+        glm::mat3 steps{0};                                          ///< Mean square slopes [1].
+        glm::mat3 curvature{0};                                      ///< [1/m]
+    };
+
+    glm::dvec3 place(uint32_t vertex) const {
+        return world_from_mesh_ * (glm::dvec3(mesh_.positions[vertex]) - glm::dvec3(mesh_.positions[0]));
+    }
+    std::array<glm::dvec3, 3> cornersOf(uint32_t t) const {
+        const uint32_t* index = mesh_.indices.data() + 3 * size_t{t};
+        return {place(index[0]), place(index[1]), place(index[2])};
+    }
+    void measure(uint32_t t) {
+        const std::array<glm::dvec3, 3> p = cornersOf(t);
+        const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+        const double length = glm::length(across);
+        if (length > 0) facets_[t].normal = across / length, facets_[t].area = length / 2;
+    }
+
+    /** Calls act(one facet, the other, angle between their normals, edge) for edges that are not creases. */
+    void eachBend(const auto& act) {
+        for (size_t k = 1; k < edges_.size(); ++k) {
+            const Edge &one = edges_[k - 1], &other = edges_[k];
+            if (one.low != other.low || one.high != other.high) continue;
+            const Facet &a = facets_[one.triangle], &b = facets_[other.triangle];
+            if (!(a.area > 0 && b.area > 0)) continue;
+            const double turn = angleBetween(a.normal, b.normal);
+            if (turn < crease) act(one.triangle, other.triangle, turn, place(one.high) - place(one.low));
+        }
+    }
+    void joinNeighbours() {
+        eachBend([&](uint32_t one, uint32_t other, double turn, const glm::dvec3& edge) {
+            turnAt(one, other, turn, edge);
+            turnAt(other, one, turn, edge);
+        });
+    }
+    /** Returns a facet's share of the turn at an edge. It is half, but almost none next to a much smaller facet, which
+     *  is the curve where a flat part ends. `ratio`: its area relative to the other's. */
+    static double shareOf(double ratio) {
+        if (ratio < 1) return 1 - shareOf(1 / ratio);
+        return ratio > similar ? similar * similar / (2 * ratio * ratio) : 0.5;
+    }
+    void turnAt(uint32_t t, uint32_t neighbour, double turn, const glm::dvec3& edge) {
+        Facet& facet = facets_[t];
+        const auto free = std::ranges::find(facet.neighbours, nobody);
+        if (free != facet.neighbours.end()) *free = neighbour;
+        const double own = turn * shareOf(facet.area / facets_[neighbour].area);
+        const double length = glm::length(edge);
+        const glm::dvec3 across = glm::cross(edge, facet.normal) / length;
+        const glm::dmat3 square = glm::outerProduct(across, across);
+        facet.steps += glm::mat3(2 * own * own * square);
+        facet.curvature += glm::mat3(own * length / facet.area * square);
+    }
+    /** Adds the slope at an edge: on a smooth surface, halfway to the neighbour's normal. */
+    void leanAt(uint32_t t, uint32_t neighbour, double turn, const glm::dvec3& edge) {
+        FlatPart& part = parts_[facets_[t].part];
+        const glm::dvec3 way = facets_[neighbour].normal - facets_[t].normal;
+        const double share = shareOf(facets_[t].area / facets_[neighbour].area), length = glm::length(edge);
+        const glm::dvec3 across = glm::cross(edge, facets_[t].normal) / length;
+        part.outward += share * length * way;
+        part.bend += share * length * turn * glm::outerProduct(across, across);
+        if (std::abs(glm::dot(across, part.axes[0])) > 0.5) return;  // at an end
+        part.lean += turn * turn / (1 + std::cos(turn)) * way;
+        part.turns += turn * turn;
+        part.fourths += std::pow(turn * std::tan(turn / 2), 2);
+    }
+
+    /** Numbers all facets that are connected, where `joined` allows the step. */
+    void flood(uint32_t Facet::*number, const auto& begin, const auto& joined) {
+        std::vector<uint32_t> open;
+        uint32_t count = 0;
+        for (uint32_t seed = 0; seed < facets_.size(); ++seed) {
+            if (facets_[seed].*number != nobody || !(facets_[seed].area > 0)) continue;
+            begin(facets_[seed]);
+            facets_[seed].*number = count;
+            open.push_back(seed);
+            while (!open.empty()) {
+                const Facet& at = facets_[open.back()];
+                open.pop_back();
+                for (const uint32_t next : at.neighbours)
+                    if (next != nobody && facets_[next].*number == nobody && joined(facets_[seed], facets_[next])) {
+                        facets_[next].*number = count;
+                        open.push_back(next);
+                    }
+            }
+            ++count;
+        }
+    }
+    void findSmoothParts() {
+        flood(
+            &Facet::smooth, [&](const Facet&) { smooth_.emplace_back(); },
+            [](const Facet&, const Facet&) { return true; });
+        std::vector<Moments> moments(smooth_.size());
+        for (uint32_t t = 0; t < facets_.size(); ++t)
+            if (facets_[t].area > 0) moments[facets_[t].smooth].add(facets_[t].area, cornersOf(t));
+        std::ranges::transform(moments, smooth_.begin(), &Moments::spread);
+    }
+    void findFlatParts() {
+        flood(
+            &Facet::part,
+            [&](const Facet& seed) {
+                parts_.push_back({seed.normal, {}});
+            },
+            [](const Facet& seed, const Facet& next) { return angleBetween(seed.normal, next.normal) < flat; });
+        const auto each = [&](const auto& act) {
+            for (uint32_t t = 0; t < facets_.size(); ++t)
+                if (facets_[t].area > 0) act(t, parts_[facets_[t].part]);
+        };
+        each([&](uint32_t t, FlatPart& part) {
+            part.moments.add(facets_[t].area, cornersOf(t));
+            part.steps += facets_[t].area * glm::dmat3(facets_[t].steps);
+            part.curvature += facets_[t].area * glm::dmat3(facets_[t].curvature);
+        });
+        for (FlatPart& part : parts_) part.turnAxes();
+        eachBend([&](uint32_t one, uint32_t other, double turn, const glm::dvec3& edge) {
+            leanAt(one, other, turn, edge);
+            leanAt(other, one, turn, edge);
+        });
+        each([&](uint32_t t, FlatPart& part) {
+            for (const glm::dvec3& corner : cornersOf(t)) part.reachTo(corner);
+        });
+        for (FlatPart& part : parts_) part.measure();
+    }
+
+    FacetRecord recordOf(uint32_t t) const {
+        const Facet& facet = facets_[t];
+        if (!(facet.area > 0)) return {vec4(0), vec4(0), vec4(0)};
+        const FlatPart& part = parts_[facet.part];
+        const double scale = std::pow(wavelength_, 2) / (4 * std::numbers::pi);
+        const glm::dmat3 per_square = part.perSquare();
+        std::array<glm::dvec3, 2> axes;
+        axes[0] = Plane(facet.normal).maximum(part.steps / part.moments.area + std::max(scale, 1e-12) * per_square);
+        axes[1] = glm::cross(facet.normal, axes[0]);
+        std::array<double, 2> waves{}, steps{}, curvatures{};
+        std::array<bool, 2> curved{};
+        for (size_t k = 0; k < 2; ++k) {
+            if (part.bendsAlong(axes[k])) {
+                steps[k] = along(glm::dmat3(facet.steps), axes[k]);
+                curvatures[k] = along(part.curvature / part.moments.area, axes[k]);
+            }
+            const double inverse = along(per_square, axes[k]);
+            curved[k] = curvatures[k] > flat / 2 * std::sqrt(inverse);
+            waves[k] = scale * (curved[k] ? 1 / std::max(12 * along(smooth_[facet.smooth], axes[k]), 1e-12) : inverse);
+        }
+        if (!curved[0] && curved[1]) {
+            axes = {axes[1], -axes[0]};
+            for (std::array<double, 2>* pair : {&waves, &steps, &curvatures}) std::swap((*pair)[0], (*pair)[1]);
+            std::swap(curved[0], curved[1]);
+        }
+        if (!curved[0] && !curved[1])  // a plate of any shape returns A^2 / lambda^2
+            for (double& wave : waves) wave *= part.lengths[0] * part.lengths[1] / part.moments.area;
+        const auto direction = [&](size_t k, double shape) { return vec4(steps[k], waves[k], curvatures[k], shape); };
+        // The normals of a cone are on a circle, a facet's inside it: along the facet they lean by (1 + x^2) / 2 of
+        // their lean at its edges. The slope across, x in units of half the turn there, is 1 at the edges.
+        const bool leans = curved[0] && !curved[1] && part.turns > 0;
+        const double lean = leans ? glm::dot(part.lean, axes[1]) / part.turns / 2 : 0;
+        return {vec4(glm::vec3(glm::transpose(world_from_mesh_) * axes[0]), 0), direction(0, lean),
+                direction(1, leans ? lean * part.turns / part.fourths : 0)};
+    }
+
+    const types::Mesh& mesh_;
+    glm::dmat3 world_from_mesh_;
+    double wavelength_;
+    std::vector<Edge> edges_;
+    std::vector<Facet> facets_;
+    std::vector<glm::dmat3> smooth_;  ///< Mean square extents of the smooth parts [m^2].
+    std::vector<FlatPart> parts_;
+};
+
+}  // namespace
+
+std::vector<FacetRecord> facetLobes(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double wavelength,
+                                    const StraightEdges* edges) {
+    std::vector<FacetRecord> records = FacetLobes(mesh, world_from_mesh, wavelength).records();
+    for (size_t t = 0; edges && t < records.size(); ++t) records[t].axis.w = edges->encloses[t] ? 1.0f : 0.0f;
+    return records;
+}
+
+bool hasLobes(const types::Mesh& mesh, const MaterialLaws& laws) {
+    const auto hasLobe = [&](int material) { return laws.hasLobe(static_cast<size_t>(material)); };
+    return std::ranges::any_of(mesh.clusters, hasLobe, &types::Cluster::material) ||
+           std::ranges::any_of(mesh.maps, [&](const types::MappedMaterial& mapped) {
+               return std::ranges::any_of(mapped.map->materials, hasLobe);
+           });
+}
+
+glm::dmat3 worldFromMesh(const types::Geometry& geometry, size_t mesh) {
+    const auto placed = std::ranges::find(geometry.objects, static_cast<int>(mesh), &types::Object::mesh);
+    return placed == geometry.objects.end() ? glm::dmat3(1) : glm::dmat3(placed->world_from_object);
+}
+
+std::vector<FacetRecord> facetLobes(const types::Geometry& geometry, const MaterialLaws& laws) {
+    std::vector<FacetRecord> all;
+    if (!laws.hasLobes()) return all;
+    for (size_t i = 0; i < geometry.meshes.size(); ++i) {
+        const types::Mesh& mesh = geometry.meshes[i];
+        std::vector<FacetRecord> records(mesh.indices.size() / 3, FacetRecord{vec4(0), vec4(0), vec4(0)});
+        if (hasLobes(mesh, laws)) {
+            const glm::dmat3 world_from_mesh = worldFromMesh(geometry, i);
+            std::optional<StraightEdges> edges;
+            if (laws.sharp_turn) edges = straightEdges(mesh, world_from_mesh, *laws.sharp_turn);
+            records = facetLobes(mesh, world_from_mesh, laws.wavelength.value_or(0), edges ? &*edges : nullptr);
+        }
+        all.insert(all.end(), records.begin(), records.end());
+    }
+    return all;
+}
+
+}  // namespace insonify::sonar

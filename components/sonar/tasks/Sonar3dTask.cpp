@@ -1,0 +1,221 @@
+#include "components/sonar/tasks/Sonar3dTask.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "components/sonar/beams/Directivity.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr int default_samples = 4;  // of one beam, in each direction
+constexpr int64_t max_beams = int64_t{1} << 18;
+
+}  // namespace
+
+Sonar3dConfig::Sonar3dConfig() {
+    sonar.range = 20;
+    sonar.beam_height_deg = vertical.spacingDeg();
+}
+
+SonarConfig Sonar3dConfig::upright() const {
+    SonarConfig fan = standing();
+    if (fan.beam_pattern && fan.beam_pattern->hasElevation())
+        fan.quality.rows = Directivity(fan).rowsFor(*fan.quality.rows, !fan.tracesRays());
+    return fan;
+}
+
+SonarConfig Sonar3dConfig::standing() const {
+    SonarConfig fan = sonar;
+    fan.bearings_deg.clear();
+    for (int row = 0; row < vertical.beam_count; ++row) fan.bearings_deg.push_back(vertical.centreDeg(row));
+    fan.beam_width_deg = sonar.beam_height_deg;
+    fan.beam_height_deg = beamWidthDeg();
+    fan.quality.rows = sonar.quality.rows.value_or(default_samples);
+    fan.quality.columns_per_beam = sonar.quality.columns_per_beam.value_or(default_samples);
+    if (fan.beam_pattern)
+        for (ArrayConfig* array : {&fan.beam_pattern->transmit, &fan.beam_pattern->receive})
+            std::swap(array->azimuth, array->elevation);
+    return fan;
+}
+
+void Sonar3dConfig::check(types::Diagnostics& diagnostics) const {
+    const auto refuse = [&](const char* key, std::string why) { diagnostics.push_back({key, std::move(why)}); };
+    const int64_t beams = int64_t{horizontal.beam_count} * vertical.beam_count;
+    if (beams > max_beams)
+        refuse("horizontal.beam_count", fmt::format("is {}, with {} in the vertical {} beams; may be {}",
+                                                    horizontal.beam_count, vertical.beam_count, beams, max_beams));
+    if (sonar.beam_height_deg > 120)
+        refuse("beam_height_deg", fmt::format("is {:g} deg; one beam may have 120", sonar.beam_height_deg));
+    if (beamWidthDeg() > 120)
+        refuse("beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", beamWidthDeg()));
+    if (sonar.beam_geometry != BeamGeometry::Planar)
+        refuse("beam_geometry", "is conical; the beams of a 3-D sonar are planar, by azimuth and elevation");
+    if (sonar.quality.target_error || sonar.quality.budget_ms || sonar.quality.max_samples)
+        refuse("quality", "has a target; a 3-D sonar takes rows and columns_per_beam, of one beam");
+    if (sonar.beam_pattern && sonar.beam_pattern->transmit.azimuth)
+        refuse("beam_pattern.transmit.azimuth", "is given; a 3-D sonar is assumed to transmit equally in all azimuths");
+    if (diagnostics.empty()) standing().checkBeam(diagnostics);
+}
+
+std::map<std::string, std::string> Sonar3dTask::changedBy(const types::SonarSettings& asked) const {
+    types::SonarSettings of_all = asked;
+    of_all.field_of_view = of_all.beam_height = {};
+    of_all.beam_count = 0;
+    auto changed = PingTask::changedBy(of_all);
+    const BeamRow& row = config->horizontal;
+    const double view_deg = asked.field_of_view.isUnknown() ? row.field_of_view_deg : asked.field_of_view.deg();
+    const auto beams = asked.beam_count == 0 ? static_cast<uint32_t>(row.beam_count) : asked.beam_count;
+    if (view_deg != row.field_of_view_deg || beams != static_cast<uint32_t>(row.beam_count))
+        changed["horizontal"] = fmt::format("{{beam_count: {}, field_of_view_deg: {}}}", beams, view_deg);
+    if (const double height_deg = asked.beam_height.deg();
+        !asked.beam_height.isUnknown() && height_deg != config->sonar.beam_height_deg)
+        changed["beam_height_deg"] = fmt::format("{}", height_deg);
+    return changed;
+}
+
+RenderPlan Sonar3dTask::coverage(const types::Snapshot& scene) const {
+    SonarConfig fan = config->sonar;
+    fan.beam_width_deg.reset();
+    fan.beam_pattern.reset();  // that of one beam
+    fan.beam_count = config->horizontal.beam_count;
+    fan.field_of_view_deg = config->horizontal.field_of_view_deg;
+    fan.beam_height_deg = std::min(config->vertical.field_of_view_deg, fan.tracesRays() ? 180 : tallest_image_deg);
+    return makeRenderPlan(fan, *scene.geometry);
+}
+
+bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
+                             types::SonarTruth* truth_of_ping) {
+    const glm::dquat ahead = scene.sonar.orientation;
+    const glm::dquat stood_up = glm::angleAxis(types::radians(90), glm::dvec3(1, 0, 0));  // bearings become elevations
+    bool received = false;
+    renderer.setTruth(fan_, truth_of_ping ? &fan_truth_ : nullptr);
+    for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i] = {renderer.stages()[i].name, 0};
+    for (int column = 0; column < config->horizontal.beam_count; ++column) {
+        const double azimuth = types::radians(config->horizontal.centreDeg(column));
+        scene.sonar.orientation = ahead * glm::angleAxis(azimuth, glm::dvec3(0, 0, 1)) * stood_up;
+        renderer.render(scene, fan_);
+        for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i].seconds += renderer.stages()[i].seconds;
+        received = renderer.hasEchoes() || renderer.othersReceived() > 0 || received;
+        if (column == 0) shape(sample);
+        if (column == 0 && truth_of_ping) GridTruth::shape(sample, map_.vertical_size, *truth_of_ping, return_truth_);
+        addTo(sample, column, renderer);
+        if (truth_of_ping) grid_truth_.addTo(fan_, fan_truth_, static_cast<size_t>(column), *truth_of_ping);
+        if (wantsReturns()) detect(column, truth_of_ping != nullptr);
+    }
+    scene.sonar.orientation = ahead;
+    return received;
+}
+
+void Sonar3dTask::shape(types::Sonar& sample) {
+    const BeamRow &across = config->horizontal, &up = config->vertical;
+    const auto columns = static_cast<size_t>(across.beam_count), rows = static_cast<size_t>(up.beam_count);
+    sample.time = fan_.time;
+    sample.timestamps.clear();
+    static_cast<types::RangeBins&>(sample) = fan_;
+    sample.bin_count = fan_.bin_count;
+    sample.beam_count = static_cast<uint32_t>(columns);
+    sample.beam_width = types::Angle::fromDeg(config->beamWidthDeg());
+    sample.beam_height = types::Angle::fromDeg(up.field_of_view_deg);
+    sample.bearings.resize(columns);
+    for (int k = 0; k < across.beam_count; ++k)
+        sample.bearings[static_cast<size_t>(k)] = types::Angle::fromDeg(across.centreDeg(k));
+    sample.bins.assign(columns * fan_.bin_count, 0);
+    map_.time = fan_.time;
+    map_.vertical_size = static_cast<uint32_t>(rows);
+    map_.horizontal_size = static_cast<uint32_t>(columns);
+    map_.vertical_interval.resize(rows);
+    map_.horizontal_interval.resize(columns);
+    for (size_t row = 0; row < rows; ++row)  // from the top
+        map_.vertical_interval[row] = types::radians(up.centreDeg(static_cast<int>(row)));
+    for (size_t column = 0; column < columns; ++column)  // from the left
+        map_.horizontal_interval[column] = -types::radians(across.centreDeg(static_cast<int>(column)));
+    map_.distances.assign(rows * columns, types::DepthMap::too_far);
+    map_.remissions.assign(rows * columns, 0);
+    levels_.assign(rows * columns, 0);
+}
+
+void Sonar3dTask::addTo(types::Sonar& sample, int column, const SonarRenderer& renderer) {
+    float* const sum = sample.bins.data() + static_cast<size_t>(column) * sample.bin_count;
+    for (size_t i = 0; i < fan_.bins.size(); ++i) sum[i % fan_.bin_count] += fan_.bins[i];
+    if (fan_.beam_count < 2 || !renderer.takeAlike(fan_, alike_)) return;
+    // The sonar rings once: its mean over the beams that were summed remains.
+    const double too_many = 1 - 1.0 / fan_.beam_count;
+    for (size_t k = 0; k < fan_.bin_count; ++k) {
+        double ringing = 0;
+        for (size_t i = k; i < alike_.bins.size(); i += fan_.bin_count) ringing += double{alike_.bins[i]};
+        if (ringing > 0) sum[k] = std::max(0.0f, static_cast<float>(double{sum[k]} - too_many * ringing));
+    }
+}
+
+void Sonar3dTask::detect(int column, bool with_truth) {
+    detector_.take(fan_, config->detection, detectionRules());
+    const size_t from_left = map_.horizontal_size - 1 - static_cast<size_t>(column);
+    for (uint32_t beam = 0; beam < fan_.beam_count; ++beam)
+        if (const auto found = detector_.strongest(beam)) {
+            const size_t cell = size_t{map_.vertical_size - 1 - beam} * map_.horizontal_size + from_left;
+            map_.distances[cell] = static_cast<float>(found->range);
+            map_.remissions[cell] = found->intensity;
+            levels_[cell] = found->level;
+            if (with_truth) GridTruth::copyReturn(fan_truth_, beam, found->bin, cell, return_truth_);
+        }
+}
+
+void Sonar3dTask::writeMore(const types::Sonar& sample, const types::Pose& sonar) {
+    if (!wantsReturns()) return;
+    const double strongest = *std::max_element(levels_.begin(), levels_.end());
+    const double minimum = strongest * std::pow(10, config->detection.threshold_db / 10);
+    for (size_t cell = 0; cell < map_.distances.size(); ++cell)  // weak in the ping, if not in their azimuth
+        if (levels_[cell] < minimum) {
+            map_.distances[cell] = types::DepthMap::too_far;
+            map_.remissions[cell] = 0;
+            if (range_truth.connected()) GridTruth::forget(cell, return_truth_);
+        }
+    if (soundings.connected()) writePoints(sample, sonar);
+    if (range_truth.connected()) writeReturnTruth();
+    if (!range_image.connected()) return;
+    const auto image = maps_.take();
+    *image = map_;
+    maps_.stock(*image);
+    range_image.write(image);
+}
+
+void Sonar3dTask::findStrongest(const types::Sonar& sample, std::vector<uint32_t>& strongest) {
+    const std::vector<float>& fan = detectionRules().water;
+    summed_rules_.returns = detectionRules().returns;
+    summed_rules_.water.assign(fan.empty() ? 0 : sample.bins.size(), 0);
+    for (size_t beam = 0; beam < sample.beam_count; ++beam)  // each is the sum over all elevations
+        for (size_t i = 0; i < fan.size(); ++i)
+            summed_rules_.water[beam * sample.bin_count + i % sample.bin_count] += fan[i];
+    PingTask::findStrongest(sample, summed_rules_, strongest);
+}
+
+void Sonar3dTask::writeReturnTruth() {
+    const auto written = return_truths_.take();
+    nameObjects(return_truth_);
+    *written = return_truth_;
+    return_truths_.stock(*written);
+    range_truth.write(written);
+}
+
+void Sonar3dTask::writePoints(const types::Sonar& sample, const types::Pose& sonar) {
+    const auto cloud = clouds_.take();
+    cloud->clear();
+    cloud->reserve(map_.distances.size());
+    cloud->time = sample.time;
+    for (size_t row = 0; row < map_.vertical_size; ++row)
+        for (size_t column = 0; column < map_.horizontal_size; ++column) {
+            const size_t cell = row * map_.horizontal_size + column;
+            if (!std::isfinite(map_.distances[cell])) continue;
+            const glm::dvec3 offset = map_.direction(row, column) * static_cast<double>(map_.distances[cell]);
+            cloud->add(sonar.position + sonar.orientation * offset, static_cast<double>(map_.remissions[cell]));
+        }
+    clouds_.stock(*cloud, [this](types::PointCloud& other) { other.reserve(map_.distances.size()); });
+    soundings.write(cloud);
+}
+
+}  // namespace insonify::sonar

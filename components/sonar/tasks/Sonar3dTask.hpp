@@ -1,0 +1,116 @@
+#pragma once
+
+#include "components/framework/Properties.hpp"
+#include "components/sonar/bins/Detection.hpp"
+#include "components/sonar/bins/GridTruth.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
+#include "types/DepthMap.hpp"
+#include "types/PointCloud.hpp"
+
+namespace insonify::sonar {
+
+/** Beams side by side along one axis. */
+struct BeamRow {
+    int beam_count;
+    double field_of_view_deg;
+
+    /** Returns the centre of beam k [deg], counted from the lowest or from starboard. */
+    double centreDeg(int k) const { return field_of_view_deg * ((k + 0.5) / beam_count - 0.5); }
+    double spacingDeg() const { return field_of_view_deg / beam_count; }
+
+    static void describe(auto& self, auto& visit) {
+        visit({"beam_count", "1", "beams side by side", 1, 1024}, self.beam_count);
+        visit({"field_of_view_deg", "deg", "angle covered by the beams, edge to edge", 0.01, 180},
+              self.field_of_view_deg);
+    }
+};
+
+/** A grid of beams in azimuth and elevation. */
+struct Sonar3dConfig {
+    SonarConfig sonar;
+    BeamRow horizontal{256, 90}, vertical{64, 40};
+    DetectionConfig detection;
+
+    Sonar3dConfig();
+    /** Returns the beams of one azimuth as an upright fan: its bearings are their elevations, height becomes width, and
+     *  elevation becomes azimuth. With a pattern in azimuth, `quality.rows` of its rows are in the main lobe, and more
+     *  in the sidelobes. Valid for a configuration without diagnostics. */
+    SonarConfig upright() const;
+    double beamWidthDeg() const { return sonar.beam_width_deg.value_or(horizontal.spacingDeg()); }
+
+    static void describe(auto& self, auto& visit) {
+        SonarConfig::describeBeam(self.sonar, visit);
+        visit({"horizontal", "", "beams in azimuth"}, self.horizontal);
+        visit({"vertical", "", "beams in elevation"}, self.vertical);
+        visit({"detection", "", "how a beam's return is found"}, self.detection);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+
+private:
+    /** Returns the upright fan with `quality.rows` as configured. */
+    SonarConfig standing() const;
+};
+
+/** A 3-D sonar: narrow beams in a grid of azimuth and elevation. It reports each beam's strongest return.
+ *
+ *  Beam (row, column) looks along (cos e cos a, cos e sin a, sin e) of the sonar frame. `beam_width_deg` is its opening
+ *  in azimuth; the default is the spacing of the beams. `beam_height_deg` is its opening in elevation. The columns are
+ *  rendered one after the other as upright fans, all at the time of the ping. `quality.rows` are over the width of one
+ *  beam, with a pattern between its half-power points, and `columns_per_beam` over its height; the defaults are 4
+ * and 4.
+ *
+ *  It writes `range_image`: range and intensity of the strongest bin of each beam; `range_truth`: what that bin shows;
+ *  `soundings`: the same returns as points in the world; `ping`: for each azimuth the sum over all elevations, with its
+ *  `truth`. */
+class Sonar3dTask final : public PingTask {
+public:
+    using PingTask::PingTask;
+
+    framework::Properties<Sonar3dConfig> config{this};
+    framework::OutputPort<types::DepthMapPtr> range_image{
+        this, "range_image", "range and intensity of each beam's strongest return, rows from the top"};
+    framework::OutputPort<types::SonarTruthPtr> range_truth{
+        this, "range_truth",
+        "what each beam's strongest return shows: one bin for each cell of `range_image`, in its order"};
+    framework::OutputPort<types::PointCloudPtr> soundings{this, "soundings", "the same as points in the world"};
+
+    SonarConfig sonarConfig() const override { return config->upright(); }
+
+protected:
+    bool rendersOnce() const override { return false; }
+    std::span<const Stage> renderStages(const SonarRenderer&) const override { return fan_stages_; }
+    bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
+                    types::SonarTruth* truth_of_ping) override;
+    bool wantsTruth() const override { return PingTask::wantsTruth() || range_truth.connected(); }
+    RenderPlan coverage(const types::Snapshot& scene) const override;
+    void writeMore(const types::Sonar& sample, const types::Pose& sonar) override;
+    void findStrongest(const types::Sonar& sample, std::vector<uint32_t>& strongest) override;
+    /** Applies `field_of_view` and `beam_count` to a row of beams side by side, and `beam_height` to one beam. */
+    std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const override;
+
+private:
+    /** Writes the returns of one upright fan into a column of the map, and their truth if there is one. */
+    void detect(int column, bool with_truth);
+    /** Adds one upright fan to its beam of the ping, and the ring-down of the sonar once. */
+    void addTo(types::Sonar& sample, int column, const SonarRenderer& renderer);
+    void shape(types::Sonar& sample);
+    void writePoints(const types::Sonar& sample, const types::Pose& sonar);
+    void writeReturnTruth();
+    bool wantsReturns() const { return range_image.connected() || soundings.connected() || range_truth.connected(); }
+
+    types::Sonar fan_;            ///< Beams of one azimuth.
+    types::Sonar alike_;          ///< What all of these beams record alike.
+    sonar::Stages fan_stages_{};  ///< Sum over all azimuths of the last ping.
+    types::DepthMap map_;
+    std::vector<double> levels_;  ///< Of the return of each cell of the map, without spreading [1].
+    Detector detector_;
+    DetectionRules summed_rules_;  ///< Of the sums over all elevations.
+    GridTruth grid_truth_;
+    types::SonarTruth fan_truth_;     ///< Truth of one azimuth.
+    types::SonarTruth return_truth_;  ///< One bin for each cell of the map.
+    framework::SamplePool<types::DepthMap> maps_;
+    framework::SamplePool<types::PointCloud> clouds_;
+    framework::SamplePool<types::SonarTruth> return_truths_;
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,166 @@
+#include "components/sonar/tasks/TriggeredTask.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "components/framework/Activity.hpp"
+#include "components/framework/Properties.hpp"
+#include "types/Pose.hpp"
+#include "types/PosedMesh.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** Normalises a pose's quaternion. Returns why the pose cannot be used, null where it can. */
+const char* normalisePose(types::Pose& pose) {
+    const glm::dvec3& p = pose.position;
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return "the sonar's position is not finite";
+    const double length = glm::length(pose.orientation);
+    if (!std::isfinite(length)) return "the sonar's orientation is not finite";
+    if (length < 1e-6) return "the sonar's orientation is a quaternion of no length";
+    pose.orientation /= length;
+    return nullptr;
+}
+
+/** Returns the block of properties that has this one; the first where none has, whose error names it. */
+framework::PropertiesBase* blockWith(const std::string& property, const std::vector<framework::PropertiesBase*>& all) {
+    const auto has = [&](const framework::PropertiesBase* block) {
+        return std::ranges::any_of(block->list(), [&](const auto& each) { return each.name == property; });
+    };
+    const auto found = std::ranges::find_if(all, has);
+    return found == all.end() ? all.front() : *found;
+}
+
+}  // namespace
+
+double TriggeredTask::realtimePeriod() const { return activity().realtime() ? period_.period() : 0; }
+
+void TriggeredTask::resetTrigger() {
+    grid_ = makeBinGrid(sonarConfig());
+    shortest_ = std::numeric_limits<double>::infinity();
+    period_ = {};
+}
+
+void TriggeredTask::followSnapshot(const types::Snapshot& scene) {
+    const std::optional<Mark> before = std::exchange(before_, Mark{scene.time, scene.sonar.position});
+    const double seconds = before ? (scene.time - before->time).seconds() : 0;
+    jumped_ = false;
+    if (!(seconds > 0)) return;
+    shortest_ = std::min(shortest_, seconds);
+    period_.note(seconds);
+    const double way = glm::distance(scene.sonar.position, before->position);
+    const double fastest = 0.1 * grid_.speed_of_sound;
+    jumped_ = !(way <= fastest * seconds);
+    if (jumps_.isDue(jumped_))
+        warn(
+            fmt::format("the sonar has moved {:.4g} m in {:.4g} s, faster than a tenth of the speed of sound, {:.4g} "
+                        "m/s: it counts as repositioned, at rest unless its pose has a velocity",
+                        way, seconds, fastest));
+}
+
+bool TriggeredTask::takeGiven() {
+    types::SnapshotPtr sample;
+    types::Pose given;
+    if (snapshot.readNewest(sample) == framework::FlowStatus::NoData || !given_pose.readNew(given)) return false;
+    taken_.begun = now();
+    taken_.scene = *sample;
+    taken_.scene.sonar = given;
+    taken_.scene.time = given.time;
+    taken_.used = std::move(given);
+    return true;
+}
+
+std::map<std::string, std::string> TriggeredTask::changedBy(const types::SonarSettings& asked) const {
+    const SonarConfig config = sonarConfig();
+    std::map<std::string, std::string> changed;
+    const auto compare = [&](const char* name, double wanted, std::optional<double> now) {
+        if (std::isfinite(wanted) && wanted != now) changed[name] = fmt::format("{}", wanted);
+    };
+    const auto compareCount = [&](const char* name, uint32_t wanted, uint32_t now) {
+        if (wanted != 0 && wanted != now) changed[name] = fmt::format("{}", wanted);
+    };
+    compare("range", asked.range, config.range);
+    compare("frequency_khz", asked.frequency_khz, config.frequency_khz);
+    if (asked.speed_of_sound != 0)
+        compare("speed_of_sound", asked.speed_of_sound, config.speed_of_sound);
+    else if (own_speed_ && *own_speed_ != config.speed_of_sound)
+        changed["speed_of_sound"] = *own_speed_ ? fmt::format("{}", **own_speed_) : "null";
+    compare("field_of_view_deg", asked.field_of_view.deg(), config.field_of_view_deg);
+    compare("beam_height_deg", asked.beam_height.deg(), config.beam_height_deg);
+    compareCount("bin_count", asked.bin_count, static_cast<uint32_t>(config.bin_count));
+    compareCount("beam_count", asked.beam_count, static_cast<uint32_t>(config.beam_count));
+    return changed;
+}
+
+void TriggeredTask::applySettings(const types::SonarSettings& asked) {
+    const auto changed = changedBy(asked);
+    const auto before = sonarConfig().speed_of_sound;
+    if (!changed.empty()) blockWith(changed.begin()->first, properties())->setAll(changed);
+    if (asked.speed_of_sound == 0)
+        own_speed_.reset();
+    else if (!own_speed_ && changed.contains("speed_of_sound"))
+        own_speed_ = before;
+    if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
+}
+
+bool TriggeredTask::takeAsked() {
+    types::SonarSettings asked;
+    types::SnapshotPtr sample;
+    if (snapshot.readNewest(sample) == framework::FlowStatus::NoData || !settings.takeNext(asked)) return false;
+    try {
+        applySettings(asked);
+    } catch (const std::exception& refused) {
+        error(std::string("settings: ") + refused.what());
+        return false;
+    }
+    takeScene(*sample);
+    // A request from before the clock was set back would be ahead of it.
+    const types::Time latest = activity().realtime() ? std::min(asked.time, now()) : asked.time;
+    taken_.scene.time = std::max(taken_.scene.time, latest);
+    taken_.used.time = taken_.scene.time;
+    return true;
+}
+
+bool TriggeredTask::takeNext() {
+    if (given_pose.connected()) return takeGiven();
+    if (settings.connected()) return takeAsked();
+    types::SnapshotPtr sample;
+    if (!snapshot.takeNext(sample)) return false;
+    takeScene(*sample);
+    return true;
+}
+
+void TriggeredTask::takeScene(const types::Snapshot& scene) {
+    taken_.begun = now();
+    taken_.scene = scene;
+    if (activity().realtime() && taken_.scene.max_extrapolation > 0) {
+        taken_.scene.sonar = types::extrapolatePose(taken_.scene.sonar, taken_.begun, taken_.scene.max_extrapolation);
+        taken_.scene.time = taken_.scene.sonar.time;
+    }
+    taken_.used = taken_.scene.sonar;
+}
+
+const char* TriggeredTask::refusal() {
+    if (!taken_.scene.geometry) return "the snapshot has no geometry";
+    if (std::ranges::any_of(taken_.scene.moved, [count = taken_.scene.geometry->objects.size()](const auto& moved) {
+            return moved.object >= count;
+        }))
+        return "the snapshot moves an object that its geometry does not have";
+    if (taken_.scene.movable && std::ranges::any_of(*taken_.scene.movable, [&](uint32_t object) {
+            return object >= taken_.scene.geometry->objects.size();
+        }))
+        return "the snapshot has a movable object that its geometry does not have";
+    if (!types::deformsRightly(taken_.scene))
+        return "the snapshot deforms an object that its geometry does not have so";
+    if (const char* why = normalisePose(taken_.scene.sonar)) return why;
+    if (activity().realtime() && (taken_.scene.time - now()).seconds() > 1)
+        return "the snapshot's time is ahead of the clock by more than a second";
+    followSnapshot(taken_.scene);
+    return setLook(taken_.scene);
+}
+
+}  // namespace insonify::sonar
