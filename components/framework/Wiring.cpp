@@ -147,7 +147,8 @@ std::string Wiring::otherOwners(const std::string& key) const {
         if (std::ranges::any_of(task->properties(), has)) owners.push_back(entry.type);
     }
     if (owners.empty() || owners.size() > few) return "";
-    return fmt::format("; {} {} it", fmt::join(owners, " and "), owners.size() > 1 ? "have" : "has");
+    return owners.size() == 1 ? fmt::format("; {} has it", owners[0])
+                              : fmt::format("; {} have it", fmt::join(owners, " and "));
 }
 
 void Wiring::loadProperties(uint64_t seed) {
