@@ -1,14 +1,86 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "components/dds/Domain.hpp"
 #include "components/dds/RawType.hpp"
+#include "types/Describe.hpp"
 
 namespace insonify::dds {
+
+/** Owns an entity of Cyclone DDS; deletes it together with its children. */
+class Entity {
+public:
+    Entity() = default;
+    explicit Entity(int32_t handle) : handle_(handle) {}
+    Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
+    Entity& operator=(Entity&& other) noexcept;
+    ~Entity();
+    int32_t handle() const { return handle_; }
+
+private:
+    int32_t handle_ = 0;
+};
+
+/** Returns a participant of a DDS domain, with the settings of CYCLONEDDS_URI. `user_data` is announced with it. Throws
+ *  types::ConfigError with Cyclone's message if the domain cannot be joined: no such network interface, an error in the
+ *  settings, no free port. */
+Entity joinDomain(uint32_t id, std::string_view user_data);
+
+/** Returns `given`, else ROS_DOMAIN_ID, else 0. Throws types::ConfigError if ROS_DOMAIN_ID is not a number up to
+ *  232. */
+uint32_t domainId(std::optional<uint32_t> given);
+
+/** The highest domain for which UDP has ports. */
+inline constexpr uint32_t highest_domain = 232;
+
+// The messages by which ROS 2 nodes announce themselves: rmw_dds_common, field for field. See ros/GeometryMessages.hpp.
+/** Identifier of 16 bytes since ROS 2 Iron, 24 in Humble and before. */
+template <size_t size>
+struct Gid {
+    static constexpr const char* type_name = "rmw_dds_common/msg/Gid";
+    static constexpr const char* type_hash = "";
+    std::array<uint8_t, size> data{};
+
+    friend bool operator==(const Gid&, const Gid&) = default;
+    static void describe(auto& self, auto& visit) { visit({"data"}, self.data); }
+};
+
+template <size_t gid_size>
+struct NodeEntitiesInfo {
+    static constexpr const char* type_name = "rmw_dds_common/msg/NodeEntitiesInfo";
+    static constexpr const char* type_hash = "";
+    std::string node_namespace, node_name;
+    std::vector<Gid<gid_size>> reader_gid_seq, writer_gid_seq;
+
+    friend bool operator==(const NodeEntitiesInfo&, const NodeEntitiesInfo&) = default;
+    static void describe(auto& self, auto& visit) {
+        visit({"node_namespace"}, self.node_namespace);
+        visit({"node_name"}, self.node_name);
+        visit({"reader_gid_seq"}, self.reader_gid_seq);
+        visit({"writer_gid_seq"}, self.writer_gid_seq);
+    }
+};
+
+template <size_t gid_size>
+struct ParticipantEntitiesInfo {
+    static constexpr const char* type_name = "rmw_dds_common/msg/ParticipantEntitiesInfo";
+    static constexpr const char* type_hash =
+        gid_size == 16 ? "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e" : "";
+    Gid<gid_size> gid;
+    std::vector<NodeEntitiesInfo<gid_size>> node_entities_info_seq;
+
+    friend bool operator==(const ParticipantEntitiesInfo&, const ParticipantEntitiesInfo&) = default;
+    static void describe(auto& self, auto& visit) {
+        visit({"gid"}, self.gid);
+        visit({"node_entities_info_seq"}, self.node_entities_info_seq);
+    }
+};
 
 /** Reliability of ROS 2. A reliable reader, ROS 2's default, receives nothing from a best-effort writer. */
 enum class Reliability { Reliable, BestEffort };

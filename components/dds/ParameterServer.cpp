@@ -9,7 +9,6 @@
 #include <optional>
 #include <set>
 
-#include "components/dds/ParameterMessages.hpp"
 #include "components/ros/Cdr.hpp"
 #include "types/Ascii.hpp"
 #include "types/Reason.hpp"

@@ -21,6 +21,24 @@ Arrived unread(size_t topic, const std::string& type, const std::string& wanted)
 
 }  // namespace
 
+WorldWatch::Change WorldWatch::take(const PoseMessage& message) {
+    const auto isSame = [](const std::string& name, const PoseMessage::Entity& entity) { return name == entity.name; };
+    if (std::ranges::equal(last_names_, message.entities, isSame)) return {};
+    last_names_.clear();
+    for (const PoseMessage::Entity& entity : message.entities) last_names_.push_back(entity.name);
+    std::set<std::string> now(last_names_.begin(), last_names_.end());
+    if (!std::exchange(is_taken_, true)) known_ = now;
+    Change change;
+    for (const std::string& name : now)
+        if (!known_.contains(name) && reported_.insert(name).second) change.came.push_back(name);
+    for (const std::string& name : present_)
+        if (!now.contains(name) && known_.contains(name) && reported_.insert(name).second) change.went.push_back(name);
+    if (reported_.size() > max_reported)
+        std::erase_if(reported_, [&](const std::string& name) { return !now.contains(name); });
+    present_ = std::move(now);
+    return change;
+}
+
 void Inbox::put(Arrived message) {
     {
         const std::lock_guard lock(mutex_);

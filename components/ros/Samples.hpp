@@ -1,20 +1,94 @@
 #pragma once
 // The messages of each type of sample, and conversions both ways. Used by MCAP files, DDS and the viewer's channels.
+#include <string>
 #include <tuple>
 #include <type_traits>
 
 #include "components/ros/Clouds.hpp"
+#include "components/ros/GeometryMessages.hpp"
 #include "components/ros/InsonifyMessages.hpp"
-#include "components/ros/Messages.hpp"
 #include "components/ros/Navigation.hpp"
 #include "components/ros/Options.hpp"
-#include "components/ros/Pictures.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
+#include "components/ros/SensorMessages.hpp"
+#include "components/ros/SonarMessages.hpp"
 #include "components/ros/Stamps.hpp"
+#include "types/Image.hpp"
 #include "types/Samples.hpp"
 
 namespace insonify::ros {
+
+/** Converts a picture to sensor_msgs/Image: grey of 8 or 16 bits, RGB, BGR. Throws std::invalid_argument for other
+ *  modes, and for a picture without the pixels that it announces. */
+void convert(const types::Image& picture, const std::string& frame_id, Image& message);
+
+/** Converts back, for the same encodings. */
+void convert(const Image& message, types::Image& picture);
+
+// The list of all messages.
+// ROS 2 messages of std_msgs that hold one value: see GeometryMessages.hpp.
+struct Bool {
+    static constexpr const char* type_name = "std_msgs/msg/Bool";
+    static constexpr const char* type_hash = "RIHS01_feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9";
+    bool data = false;
+
+    static void describe(auto& self, auto& visit) { visit({"data"}, self.data); }
+};
+
+struct Int32 {
+    static constexpr const char* type_name = "std_msgs/msg/Int32";
+    static constexpr const char* type_hash = "RIHS01_b6578ded3c58c626cfe8d1a6fb6e04f706f97e9f03d2727c9ff4e74b1cef0deb";
+    int32_t data = 0;
+
+    static void describe(auto& self, auto& visit) { visit({"data"}, self.data); }
+};
+
+struct Int64 {
+    static constexpr const char* type_name = "std_msgs/msg/Int64";
+    static constexpr const char* type_hash = "RIHS01_8cd1048c2f186b6bd9a92472dc1ce51723c0833a221e2b7aecfff111774f4b49";
+    int64_t data = 0;
+
+    static void describe(auto& self, auto& visit) { visit({"data"}, self.data); }
+};
+
+struct Float32 {
+    static constexpr const char* type_name = "std_msgs/msg/Float32";
+    static constexpr const char* type_hash = "RIHS01_7170d3d8f841f7be3172ce5f4f59f3a4d7f63b0447e8b33327601ad64d83d6e2";
+    float data = 0;
+
+    static void describe(auto& self, auto& visit) { visit({"data"}, self.data); }
+};
+
+struct Float64 {
+    static constexpr const char* type_name = "std_msgs/msg/Float64";
+    static constexpr const char* type_hash = "RIHS01_705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a";
+    double data = 0;
+
+    static void describe(auto& self, auto& visit) { visit({"data"}, self.data); }
+};
+
+struct String {
+    static constexpr const char* type_name = "std_msgs/msg/String";
+    static constexpr const char* type_hash = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18";
+    std::string data;
+
+    static void describe(auto& self, auto& visit) { visit({"data"}, self.data); }
+};
+
+using MessageTypes =
+    std::tuple<Bool, Int32, Int64, Float32, Float64, String, Time, Header, Clock, Vector3, Point, Quaternion, Pose,
+               PoseStamped, PoseWithCovariance, Twist, TwistWithCovariance, Odometry, Transform, TransformStamped,
+               TFMessage, Image, LaserScan, PointField, PointCloud2, Range, PingInfo, SonarImageData,
+               ProjectedSonarImage, RawSonarImage, DetectionFlag, SonarRanges, SonarTruth, SonarReturns, SonarElements,
+               SonarSettings, Imu, FluidPressure, Dvl>;
+
+/** Calls `use(std::type_identity<T>{})` for each message. */
+void forEachMessage(auto&& use) {
+    [&]<class... T>(std::type_identity<std::tuple<T...>>) {
+        (use(std::type_identity<T>{}), ...);
+    }(std::type_identity<MessageTypes>{});
+}
 
 /** `type`: the messages that a T can become; the first is used in logs. `read_as`: the type that this message is read
  *  back as. */

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/asio/post.hpp>
 #include <chrono>
 #include <set>
 
@@ -53,6 +54,28 @@ uint64_t nanosecondsOf(types::Time stamp) {
 }
 
 }  // namespace
+
+bool SerialExecutors::run(const std::string& name, Work work) {
+    std::lock_guard lock(mutex_);
+    if (ending_) return false;
+    Executor& executor = executors_[name];
+    if (executor.waiting == max_waiting) return false;
+    ++executor.waiting;
+    boost::asio::post(executor.thread, [&executor, work = std::move(work)] {
+        --executor.waiting;
+        work();
+    });
+    return true;
+}
+
+void SerialExecutors::end() {
+    {
+        std::lock_guard lock(mutex_);
+        ending_ = true;
+        for (auto& [name, executor] : executors_) executor.thread.stop();
+    }
+    for (auto& [name, executor] : executors_) executor.thread.join();
+}
 
 Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Host host)
     : config_(config),

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/dataset/Run.hpp"
+#include "components/dataset/SampleFiles.hpp"
 #include "tests/support/Fans.hpp"
 
 namespace insonify::dataset {

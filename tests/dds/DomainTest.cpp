@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include "components/dds/DiscoveryMessages.hpp"
-#include "components/dds/Domain.hpp"
 #include "components/dds/Endpoints.hpp"
 #include "components/dds/Node.hpp"
 #include "components/ros/Cdr.hpp"

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "components/dds/Endpoints.hpp"
-#include "components/dds/ParameterMessages.hpp"
 #include "components/dds/ParameterServer.hpp"
 #include "components/ros/Cdr.hpp"
 #include "tests/dds/Ends.hpp"

@@ -4,10 +4,10 @@
 #include <random>
 #include <set>
 
-#include "components/dds/DiscoveryMessages.hpp"
 #include "components/dds/Endpoints.hpp"
+#include "components/dds/Node.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Messages.hpp"
+#include "components/ros/Samples.hpp"
 #include "tests/dds/Loopback.hpp"
 #include "tests/support/Paths.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "components/log/Reader.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Messages.hpp"
+#include "components/ros/Samples.hpp"
 #include "tests/deployer/Wall.hpp"
 
 using namespace insonify::deployer;

@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "components/framework/Activity.hpp"
-#include "components/framework/Watchdog.hpp"
+#include "components/framework/RealtimeExecutor.hpp"
 #include "tests/framework/Tasks.hpp"
 
 namespace insonify::framework {

@@ -3,8 +3,8 @@
 
 #include "components/gazebo/Discovery.hpp"
 #include "components/gazebo/Poses.hpp"
+#include "components/gazebo/Subscriptions.hpp"
 #include "components/gazebo/World.hpp"
-#include "components/gazebo/WorldWatch.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Fuzz.hpp"
 #include "types/ConfigError.hpp"

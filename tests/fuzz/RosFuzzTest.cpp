@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Messages.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
+#include "components/ros/Samples.hpp"
 #include "components/ros/Stamps.hpp"
 #include "components/ros/TransformTree.hpp"
 #include "tests/support/Fuzz.hpp"

@@ -4,8 +4,8 @@
 
 #include <limits>
 
+#include "components/gazebo/Subscriptions.hpp"
 #include "components/gazebo/World.hpp"
-#include "components/gazebo/WorldWatch.hpp"
 #include "components/scene/Drawings.hpp"
 #include "components/scene/MaterialNames.hpp"
 #include "tests/gazebo/Recordings.hpp"

@@ -22,18 +22,19 @@ const std::map<std::string, size_t> known{
 
 /** Folders and files in which the word has another meaning. */
 const std::multimap<std::string, std::string> other_meanings{
-    {"crosstalk", "components/sonar/effects/Imperfections.cpp"},       // Between a device's neighbouring beams.
-    {"crosstalk", "components/sonar/config/ImperfectionsConfig.hpp"},  // The same.
-    {"volume", "components/acoustics/Seabed"},                         // Scattering within a sediment.
-    {"volume", "components/deployer/BackscatterCommand.cpp"},          // The same.
-    {"volume", "components/scene/Clusters.cpp"},                       // The inside of a mesh.
-    {"volume", "components/scene/GltfFile.cpp"},                       // An extension of glTF.
-    {"volume", "components/sonar/rays/Scatterers"},                    // The space between the axes of a lattice.
-    {"volume", "components/sonar/rays/RayVisibility.cpp"},             // The space between the axes of an object.
-    {"volume", "types/MeshRays.hpp"},                                  // The space between a triangle and a ray.
+    {"crosstalk", "components/sonar/effects/Imperfections.cpp"},  // Between a device's neighbouring beams.
+    {"crosstalk", "components/sonar/config/SonarConfig.hpp"},     // The same.
+    {"volume", "components/acoustics/Seabed"},                    // Scattering within a sediment.
+    {"volume", "components/deployer/BackscatterCommand.cpp"},     // The same.
+    {"volume", "components/scene/Clusters.cpp"},                  // The inside of a mesh.
+    {"volume", "components/scene/GltfFile.cpp"},                  // An extension of glTF.
+    {"volume", "components/sonar/rays/Scatterers"},               // The space between the axes of a lattice.
+    {"volume", "components/sonar/rays/RayVisibility.cpp"},        // The space between the axes of an object.
+    {"volume", "types/MeshRays.hpp"},                             // The space between a triangle and a ray.
 };
 
-/** Code without its comments and includes, in lower case and without underscores: one spelling for all of an effect's names. */
+/** Code without its comments and includes, in lower case and without underscores: one spelling for all of an effect's
+ * names. */
 std::string namesIn(const Source& source) {
     static const std::regex line_comment("//.*");
     std::string text;

@@ -4,7 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "components/nav/Bottom.hpp"
+#include "components/nav/Dvl.hpp"
 #include "tests/support/Deformed.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Extent.hpp"

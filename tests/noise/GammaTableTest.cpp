@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "components/noise/GammaTable.hpp"
+#include "components/noise/Noise.hpp"
 
 namespace insonify::noise {
 namespace {

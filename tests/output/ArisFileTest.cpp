@@ -1,7 +1,6 @@
 // Reading of .aris files, made here by Sound Metrics' published layout, intact and damaged.
 #include <cmath>
 
-#include "components/output/ArisBeams.hpp"
 #include "components/output/ArisFile.hpp"
 #include "tests/output/RecordedFileTest.hpp"
 #include "tests/support/ArisRecording.hpp"

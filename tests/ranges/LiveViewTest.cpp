@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "components/viewer/FanPicture.hpp"
+#include "components/viewer/Messages.hpp"
 #include "components/viewer/PingPicture.hpp"
 #include "tests/support/Draw.hpp"
 #include "tests/support/Scenes.hpp"

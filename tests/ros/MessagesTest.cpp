@@ -4,9 +4,9 @@
 #include <fstream>
 
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Messages.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
+#include "components/ros/Samples.hpp"
 #include "components/ros/Schema.hpp"
 #include "tests/ros/Samples.hpp"
 #include "tests/support/Folder.hpp"

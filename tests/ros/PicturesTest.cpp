@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/ros/Pictures.hpp"
+#include "components/ros/Samples.hpp"
 #include "tests/support/Refused.hpp"
 
 namespace insonify::ros {

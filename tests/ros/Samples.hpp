@@ -1,6 +1,6 @@
 #pragma once
 
-#include "components/ros/Messages.hpp"
+#include "components/ros/Samples.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "components/sonar/renderer/Metrics.hpp"
-#include "components/sonar/surfaces/FacetCurves.hpp"
+#include "components/sonar/surfaces/FacetLobes.hpp"
 #include "components/study/FractalFloor.hpp"
 #include "components/study/StudyScene.hpp"
 #include "tests/support/ClosedForms.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/sonar/renderer/OthersReceived.hpp"
+#include "components/sonar/multipath/DirectSound.hpp"
 #include "types/Transmission.hpp"
 
 namespace insonify::sonar {

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <random>
 
-#include "components/sonar/surfaces/FacetCurves.hpp"
 #include "components/sonar/surfaces/FacetLobes.hpp"
 #include "components/sonar/surfaces/MeshEdges.hpp"
 #include "components/sonar/surfaces/StraightEdges.hpp"

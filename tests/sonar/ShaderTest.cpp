@@ -10,7 +10,7 @@
 #include "components/gpu/Program.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "components/sonar/raster/BinDeposit.hpp"
+#include "components/sonar/raster/PictureDeposit.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "components/ros/Messages.hpp"
+#include "components/ros/Samples.hpp"
 #include "components/ros/Schema.hpp"
 
 namespace insonify::test {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "components/viewer/FanPicture.hpp"
+#include "components/viewer/Messages.hpp"
 #include "tests/support/Fans.hpp"
 
 namespace insonify::viewer {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/viewer/SendQueue.hpp"
+#include "components/viewer/Session.hpp"
 
 namespace insonify::viewer {
 namespace {

@@ -4,7 +4,7 @@
 #include <future>
 #include <thread>
 
-#include "components/viewer/SerialExecutors.hpp"
+#include "components/viewer/Publisher.hpp"
 #include "tests/support/Waiting.hpp"
 
 namespace insonify::viewer {

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "components/sonar/multipath/DirectSound.hpp"
 #include "components/sonar/multipath/PathCells.hpp"
 #include "components/sonar/multipath/SharedBins.hpp"
-#include "components/sonar/multipath/Waveform.hpp"
 #include "components/sonar/multipath/WayPatterns.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
 

@@ -2,7 +2,7 @@
 #include <atomic>
 
 #include "components/sonar/bins/Estimators.hpp"
-#include "components/sonar/bins/TruthGrid.hpp"
+#include "components/sonar/bins/TruthTable.hpp"
 
 namespace insonify::sonar {
 namespace {

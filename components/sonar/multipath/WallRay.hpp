@@ -6,7 +6,7 @@
 
 #include "components/sonar/bins/Cells.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
-#include "components/sonar/surfaces/EchoTrain.hpp"
+#include "components/sonar/surfaces/WallLaws.hpp"
 
 namespace insonify::sonar {
 

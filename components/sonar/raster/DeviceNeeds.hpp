@@ -3,7 +3,7 @@
 
 #include "components/gpu/Limits.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "components/sonar/raster/BinDeposit.hpp"
+#include "components/sonar/raster/PictureDeposit.hpp"
 
 namespace insonify::sonar {
 

@@ -1,10 +1,152 @@
 #include "components/sonar/raster/PictureDeposit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <string>
+
+#include "components/gpu/EglContext.hpp"
+#include "components/gpu/Program.hpp"
+#include "components/gpu/ReadBack.hpp"
 
 namespace insonify::sonar {
 namespace {
+
+/** Returns a number as the sum of two floats: its float, and the rest. */
+vec2 pairOf(double number) {
+    constexpr double maximum = std::numeric_limits<float>::max();
+    const double held = std::clamp(number, -maximum, maximum);
+    const auto high = static_cast<float>(held);
+    return {high, static_cast<float>(held - static_cast<double>(high))};
+}
+
+/** Returns the inverse ranges of the bins' edges: for edge 0 that of the near blanking [1/m]. */
+std::vector<float> deviceEdges(const EchoRules& rules) {
+    std::vector<float> numbers;
+    for (int k = 0; k <= rules.bins.bin_count; ++k) {
+        const vec2 edge = pairOf(k == 0 ? rules.edges.front() : 1 / rules.bins.edge(k));
+        numbers.insert(numbers.end(), {edge.x, edge.y});
+    }
+    return numbers;
+}
+
+std::vector<DeviceShare> deviceShares(const std::vector<ShareRecord>& shares) {
+    std::vector<DeviceShare> all;
+    for (const ShareRecord& share : shares)
+        all.push_back({pairOf(share.middle), pairOf(share.limit), static_cast<float>(share.width),
+                       static_cast<float>(share.shear), share.beam, 0});
+    return all;
+}
+
+void setPair(GLint place, double number) {
+    const vec2 pair = pairOf(number);
+    glUniform2f(place, pair.x, pair.y);
+}
+
+void setFloat(GLint place, double number) { glUniform1f(place, static_cast<float>(number)); }
+
+/** The deposit as a compute shader: pictures stay on the device, only the sums are read back. */
+class GpuDeposit final : public BinDeposit {
+public:
+    GpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
+    void begin(const WaterView& water) override {
+        water_ = water;
+        device_sums_.clear();
+    }
+    void take(size_t frustum, const SurfacePass& surface) override;
+    std::span<const uint64_t> finish() override;
+
+private:
+    struct FrustumShares {
+        gpu::Buffer starts, shares;
+    };
+    void setUniforms(const ViewFrustum& frustum, const SurfacePass& surface) const;
+    struct Uniforms {
+        GLint image_size, bin_count, beam_stride, bin_width, attenuation, strength_scale, axis_cosine, axis_sine,
+            extent_u, extent_v, pixel_u, pixel_v, elevation_reach, upward, sonar_height, layer_count, first_elevation,
+            first_backscatter, first_facet, first_layer;
+    };
+
+    DepositSetup setup_;
+    const gpu::EglContext& context_;
+    const gpu::Program& program_;
+    Uniforms uniforms_;
+    GLuint first_elevation_ = 0, first_backscatter_ = 0, first_layer_ = 0;  ///< Indices in `numbers_` [1].
+    WaterView water_;                                                       ///< View of the current ping.
+    gpu::Buffer numbers_, device_sums_;
+    std::vector<FrustumShares> shares_;
+    gpu::ReadBack sums_;
+};
+
+GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
+    : setup_(setup), context_(context), program_(context.programs().compute("deposit.comp.glsl", setup.defines)) {
+    const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
+    uniforms_ = {
+        at("image_size"),     at("bin_count"),       at("beam_stride"),       at("bin_width"),   at("attenuation"),
+        at("strength_scale"), at("axis_cosine"),     at("axis_sine"),         at("extent_u"),    at("extent_v"),
+        at("pixel_u"),        at("pixel_v"),         at("elevation_reach"),   at("upward"),      at("sonar_height"),
+        at("layer_count"),    at("first_elevation"), at("first_backscatter"), at("first_facet"), at("first_layer")};
+    std::vector<float> numbers = deviceEdges(setup.rules);
+    const auto append = [&](const std::vector<double>& table) {
+        const auto first = static_cast<GLuint>(numbers.size());
+        for (const double number : table) numbers.push_back(static_cast<float>(number));
+        return first;
+    };
+    first_elevation_ = append(setup.rules.elevation_powers);
+    first_backscatter_ = append(setup.rules.laws.tables);
+    first_layer_ = append(setup.rules.layers);
+    numbers_ = gpu::Buffer::of(std::span<const float>(numbers));
+    device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
+    for (const ColumnShares& frustum : setup.shares)
+        shares_.push_back({gpu::Buffer::of(std::span(frustum.starts)),
+                           gpu::Buffer::of(std::span<const DeviceShare>(deviceShares(frustum.shares)))});
+    sums_ = gpu::ReadBack(setup.sumCount() * sizeof(uint64_t));
+}
+
+void GpuDeposit::setUniforms(const ViewFrustum& frustum, const SurfacePass& surface) const {
+    glUniform2i(uniforms_.image_size, frustum.columns, frustum.rows);
+    glUniform1ui(uniforms_.bin_count, static_cast<GLuint>(setup_.rules.bins.bin_count));
+    glUniform1ui(uniforms_.beam_stride, static_cast<GLuint>(setup_.rules.beamStride()));
+    setFloat(uniforms_.bin_width, setup_.rules.bins.bin_width);
+    setFloat(uniforms_.attenuation, setup_.rules.attenuation);
+    setFloat(uniforms_.strength_scale, setup_.rules.strength_scale);
+    setFloat(uniforms_.elevation_reach, setup_.rules.elevation_reach);
+    setPair(uniforms_.axis_cosine, std::cos(frustum.azimuth));
+    setPair(uniforms_.axis_sine, std::sin(frustum.azimuth));
+    setPair(uniforms_.extent_u, frustum.extent_u);
+    setPair(uniforms_.extent_v, frustum.extent_v);
+    setPair(uniforms_.pixel_u, frustum.du());
+    setPair(uniforms_.pixel_v, frustum.dv());
+    glUniform1ui(uniforms_.first_elevation, first_elevation_);  // without the feature its place is -1, which GL ignores
+    glUniform1ui(uniforms_.first_backscatter, first_backscatter_);
+    const size_t vectors = surface.scene().planes().size() * sizeof(PlaneRecord) / sizeof(vec4);
+    glUniform1ui(uniforms_.first_facet, static_cast<GLuint>(vectors));
+    if (uniforms_.layer_count < 0) return;
+    const glm::vec3 up(upwardIn(frustum, water_));
+    glUniform3f(uniforms_.upward, up.x, up.y, up.z);
+    setFloat(uniforms_.sonar_height, water_.height);
+    glUniform1ui(uniforms_.layer_count, static_cast<GLuint>(setup_.rules.layers.size() / 3));
+    glUniform1ui(uniforms_.first_layer, first_layer_);
+}
+
+void GpuDeposit::take(size_t frustum, const SurfacePass& surface) {
+    program_.use();
+    setUniforms(setup_.frusta[frustum], surface);
+    surface.bindResults(frustum);
+    shares_[frustum].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
+    shares_[frustum].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
+    numbers_.bindBase(GL_SHADER_STORAGE_BUFFER, NUMBERS_BINDING);
+    device_sums_.bindBase(GL_SHADER_STORAGE_BUFFER, SUMS_BINDING);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+    const auto groups = [](int pixels) { return static_cast<GLuint>((pixels + 7) / 8); };
+    glDispatchCompute(groups(setup_.frusta[frustum].columns), groups(setup_.frusta[frustum].rows), 1);
+}
+
+std::span<const uint64_t> GpuDeposit::finish() {
+    const auto alone = context_.transferring();
+    sums_.ask(device_sums_);
+    return {static_cast<const uint64_t*>(sums_.wait()), setup_.sumCount()};
+}
 
 /** Returns the first and end column of the frustum that any beam of [first, last) touches. */
 std::array<int, 2> touched(const ColumnShares& shares, uint first, uint last) {
@@ -18,6 +160,10 @@ std::array<int, 2> touched(const ColumnShares& shares, uint first, uint last) {
 }
 
 }  // namespace
+
+std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup, gpu::EglContext& context) {
+    return std::make_unique<GpuDeposit>(setup, context);
+}
 
 PictureDeposit::PictureDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context,
                                ThreadPool& threads)

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "components/sonar/rays/AngularView.hpp"
-#include "components/sonar/rays/DeformingTrees.hpp"
-#include "components/sonar/rays/TreesAhead.hpp"
+#include "components/sonar/rays/SceneTrees.hpp"
 #include "types/Snapshot.hpp"
 
 struct RTCRayHit16;

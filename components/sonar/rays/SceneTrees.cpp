@@ -1,8 +1,13 @@
 #include "components/sonar/rays/SceneTrees.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace insonify::sonar {
 namespace {
@@ -30,6 +35,13 @@ std::vector<uint64_t> keyOf(const std::vector<TreeObject>& objects) {
         for (int i = 0; i < 16; ++i) key.push_back(std::bit_cast<uint64_t>(object.place[i / 4][i % 4]));
     }
     return key;
+}
+
+constexpr double origin_spacing = 512;  // [m]
+
+/** Returns the distance from a place to the cell of places whose origin is `origin` [m]. */
+double distanceToCell(const glm::dvec3& place, const glm::dvec3& origin) {
+    return glm::length(glm::max(glm::abs(place - origin) - origin_spacing / 2, 0.0));
 }
 
 }  // namespace
@@ -168,6 +180,122 @@ SceneTrees::SceneTrees(const std::vector<TreeObject>& still, const std::vector<T
         top_->add(instance.mesh->tree(), object.place);
     }
     top_->commit();
+}
+
+struct DeformingTrees::Tree {
+    std::vector<glm::vec3> positions;  ///< About the origin, and one more.
+    std::vector<TreePart> parts;
+    std::unique_ptr<EmbreeScene> scene;
+};
+
+DeformingTrees::DeformingTrees() = default;
+DeformingTrees::~DeformingTrees() = default;
+DeformingTrees::DeformingTrees(DeformingTrees&&) noexcept = default;
+
+DeformingTrees& DeformingTrees::operator=(DeformingTrees&& other) noexcept {
+    top_ = std::move(other.top_);  // before the trees that it is of
+    trees_ = std::move(other.trees_);
+    objects_ = std::move(other.objects_);
+    return *this;
+}
+
+DeformingTrees::DeformingTrees(std::vector<Object> objects) : objects_(std::move(objects)) {
+    if (objects_.empty()) return;
+    trees_.resize(objects_.size());
+    for (size_t i = 0; i < objects_.size(); ++i) {
+        Tree& tree = trees_[i];
+        tree.positions = objects_[i].mesh->deformation->positions;
+        tree.positions.emplace_back();  // Embree reads 16 bytes at each position
+        tree.scene = std::make_unique<EmbreeScene>(EmbreeScene::Kind::Refitted);
+        for (const MaterialRun& run : materialRuns(*objects_[i].mesh)) {
+            tree.scene->add(*objects_[i].mesh, run, tree.positions);
+            tree.parts.push_back({static_cast<uint32_t>(tree.parts.size()), run.first_index / 3});
+        }
+        tree.scene->commit();
+    }
+    top_ = std::make_unique<EmbreeScene>(EmbreeScene::Kind::Refitted);
+    for (const Tree& tree : trees_) top_->add(*tree.scene, glm::dmat4(1));
+}
+
+void DeformingTrees::fit(size_t i, const glm::dmat4& place) {
+    Tree& tree = trees_[i];
+    const std::vector<glm::vec3>& from = objects_[i].mesh->positions;
+    for (size_t k = 0; k < from.size(); ++k) tree.positions[k] = place * glm::dvec4(from[k], 1);
+    tree.scene->recommit();
+}
+
+void DeformingTrees::join() {
+    if (top_) top_->recommit();
+}
+
+RTCScene DeformingTrees::scene(size_t i) const { return trees_[i].scene->scene(); }
+
+TreePart DeformingTrees::meaningIn(size_t i, uint32_t geometry) const {
+    const TreePart& part = trees_[i].parts[geometry];
+    return {objects_[i].first_command + part.command, part.first_triangle};
+}
+
+glm::dvec3 originNear(const glm::dvec3& sonar) { return origin_spacing * glm::round(sonar / origin_spacing); }
+
+std::vector<TreeObject> objectsAbout(const std::vector<TreeObject>& in_world, const glm::dvec3& origin) {
+    std::vector<TreeObject> objects = in_world;
+    for (TreeObject& object : objects) object.place[3] -= glm::dvec4(origin, 0);
+    return objects;
+}
+
+bool TreesAhead::follow(const glm::dvec3& sonar, const Objects& objects) {
+    const double way = before_ ? glm::distance(*before_, sonar) : 0;
+    before_ = sonar;
+    const int64_t version = version_;
+    if (objects != objects_) takeObjects(objects);
+    if (way == 0 && version == version_) return false;
+    const Origins origins = way > 0 && way <= near ? originsAround(sonar) : Origins();
+    if (origins.count == 0 && origins_.count == 0) return false;
+    if (version == version_ && std::ranges::is_permutation(origins.needed(), origins_.needed())) return false;
+    origins_ = origins;
+    return true;
+}
+
+void TreesAhead::takeObjects(const Objects& objects) {
+    if (!objects_ || *objects != *objects_) ++version_;
+    objects_ = objects;
+    size_t triangles = 0;
+    for (const TreeObject& object : *objects) triangles += object.mesh->indices.size() / 3;
+    max_count_ = std::clamp<size_t>(max_triangles / std::max<size_t>(triangles, 1), 2, max_origins);
+}
+
+TreesAhead::Origins TreesAhead::originsAround(const glm::dvec3& sonar) const {
+    const glm::dvec3 own = originNear(sonar);
+    Origins origins;
+    for (int corner = 0; corner < 8; ++corner) {
+        glm::dvec3 origin = own;
+        for (int axis = 0; axis < 3; ++axis)
+            if (corner >> axis & 1) origin[axis] += sonar[axis] < own[axis] ? -origin_spacing : origin_spacing;
+        const double distance = distanceToCell(sonar, origin);
+        if (distance > (needs(origin) ? kept : near)) continue;
+        size_t at = origins.count++;
+        for (; at > 0 && distanceToCell(sonar, origins.all[at - 1]) > distance; --at)
+            origins.all[at] = origins.all[at - 1];
+        origins.all[at] = origin;
+    }
+    origins.count = origins.count == 1 ? 0 : std::min(origins.count, max_count_);
+    return origins;
+}
+
+bool TreesAhead::needs(const glm::dvec3& origin) const { return std::ranges::count(origins_.needed(), origin) > 0; }
+
+void TreesAhead::send() {
+    MadeAhead::Items items;
+    for (const glm::dvec3& origin : origins_.needed()) {
+        items.push_back({{version_, std::bit_cast<int64_t>(origin.x), std::bit_cast<int64_t>(origin.y),
+                          std::bit_cast<int64_t>(origin.z)},
+                         [objects = objects_, origin](const std::atomic<bool>& quits) {
+                             const auto tree = StillTree::of(objectsAbout(*objects, origin));
+                             tree->tree(&quits);
+                             return tree;
+                         }});
+    }
+    ahead_.take(std::move(items));
 }
 
 }  // namespace insonify::sonar

@@ -16,7 +16,7 @@ constexpr double fall_to = 0.9, climb_to = 0.97, max_change = 4, min_climb = 1.0
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double watched_share = 0.2618034;  ///< Share of the pings; irrational, to cover all bearings of a head.
 constexpr int rarely = 16;  ///< One of this number of due pings is evaluated where the budget is used up.
-constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, has_fallen = 0.67, near_limit = 0.8;
+constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, has_fallen = 0.67, near_budget = 0.8;
 constexpr double min_look = 0.25;  ///< Min share of the worst error by which a target is lowered [1].
 constexpr double overhead = 0.15,
                  pings_to_choose = 100;  ///< Max total cost of new choices [share of the pings, pings].
@@ -109,7 +109,7 @@ bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene
 }
 
 bool QualityKeeper::mayChoose() const {
-    const bool no_time = budget_ && model_.at.samples() > near_limit * budget_->limit() / beams_;
+    const bool no_time = budget_ && model_.at.samples() > near_budget * budget_->limit() / beams_;
     return !no_time && choosing_ <= overhead * received_samples_ + pings_to_choose * model_.at.samples();
 }
 
@@ -137,7 +137,7 @@ void QualityKeeper::take(const ErrorModel& measured, SonarRenderer& renderer, co
 
 bool QualityKeeper::isDue() const {
     const auto watched = [](int64_t pings, double share) { return std::floor(static_cast<double>(pings) * share); };
-    const bool no_time = budget_ && model_.at.samples() > near_limit * budget_->limit() / beams_;
+    const bool no_time = budget_ && model_.at.samples() > near_budget * budget_->limit() / beams_;
     const bool is_first_turn = turn_ > 1 && pings_ <= turn_;
     if (no_time && change_ < 0 && since_change_ == settled) return true;
     if (is_first_turn && !no_time) return true;

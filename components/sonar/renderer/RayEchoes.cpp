@@ -11,7 +11,7 @@
 #include "components/sonar/bins/BinLevels.hpp"
 #include "components/sonar/bins/EchoField.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
-#include "components/sonar/bins/TruthGrid.hpp"
+#include "components/sonar/bins/TruthTable.hpp"
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/multipath/WallRays.hpp"
 #include "components/sonar/plan/EchoRenderer.hpp"
@@ -23,7 +23,6 @@
 #include "components/sonar/rays/TileDirections.hpp"
 #include "components/sonar/rays/TilePatches.hpp"
 #include "components/sonar/surfaces/DeformedMeshes.hpp"
-#include "components/sonar/surfaces/FacetCurves.hpp"
 #include "components/sonar/surfaces/FacetLobes.hpp"
 #include "components/sonar/surfaces/ObjectPlaces.hpp"
 

@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 
-#include "components/sonar/surfaces/FacetCurves.hpp"
 #include "components/sonar/surfaces/FacetLobes.hpp"
 #include "components/sonar/surfaces/NearestPoint.hpp"
 #include "components/sonar/surfaces/Planes.hpp"

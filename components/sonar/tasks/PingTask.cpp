@@ -11,9 +11,8 @@
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/SoundProfile.hpp"
 #include "components/framework/Activity.hpp"
-#include "components/sonar/beams/SentPower.hpp"
 #include "components/sonar/effects/Refraction.hpp"
-#include "components/sonar/multipath/Waveform.hpp"
+#include "components/sonar/multipath/DirectSound.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
 #include "types/ConfigError.hpp"
 

@@ -1,4 +1,4 @@
-#include "components/ros/Pictures.hpp"
+#include "components/ros/Samples.hpp"
 
 #include <limits>
 #include <stdexcept>
