@@ -14,7 +14,7 @@
 
 namespace insonify::sonar {
 
-// Each is defined in a file of this folder.
+// Defined in the folder effects.
 const Effect& absorption();
 const Effect& backscatter();
 const Effect& publishedMeans();
