@@ -16,7 +16,7 @@
 #include "components/output/FanImage.hpp"
 #include "components/output/PictureFiles.hpp"
 #include "components/output/SideScanImage.hpp"
-#include "components/output/Xtf.hpp"
+#include "components/recordings/Xtf.hpp"
 #include "types/Image.hpp"
 
 namespace insonify::deployer {
@@ -211,7 +211,7 @@ void exportXtf(log::Reader& log, const std::string& stream, const std::string& p
     const log::Stream& pings = pingsOf(log, stream, "an XTF file takes the lines of a side-scan");
     const Json meaning = meaningOf(log, pings);
     const bool codes = meaning.value("output", Json()) == "code";
-    const output::XtfFormat format{codes ? output::XtfSamples::Uint16 : output::XtfSamples::Float32,
+    const recordings::XtfFormat format{codes ? recordings::XtfSamples::Uint16 : recordings::XtfSamples::Float32,
                                    frequencyOf(meaning), to.filename().string()};
     const log::Stream* const placed = posesOf(log, poses);
     if (!placed)
@@ -221,8 +221,8 @@ void exportXtf(log::Reader& log, const std::string& stream, const std::string& p
     types::Sonar ping = firstPing(log, pings);
     refuseUnlessSideScan(log, pings.name, ping);
     output::ByteFile file(to);
-    std::vector<char> bytes = output::xtfHeader(format, ping);
-    output::XtfPing more;
+    std::vector<char> bytes = recordings::xtfHeader(format, ping);
+    recordings::XtfPing more;
     types::Time last;
     log.forEachRef(stream, [&](const log::SampleRef& at) {
         readPing(log, at, ping);
@@ -230,7 +230,7 @@ void exportXtf(log::Reader& log, const std::string& stream, const std::string& p
         more.altitude = altitudes.at(ping.time);
         more.since_last = last.isNull() ? 0 : (ping.time - last).seconds();
         last = ping.time;
-        output::appendXtfPing(format, ping, more, bytes);
+        recordings::appendXtfPing(format, ping, more, bytes);
         ++more.number;
         file.append(bytes);
         bytes.clear();

@@ -6,7 +6,7 @@
 
 #include "components/deployer/FanTasks.hpp"
 #include "components/deployer/RecordedLog.hpp"
-#include "components/output/FanFile.hpp"
+#include "components/recordings/FanFile.hpp"
 #include "types/Range.hpp"
 
 namespace insonify::deployer {
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using framework::DeploymentSpec;
-using output::FanFile, output::FanFrame;
+using recordings::FanFile, recordings::FanFrame;
 
 /** Returns what the file states of its tasks, for the metadata of a log without a deployment. */
 std::string fanTextOf(const FanFile& file) {
@@ -91,7 +91,7 @@ private:
 }  // namespace
 
 Imported importFan(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to) {
-    const auto file = output::openFan(recording);
+    const auto file = recordings::openFan(recording);
     std::optional<FanFrame> frame = file->next();
     if (!frame) {
         std::string why;

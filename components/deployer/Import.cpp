@@ -8,8 +8,8 @@
 #include "components/deployer/FanImport.hpp"
 #include "components/deployer/RecordedLog.hpp"
 #include "components/loader/ComponentLibrary.hpp"
-#include "components/output/FanFile.hpp"
-#include "components/output/SideScanFile.hpp"
+#include "components/recordings/FanFile.hpp"
+#include "components/recordings/SideScanFile.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/sonar/tasks/SideScanTask.hpp"
 #include "types/Range.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using framework::DeploymentSpec;
-using output::SideScanLine;
+using recordings::SideScanLine;
 
 /** Facts about a side-scan's recording that are needed before its first ping is written. */
 struct SideScanCodes {
@@ -31,7 +31,7 @@ struct SideScanCodes {
 
 SideScanCodes codesIn(const fs::path& recording) {
     SideScanCodes codes;
-    const auto file = output::openSideScan(recording);
+    const auto file = recordings::openSideScan(recording);
     for (auto line = file->next(); line; line = file->next(), ++codes.pings)
         for (const float bin : line->ping.bins) {
             codes.whole &= bin >= 0 && bin <= 65535 && std::floor(bin) == bin;
@@ -93,7 +93,7 @@ Imported importSideScan(const fs::path& recording, std::optional<DeploymentSpec>
     }
     RecordedLog log(recording, std::move(spec), sideScanText(codes), to);
     Imported imported{.stream = receiver + ".ping"};
-    const auto file = output::openSideScan(recording);
+    const auto file = recordings::openSideScan(recording);
     for (auto line = file->next(); line; line = file->next(), ++imported.pings) {
         log.set(propertiesOf(sonar, *line), line->ping.time);
         if (const types::Pose& pose = line->record.sonar; isUsable(pose)) {
@@ -135,8 +135,8 @@ Imported importRecording(const fs::path& recording, std::optional<DeploymentSpec
         throw types::ConfigError(recording.string(), "", "is a folder; give a recording in it");
     if (std::error_code none; fs::equivalent(recording, to, none))
         throw types::ConfigError(to.string(), "--to", "is the recording itself; the log must be another file");
-    const auto import = output::openSideScan(recording) ? importSideScan
-                        : output::openFan(recording)    ? importFan
+    const auto import = recordings::openSideScan(recording) ? importSideScan
+                        : recordings::openFan(recording)    ? importFan
                                                         : importOculus;
     return import(recording, std::move(spec), to);
 }

@@ -10,7 +10,7 @@ void XtfConfig::check(types::Diagnostics& diagnostics) const {
 }
 
 void XtfTask::check(types::Diagnostics& diagnostics) const {
-    if (config->samples != XtfSamples::Uint16) return;
+    if (config->samples != recordings::XtfSamples::Uint16) return;
     if (const std::string why = framework::whyNoCodes(ping); !why.empty())
         diagnostics.push_back({"samples", "is uint16, which takes whole numbers from 0 to 65535, but " + why +
                                               "; put a receiver with output: code and code: {bits: 16} before it, or "
@@ -37,14 +37,14 @@ void XtfTask::updateHook() {
 
 void XtfTask::write(const types::Sonar& line) {
     bytes_.clear();
-    if (next_.number == 0) bytes_ = xtfHeader(format_, line);
+    if (next_.number == 0) bytes_ = recordings::xtfHeader(format_, line);
     if (!has_pose_) {
         next_.sonar.position.x = types::Pose::unknown;
         ++without_pose_;
     }
     next_.since_last = last_.isNull() ? 0 : (line.time - last_).seconds();
     last_ = line.time;
-    appendXtfPing(format_, line, next_, bytes_);
+    recordings::appendXtfPing(format_, line, next_, bytes_);
     ++next_.number;
     put();
 }

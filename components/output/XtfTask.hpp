@@ -6,7 +6,7 @@
 #include "components/framework/StreamAligner.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/output/ByteFile.hpp"
-#include "components/output/Xtf.hpp"
+#include "components/recordings/Xtf.hpp"
 #include "types/Range.hpp"
 #include "types/RecurringDiagnostic.hpp"
 
@@ -14,7 +14,7 @@ namespace insonify::output {
 
 struct XtfConfig {
     std::string file = "sidescan.xtf";
-    XtfSamples samples = XtfSamples::Uint16;
+    recordings::XtfSamples samples = recordings::XtfSamples::Uint16;
     double frequency_khz = 0;
     double timeout = 1;
 
@@ -56,8 +56,8 @@ private:
     void write(const types::Sonar& line);
     void put();
 
-    XtfFormat format_;
-    XtfPing next_;
+    recordings::XtfFormat format_;
+    recordings::XtfPing next_;
     bool has_pose_ = false;
     uint64_t without_pose_ = 0, lost_ = 0;
     std::string failure_;

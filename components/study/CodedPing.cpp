@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "components/output/FanFile.hpp"
-#include "components/output/SideScanFile.hpp"
+#include "components/recordings/FanFile.hpp"
+#include "components/recordings/SideScanFile.hpp"
 #include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Quaternion.hpp"
@@ -53,7 +53,7 @@ std::vector<CodedPing> pingsOfSideScan(const fs::path& file, const receiver::Cod
     std::vector<types::Pose> sonars;
     std::vector<double> altitudes;
     double frequency_khz = 0;
-    const auto recording = output::openSideScan(file);
+    const auto recording = recordings::openSideScan(file);
     for (auto line = recording->next(); line; line = recording->next()) {
         frequency_khz = line->frequency_khz;
         sonars.push_back(line->record.sonar);
@@ -68,10 +68,10 @@ std::vector<CodedPing> pingsOfSideScan(const fs::path& file, const receiver::Cod
 
 std::vector<CodedPing> pingsOfFan(const fs::path& file, receiver::CodeConfig law) {
     std::vector<CodedPing> pings;
-    const auto recording = output::openFan(file);
+    const auto recording = recordings::openFan(file);
     const std::optional<double> dynamic_range = recording->dynamicRange();
     if (dynamic_range) law = {.law = receiver::CodeLaw::Log, .dynamic_range_db = *dynamic_range};
-    law.bits = output::FanFile::code_bits;
+    law.bits = recordings::FanFile::code_bits;
     for (auto frame = recording->next(); frame; frame = recording->next()) {
         pings.push_back(codedPing(frame->ping, law, fmt::format("recorded_{}", pings.size())));
         pings.back().law_known = dynamic_range.has_value();
@@ -240,8 +240,8 @@ std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, cons
     for (const fs::path& file : filesOf(names)) {
         const std::optional<LoggedPings> logged = readLog ? readLog(file) : std::nullopt;
         for (CodedPing& coded : logged                       ? pingsOfLog(*logged, assumed)
-                                : output::openSideScan(file) ? pingsOfSideScan(file, assumed)
-                                : output::openFan(file)      ? pingsOfFan(file, assumed)
+                                : recordings::openSideScan(file) ? pingsOfSideScan(file, assumed)
+                                : recordings::openFan(file)      ? pingsOfFan(file, assumed)
                                                              : pingsOfOculus(file)) {
             coded.file = file.string();
             const auto isSame = [&](const CodedPing& other) {

@@ -5,8 +5,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "components/output/SideScanImage.hpp"
-#include "components/output/Xtf.hpp"
-#include "components/output/XtfFile.hpp"
+#include "components/recordings/Xtf.hpp"
+#include "components/recordings/XtfFile.hpp"
 #include "tests/deployer/Command.hpp"
 #include "tests/support/Folder.hpp"
 
@@ -29,10 +29,10 @@ std::vector<char> wireXtf() {
     ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
     ping.beam_count = 2;
     ping.bin_count = 500;
-    const output::XtfFormat format{.frequency_khz = 450, .name = "wire.xtf"};
-    std::vector<char> bytes = output::xtfHeader(format, ping);
+    const recordings::XtfFormat format{.frequency_khz = 450, .name = "wire.xtf"};
+    std::vector<char> bytes = recordings::xtfHeader(format, ping);
     for (int i = 0; i < lines; ++i) {
-        output::XtfPing record;
+        recordings::XtfPing record;
         record.altitude = altitudeOf(i);
         record.number = static_cast<uint32_t>(i);
         record.sonar.position = {0.1 * i, 0, -2};  // so that the log has the sonar's poses
@@ -40,7 +40,7 @@ std::vector<char> wireXtf() {
         ping.bins.assign(1000, 10);
         for (const size_t bin : {0, 500}) ping.bins[bin] = 60000;
         ping.bins[static_cast<size_t>(std::hypot(ground_range, record.altitude) / ping.binStart(1))] = 50000;
-        output::appendXtfPing(format, ping, record, bytes);
+        recordings::appendXtfPing(format, ping, record, bytes);
     }
     return bytes;
 }
@@ -105,7 +105,7 @@ TEST_F(AltitudeRunTest, AReplayHasTheAltitudesOfTheRecording) {
 
 TEST_F(AltitudeRunTest, AnXtfFileOfAReplayHasTheAltitudesOfTheRecording) {
     ASSERT_EQ(callInsonify(folder_, {"replay", "wire.0.log", "side.yml", "--out", "out"}).code, 0);
-    output::XtfFile file(folder_ / "out/again.xtf");
+    recordings::XtfFile file(folder_ / "out/again.xtf");
     int count = 0;
     for (auto line = file.next(); line; line = file.next(), ++count)
         EXPECT_NEAR(line->record.altitude, altitudeOf(count), 1e-6) << count;

@@ -57,7 +57,7 @@ struct DeviceExportTest : testing::Test {
     }
     json readXtf(const std::string& name) const {
         return json::parse(
-            pythonSays(test::sourceFile("tests/output/read_xtf.py ") + (folder_ / name).string(), folder_ / "answer"));
+            pythonSays(test::sourceFile("tests/recordings/read_xtf.py ") + (folder_ / name).string(), folder_ / "answer"));
     }
     void expectRefused(const std::string& stream, const std::string& to, std::vector<std::string> more,
                        const std::string& why, const std::string& log = "out/lines.0.log") const {

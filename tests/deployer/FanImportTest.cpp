@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "components/log/Reader.hpp"
-#include "components/output/ArisFile.hpp"
+#include "components/recordings/ArisFile.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/ArisRecording.hpp"
 #include "tests/support/Folder.hpp"

@@ -1,21 +1,21 @@
 // Recordings of other makers' sonars, read by `insonify log import`.
 #include <gtest/gtest.h>
 
-#include "components/output/ArisFile.hpp"
-#include "components/output/GlfFile.hpp"
-#include "components/output/JsfFile.hpp"
-#include "components/output/XtfFile.hpp"
+#include "components/recordings/ArisFile.hpp"
+#include "components/recordings/GlfFile.hpp"
+#include "components/recordings/JsfFile.hpp"
+#include "components/recordings/XtfFile.hpp"
 #include "tests/support/Fuzz.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::fuzz {
 namespace {
 
-void expectSoundPing(const output::FanFrame& frame) {
+void expectSoundPing(const recordings::FanFrame& frame) {
     EXPECT_GE(frame.altitude, 0);
     EXPECT_GE(frame.window_start, 0);
 }
-void expectSoundPing(const output::SideScanLine& line) { EXPECT_GE(line.record.altitude, 0); }
+void expectSoundPing(const recordings::SideScanLine& line) { EXPECT_GE(line.record.altitude, 0); }
 
 /** @tparam File reads one format. */
 template <class File>
@@ -23,7 +23,7 @@ void readRecording(const Input& input) try {
     File file(input.file());
     while (const auto next = file.next()) {
         EXPECT_NO_THROW(next->ping.validate());
-        if (std::is_same_v<File, output::XtfFile>) {
+        if (std::is_same_v<File, recordings::XtfFile>) {
             EXPECT_LE(next->ping.bins.size(), input.bytes().size());
         }
         expectSoundPing(*next);
@@ -37,7 +37,7 @@ TEST(ArisFuzzTest, EveryFileIsPingsOrAnError) {
     push({"aris",
           "dive.aris",
           {std::string("\x44\x44\x46\x05", 4), std::string("\x01\0\0\0", 4)},
-          readRecording<output::ArisFile>});
+          readRecording<recordings::ArisFile>});
 }
 
 TEST(GlfFuzzTest, EveryFileIsPingsOrAnError) {
@@ -45,21 +45,21 @@ TEST(GlfFuzzTest, EveryFileIsPingsOrAnError) {
           "dive.glf",
           {std::string("PK\3\4", 4), std::string("*\2", 2), std::string("\x01\0\xEF\xEF", 4),
            std::string("\xDE\xDE", 2), std::string("\x78\x9C", 2)},
-          readRecording<output::GlfFile>});
+          readRecording<recordings::GlfFile>});
 }
 
 TEST(JsfFuzzTest, EveryFileIsPingsOrAnError) {
     push({"jsf",
           "line.jsf",
           {std::string("\x01\x16\x0D\0\x50\0\0\x14", 8), std::string("\x01\x16", 2)},
-          readRecording<output::JsfFile>});
+          readRecording<recordings::JsfFile>});
 }
 
 TEST(XtfFuzzTest, EveryFileIsPingsOrAnError) {
     push({"xtf",
           "line.xtf",
           {std::string("\xCE\xFA\0\0\x02\0", 6), std::string("\x7B\x01", 2)},
-          readRecording<output::XtfFile>});
+          readRecording<recordings::XtfFile>});
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ struct XtfTest : ::testing::Test {
         poses_.port.connectTo(task_.pose, framework::ConnPolicy::buffer(16));
         altitudes_.port.connectTo(task_.altitude, framework::ConnPolicy::buffer(16));
     }
-    void start(XtfSamples samples = XtfSamples::Uint16) {
+    void start(recordings::XtfSamples samples = recordings::XtfSamples::Uint16) {
         XtfConfig config;
         config.file = "line.xtf";
         config.samples = samples;
@@ -70,7 +70,7 @@ struct XtfTest : ::testing::Test {
     }
     /** Returns what PyPI's pyxtf reads from the file. */
     json readBack() {
-        return json::parse(pythonSays(test::sourceFile("tests/output/read_xtf.py ") + (folder_ / "line.xtf").string(),
+        return json::parse(pythonSays(test::sourceFile("tests/recordings/read_xtf.py ") + (folder_ / "line.xtf").string(),
                                       folder_ / "answer"));
     }
 
@@ -123,7 +123,7 @@ TEST_F(XtfTest, PyxtfReadsBackLinesAndTheirAttributes) {
 
 TEST_F(XtfTest, PyxtfReadsBackIntensitiesUnchanged) {
     NEED_PYXTF();
-    start(XtfSamples::Float32);
+    start(recordings::XtfSamples::Float32);
     types::Sonar ping = pingLine(2'000'000);
     ping.bins[0] = 1.25e-7f;
     give(towed(2'000'000));

@@ -10,8 +10,8 @@
 #include "components/log/Writer.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "components/output/FanShape.hpp"
-#include "components/output/SideScanFile.hpp"
-#include "components/output/Xtf.hpp"
+#include "components/recordings/SideScanFile.hpp"
+#include "components/recordings/Xtf.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/sonar/bins/Detection.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
@@ -116,10 +116,10 @@ double xtfRange(const Rendered& made, const std::filesystem::path& path) {
     line.resize(made.ping.bin_count, 2);
     line.bins.assign(line.bins.size(), 1);
     line.bearings = {types::Angle::fromDeg(-30), types::Angle::fromDeg(30)};
-    std::vector<char> bytes = output::xtfHeader({output::XtfSamples::Float32, 0, "x"}, line);
-    output::appendXtfPing({output::XtfSamples::Float32, 0, "x"}, line, {}, bytes);
+    std::vector<char> bytes = recordings::xtfHeader({recordings::XtfSamples::Float32, 0, "x"}, line);
+    recordings::appendXtfPing({recordings::XtfSamples::Float32, 0, "x"}, line, {}, bytes);
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    const auto read = output::openSideScan(path)->next();
+    const auto read = recordings::openSideScan(path)->next();
     return read ? read->ping.binStart(made.first + 0.5) : 0;
 }
 

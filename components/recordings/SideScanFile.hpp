@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 
-#include "components/output/RecordedFile.hpp"
-#include "components/output/Xtf.hpp"
+#include "components/recordings/RecordedFile.hpp"
+#include "components/recordings/Xtf.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 /** A ping of a recording and further values of its record. */
 struct SideScanLine {
@@ -43,4 +43,4 @@ protected:
 /** Opens a recording by its content; returns null for a file that is not a recording of a side-scan. */
 std::unique_ptr<SideScanFile> openSideScan(const std::filesystem::path& path);
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "components/output/FanFile.hpp"
-#include "components/output/ZipEntry.hpp"
+#include "components/recordings/FanFile.hpp"
+#include "components/recordings/ZipEntry.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 /** Reads the images of a .glf file (Tritech Gemini), of the first sonar in it. A .glf file is an archive whose .dat
  *  file has the records.
@@ -59,4 +59,4 @@ private:
     size_t zooms_ = 0, videos_ = 0, inverted_ = 0;
 };
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

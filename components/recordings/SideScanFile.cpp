@@ -1,9 +1,9 @@
-#include "components/output/SideScanFile.hpp"
+#include "components/recordings/SideScanFile.hpp"
 
-#include "components/output/JsfFile.hpp"
-#include "components/output/XtfFile.hpp"
+#include "components/recordings/JsfFile.hpp"
+#include "components/recordings/XtfFile.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 std::unique_ptr<SideScanFile> openSideScan(const std::filesystem::path& path) {
     if (XtfFile::isOne(path)) return std::make_unique<XtfFile>(path);
@@ -11,4 +11,4 @@ std::unique_ptr<SideScanFile> openSideScan(const std::filesystem::path& path) {
     return nullptr;
 }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "components/output/GlfFile.hpp"
-#include "tests/output/RecordedFileTest.hpp"
+#include "components/recordings/GlfFile.hpp"
+#include "tests/recordings/RecordedFileTest.hpp"
 #include "tests/support/GlfRecording.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 using test::glfFile, test::GlfImage, test::glfLog, test::glfRecord, test::joinedBytes, test::putAt, test::zipped;
@@ -212,4 +212,4 @@ TEST_F(GlfFileTest, NoticesAWrongByteOfTheSamplesByTheChecksum) {
 }
 
 }  // namespace
-}  // namespace insonify::output
+}  // namespace insonify::recordings

@@ -1,13 +1,13 @@
-#include "components/output/FanFile.hpp"
+#include "components/recordings/FanFile.hpp"
 
 #include <fmt/format.h>
 
-#include "components/output/ArisFile.hpp"
-#include "components/output/GlfFile.hpp"
+#include "components/recordings/ArisFile.hpp"
+#include "components/recordings/GlfFile.hpp"
 #include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 std::optional<FanFrame> FanFile::next() {
     if (!damage_.empty()) return std::nullopt;
@@ -68,4 +68,4 @@ std::unique_ptr<FanFile> openFan(const std::filesystem::path& path) {
     return nullptr;
 }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

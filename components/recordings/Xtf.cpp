@@ -1,4 +1,4 @@
-#include "components/output/Xtf.hpp"
+#include "components/recordings/Xtf.hpp"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include <stdexcept>
 
 #include "components/output/Sides.hpp"
-#include "components/output/XtfLayout.hpp"
+#include "components/recordings/XtfLayout.hpp"
 #include "types/Angle.hpp"
 #include "types/Quaternion.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 /** A block of zeros with fields; offsets are those of the format's tables. */
@@ -173,4 +173,4 @@ void appendXtfPing(const XtfFormat& format, const types::Sonar& ping, const XtfP
     bytes.resize(begin + size);
 }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

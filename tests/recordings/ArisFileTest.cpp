@@ -1,11 +1,11 @@
 // Reading of .aris files, made here by Sound Metrics' published layout, intact and damaged.
 #include <cmath>
 
-#include "components/output/ArisFile.hpp"
-#include "tests/output/RecordedFileTest.hpp"
+#include "components/recordings/ArisFile.hpp"
+#include "tests/recordings/RecordedFileTest.hpp"
 #include "tests/support/ArisRecording.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 using test::ArisFrame, test::arisFile, test::putAt;
@@ -189,4 +189,4 @@ TEST_F(ArisFileTest, EveryDamagedByteGivesPingsOrOneError) {
 }
 
 }  // namespace
-}  // namespace insonify::output
+}  // namespace insonify::recordings

@@ -1,4 +1,4 @@
-#include "components/output/JsfFile.hpp"
+#include "components/recordings/JsfFile.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <ctime>
 #include <utility>
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 /** Offsets of a message's fields [B]. */
@@ -211,4 +211,4 @@ std::vector<std::string> JsfFile::notices() const {
     return all;
 }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

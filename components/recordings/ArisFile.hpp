@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
-#include "components/output/FanFile.hpp"
+#include "components/recordings/FanFile.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 /** Models of the ARIS, by their numbers in the file. */
 enum class ArisModel : uint32_t { Aris1800 = 0, Aris3000 = 1, Aris1200 = 2 };
@@ -49,4 +49,4 @@ private:
     std::optional<bool> has_place_;  ///< Whether the first frame has a position on the earth.
 };
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

@@ -1,16 +1,16 @@
 // Reading of XTF files: files written here, those of other programs, and damaged files.
 #include <gmock/gmock.h>
 
-#include "components/output/XtfFile.hpp"
-#include "components/output/XtfLayout.hpp"
-#include "tests/output/RecordedFileTest.hpp"
+#include "components/recordings/XtfFile.hpp"
+#include "components/recordings/XtfLayout.hpp"
+#include "tests/recordings/RecordedFileTest.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/RecordedBytes.hpp"
 #include "types/ConfigError.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 using test::putAt;
@@ -263,4 +263,4 @@ TEST_F(XtfFileTest, TheWaterColumnOfARealFileIsDarkUpToTheAltitude) {
 }
 
 }  // namespace
-}  // namespace insonify::output
+}  // namespace insonify::recordings

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "components/output/SideScanFile.hpp"
+#include "components/recordings/SideScanFile.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 /** Reads the side-scan pings of an XTF file, also of other programs: the first channel to port and the first to
  *  starboard.
@@ -69,4 +69,4 @@ private:
     size_t without_side_ = 0;
 };
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

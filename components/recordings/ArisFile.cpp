@@ -1,10 +1,10 @@
-#include "components/output/ArisFile.hpp"
+#include "components/recordings/ArisFile.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 constexpr double aris_3000_128[] = {
@@ -208,4 +208,4 @@ std::optional<FanFrame> ArisFile::read() {
     return found;
 }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

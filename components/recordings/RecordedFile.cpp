@@ -1,4 +1,4 @@
-#include "components/output/RecordedFile.hpp"
+#include "components/recordings/RecordedFile.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "types/ConfigError.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 RecordedFile::RecordedFile(const std::filesystem::path& path, const char* kind)
     : path_(path), file_(path, std::ios::binary) {
@@ -75,4 +75,4 @@ std::vector<std::string> RecordedFile::notices() const {
     return all;
 }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

@@ -1,4 +1,4 @@
-#include "components/output/GlfFile.hpp"
+#include "components/recordings/GlfFile.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 namespace glf {
@@ -245,4 +245,4 @@ std::vector<std::string> GlfFile::notices() const {
     return all;
 }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

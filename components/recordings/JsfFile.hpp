@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "components/output/SideScanFile.hpp"
+#include "components/recordings/SideScanFile.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 /** Reads the side-scan pings of a JSF file (EdgeTech, 0004824 and 0023492: messages of type 80, channel 0 to port and 1
  *  to starboard). Reads the first subsystem of 20, 21 and 22 that occurs.
@@ -53,4 +53,4 @@ private:
     std::map<int, size_t> other_formats_;     ///< By data format.
 };
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

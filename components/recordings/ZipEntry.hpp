@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 /** Reads a file in a zip archive from beginning to end. The archive's directory is not needed, so that a truncated
  *  archive, which libraries refuse, can be read up to its end. */
@@ -35,4 +35,4 @@ private:
     std::unique_ptr<Source> source_;
 };
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

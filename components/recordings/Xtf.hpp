@@ -9,7 +9,7 @@
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 /** The type of a line's numbers: integers of 16 bits, which every program reads, or the bins unchanged. */
 enum class XtfSamples { Uint16, Float32 };
@@ -39,9 +39,9 @@ std::vector<char> xtfHeader(const XtfFormat& format, const types::Sonar& ping);
  *  65535. */
 void appendXtfPing(const XtfFormat& format, const types::Sonar& ping, const XtfPing& more, std::vector<char>& bytes);
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings
 
 template <>
-struct insonify::types::EnumNames<insonify::output::XtfSamples> {
+struct insonify::types::EnumNames<insonify::recordings::XtfSamples> {
     static constexpr std::string_view names[] = {"uint16", "float32"};
 };

@@ -14,7 +14,7 @@
 #include "tests/support/RecordedBytes.hpp"
 #include "tests/support/Refused.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 using test::RecordedBytes;
 
@@ -81,4 +81,4 @@ inline RecordedBytes randomSamples(size_t count, std::mt19937& random) {
     return samples;
 }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

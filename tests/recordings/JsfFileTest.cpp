@@ -1,12 +1,12 @@
 // Reading of JSF files, made here by EdgeTech's published layout, intact and damaged.
 #include <gmock/gmock.h>
 
-#include "components/output/JsfFile.hpp"
-#include "tests/output/RecordedFileTest.hpp"
+#include "components/recordings/JsfFile.hpp"
+#include "tests/recordings/RecordedFileTest.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/RecordedBytes.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 using test::putAt;
@@ -149,4 +149,4 @@ TEST_F(JsfFileTest, EveryDamagedByteGivesPingsOrOneError) {
 }
 
 }  // namespace
-}  // namespace insonify::output
+}  // namespace insonify::recordings

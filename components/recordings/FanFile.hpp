@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "components/output/RecordedFile.hpp"
+#include "components/recordings/RecordedFile.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 /** A ping of a recording and further values of its record. */
 struct FanFrame {
@@ -53,4 +53,4 @@ private:
 /** Opens a recording by its content; returns null for a file that is not a recording of an ARIS or a Gemini. */
 std::unique_ptr<FanFile> openFan(const std::filesystem::path& path);
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace insonify::output::xtf {
+namespace insonify::recordings::xtf {
 
 static_assert(std::endian::native == std::endian::little,
               "numbers are copied in host order, which must be little endian");
@@ -48,4 +48,4 @@ inline constexpr size_t size = 64, channel = 0, slant_range = 4, duration = 16, 
                         sample_count = 42, weight = 58;
 }  // namespace channel_header
 
-}  // namespace insonify::output::xtf
+}  // namespace insonify::recordings::xtf

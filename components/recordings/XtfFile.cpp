@@ -1,4 +1,4 @@
-#include "components/output/XtfFile.hpp"
+#include "components/recordings/XtfFile.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <ctime>
 
-#include "components/output/XtfLayout.hpp"
+#include "components/recordings/XtfLayout.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 double floatAt(std::span<const char> bytes, size_t at) { return static_cast<double>(field<float>(bytes, at)); }
@@ -284,4 +284,4 @@ std::vector<std::string> XtfFile::notices() const {
     return all;
 }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

@@ -1,4 +1,4 @@
-#include "components/output/ZipEntry.hpp"
+#include "components/recordings/ZipEntry.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -7,10 +7,10 @@
 #include <fstream>
 #include <vector>
 
-#include "components/output/RecordedFile.hpp"
+#include "components/recordings/RecordedFile.hpp"
 #include "types/ConfigError.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 namespace {
 
 namespace zip {
@@ -159,4 +159,4 @@ uint64_t ZipEntry::at() const { return source_->at; }
 
 const std::string& ZipEntry::diagnostic() const { return source_->diagnostic; }
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings

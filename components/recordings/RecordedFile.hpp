@@ -17,7 +17,7 @@
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 
-namespace insonify::output {
+namespace insonify::recordings {
 
 /** The point on the earth that becomes x = y = 0 of the world. The first position sets it. */
 class LocalOrigin {
@@ -124,4 +124,4 @@ private:
     size_t without_pose_ = 0;
 };
 
-}  // namespace insonify::output
+}  // namespace insonify::recordings
