@@ -6,7 +6,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "components/command/Sha256.hpp"
+#include "components/console/Sha256.hpp"
 #include "components/dataset/SampleFiles.hpp"
 #include "components/dataset/StatisticsPage.hpp"
 
@@ -168,7 +168,7 @@ void Collection::writeManifest() {
         ++in_part[record["part"].get<std::string>()];
         const std::string name = store_.stemOf(record["index"]) + ".json";
         for (const auto& [file, sum] : record["files"].items()) all[file] = sum;
-        all[name] = command::sha256OfFile(store_.folder() / name);
+        all[name] = console::sha256OfFile(store_.folder() / name);
     });
     for (const auto& [name, sum] : files_.items()) all[name] = sum;
     Json manifest{{"version", title_.version},

@@ -4,6 +4,6 @@
 
 INSONIFY_COMPONENT_LIBRARY;
 
-extern "C" void insonify_add_command(CLI::App& app, insonify::command::Action& action) {
+extern "C" void insonify_add_command(CLI::App& app, insonify::console::Action& action) {
     insonify::dataset::addCommand(app, action);
 }

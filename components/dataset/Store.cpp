@@ -11,8 +11,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "components/command/Json.hpp"
-#include "components/command/Sha256.hpp"
+#include "components/console/Json.hpp"
+#include "components/console/Sha256.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dataset {
@@ -47,7 +47,7 @@ std::string bytesOf(const fs::path& file) {
 
 std::string sumOf(Json record) {
     record.erase("sum");
-    return command::sha256Of(textOf(record));
+    return console::sha256Of(textOf(record));
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ void Store::refuseOthers() const {
 
 std::string Store::stemOf(uint64_t index) const {
     return fmt::format("{:06}_{}", index,
-                       command::sha256Of(fmt::format("{}\n{}", digest_, index)).substr(0, hash_digits));
+                       console::sha256Of(fmt::format("{}\n{}", digest_, index)).substr(0, hash_digits));
 }
 
 std::string Store::put(const std::string& name, const std::function<void(const fs::path&)>& writer) {
@@ -89,7 +89,7 @@ std::string Store::put(const std::string& name, const std::function<void(const f
         const fs::path passing = folder_ / passingName(name);
         try {
             writer(passing);
-            const std::string sum = command::sha256OfFile(passing);
+            const std::string sum = console::sha256OfFile(passing);
             fs::rename(passing, folder_ / name);
             return sum;
         } catch (...) {
@@ -118,7 +118,7 @@ void Store::putRecord(uint64_t index, Json record) {
 std::optional<Json> Store::record(uint64_t index) const {
     const fs::path file = folder_ / (stemOf(index) + ".json");
     if (!fs::exists(file)) return std::nullopt;
-    Json record = command::readJson(bytesOf(file), deepest_record);
+    Json record = console::readJson(bytesOf(file), deepest_record);
     if (!record.is_object() || record.value("sum", Json()) != sumOf(record)) return std::nullopt;
     return record;
 }
@@ -127,7 +127,7 @@ bool Store::has(uint64_t index) const {
     const std::optional<Json> found = record(index);
     if (!found) return false;
     for (const auto& [name, sum] : (*found)["files"].items())
-        if (!fs::exists(folder_ / name) || command::sha256OfFile(folder_ / name) != sum.get<std::string>())
+        if (!fs::exists(folder_ / name) || console::sha256OfFile(folder_ / name) != sum.get<std::string>())
             return false;
     return true;
 }

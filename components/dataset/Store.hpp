@@ -4,11 +4,11 @@
 #include <optional>
 #include <string>
 
-#include "components/command/Json.hpp"
+#include "components/console/Json.hpp"
 
 namespace insonify::dataset {
 
-using command::Json;
+using console::Json;
 
 /** Returns JSON in one line. Replaces invalid UTF-8. */
 std::string textOf(const Json& json);

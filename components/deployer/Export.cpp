@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "components/command/Console.hpp"
+#include "components/console/Console.hpp"
 #include "components/deployer/LoggedTrack.hpp"
 #include "components/deployer/StreamMeaning.hpp"
 #include "components/loader/ComponentLibrary.hpp"
@@ -212,10 +212,10 @@ void exportXtf(log::Reader& log, const std::string& stream, const std::string& p
     const Json meaning = meaningOf(log, pings);
     const bool codes = meaning.value("output", Json()) == "code";
     const recordings::XtfFormat format{codes ? recordings::XtfSamples::Uint16 : recordings::XtfSamples::Float32,
-                                   frequencyOf(meaning), to.filename().string()};
+                                       frequencyOf(meaning), to.filename().string()};
     const log::Stream* const placed = posesOf(log, poses);
     if (!placed)
-        command::printDiagnostic("notice: {} holds no poses: the lines have no positions\n", log.path().string());
+        console::printDiagnostic("notice: {} holds no poses: the lines have no positions\n", log.path().string());
     const LoggedTrack track(log, placed, mountOf(meaning));
     const LoggedAltitudes altitudes(log);
     types::Sonar ping = firstPing(log, pings);

@@ -34,7 +34,7 @@ Json toJson(const YAML::Node& node) {
         return list;
     }
     const bool is_quoted = node.Tag() == "!";
-    const Json value = is_quoted ? Json() : command::readJson(node.Scalar());
+    const Json value = is_quoted ? Json() : console::readJson(node.Scalar());
     if (value.is_number() || value.is_boolean()) return value;
     double number = 0;  // as in YAML: .5, +3
     const bool is_number = !is_quoted && YAML::convert<double>::decode(node, number) && std::isfinite(number);

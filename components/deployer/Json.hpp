@@ -2,17 +2,17 @@
 #include <string>
 #include <vector>
 
-#include "components/command/Json.hpp"
+#include "components/console/Json.hpp"
 #include "components/framework/YamlText.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Plan.hpp"
 
 namespace insonify::deployer {
 
-using command::Json;
-using command::print;
-using command::text;
-using command::write;
+using console::Json;
+using console::print;
+using console::text;
+using console::write;
 
 Json toJson(const types::Diagnostic& diagnostic);
 /** Converts numbers, booleans, texts, lists and blocks of YAML; an undefined node becomes null. */

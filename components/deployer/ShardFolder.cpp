@@ -12,22 +12,22 @@
 #include <utility>
 #include <vector>
 
-#include "components/command/Console.hpp"
-#include "components/command/Sha256.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/Sha256.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;
 namespace {
 
-using command::Json;
+using console::Json;
 
 constexpr const char* manifest_name = "manifest.json";
 
 /** Returns the manifest; none: there is no file, or it is not a manifest in JSON. */
 std::optional<Json> manifestIn(const fs::path& folder) {
     std::ifstream file(folder / manifest_name);
-    Json manifest = command::readJson(std::string(std::istreambuf_iterator<char>(file), {}));
+    Json manifest = console::readJson(std::string(std::istreambuf_iterator<char>(file), {}));
     if (!manifest.is_object() || !manifest.contains("files") || !manifest["files"].is_array()) return std::nullopt;
     return manifest;
 }
@@ -44,7 +44,7 @@ std::vector<fs::path> filesIn(const fs::path& folder) {
 Json entryOf(const fs::path& folder, const fs::path& file) {
     return {{"file", file.generic_string()},
             {"bytes", fs::file_size(folder / file)},
-            {"sha256", command::sha256OfFile(folder / file)}};
+            {"sha256", console::sha256OfFile(folder / file)}};
 }
 
 /** Returns the first difference of a folder from its manifest; empty: none. */
@@ -56,7 +56,7 @@ std::string damageOf(const fs::path& folder, const Json& manifest) try {
         if (absent) return file.string() + " is missing";
         if (bytes != entry.value("bytes", uint64_t{0}))
             return fmt::format("{} has {} bytes, not {}", file.string(), bytes, entry.value("bytes", uint64_t{0}));
-        if (command::sha256OfFile(folder / file) != entry.value("sha256", ""))
+        if (console::sha256OfFile(folder / file) != entry.value("sha256", ""))
             return file.string() + " has another SHA-256 than when it was written";
     }
     for (const char* key : {"pings", "first_ping", "pings_of_run"})
@@ -93,7 +93,7 @@ ShardFolder::Lock::~Lock() {
     if (folder_ >= 0) close(folder_);
 }
 
-ShardFolder::ShardFolder(const fs::path& shared, const command::Shard& shard, Json run)
+ShardFolder::ShardFolder(const fs::path& shared, const console::Shard& shard, Json run)
     : shared_(shared), path_(shared / ("shard_" + shard.fileText())), shard_(shard), run_(std::move(run)) {
     std::error_code failed;
     fs::create_directories(shared_, failed);
@@ -129,7 +129,7 @@ std::optional<Json> ShardFolder::done() const {
     const auto manifest = manifestIn(path_);
     const std::string damage = manifest ? damageOf(path_, *manifest) : "its manifest.json is missing or broken";
     if (damage.empty()) return manifest;
-    command::printDiagnostic("notice: {}: {}; the shard is made again\n", path_.string(), damage);
+    console::printDiagnostic("notice: {}: {}; the shard is made again\n", path_.string(), damage);
     return std::nullopt;
 }
 
@@ -160,7 +160,7 @@ Json ShardFolder::finish(const Json& more) {
     manifest.update(more);
     manifest["files"] = Json::array();
     for (const fs::path& file : filesIn(part_)) manifest["files"].push_back(entryOf(part_, file));
-    command::write(manifest, part_ / manifest_name);
+    console::write(manifest, part_ / manifest_name);
     const Lock together(shared_, true);
     refuseOthers();  // shards that were finished meanwhile
     if (fs::exists(path_)) {

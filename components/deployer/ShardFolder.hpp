@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "components/command/Json.hpp"
-#include "components/command/Shard.hpp"
+#include "components/console/Json.hpp"
+#include "components/console/Shard.hpp"
 
 namespace insonify::deployer {
 
@@ -18,7 +18,7 @@ public:
     /** @param run the inputs that determine the files: the same in all shards of a folder.
      *  Throws types::ConfigError where the folder cannot be made, or holds shards of another run or of another
      *  count. */
-    ShardFolder(const std::filesystem::path& shared, const command::Shard& shard, command::Json run);
+    ShardFolder(const std::filesystem::path& shared, const console::Shard& shard, console::Json run);
     ~ShardFolder();
     ShardFolder(const ShardFolder&) = delete;
     ShardFolder& operator=(const ShardFolder&) = delete;
@@ -26,12 +26,12 @@ public:
     const std::filesystem::path& path() const { return path_; }  ///< Exists once the shard is done.
     /** Returns the manifest of a finished shard. None: the shard is not done, or differs from its manifest; then it is
      *  reported on stderr, and finish() replaces it. Reads all files. */
-    std::optional<command::Json> done() const;
+    std::optional<console::Json> done() const;
     /** Returns an empty folder to write to; it is removed unless finish() is called. */
     const std::filesystem::path& begin();
     /** Writes the manifest, including `more`, and gives the folder its final name. Returns the existing manifest if
      *  another process has finished the shard first. */
-    command::Json finish(const command::Json& more);
+    console::Json finish(const console::Json& more);
 
 private:
     /** A lock on a folder, until it is destroyed or its process ends. */
@@ -52,8 +52,8 @@ private:
     void removeLeft() const;
 
     std::filesystem::path shared_, path_, part_;
-    command::Shard shard_;
-    command::Json run_;
+    console::Shard shard_;
+    console::Json run_;
     std::optional<Lock> lock_;  ///< Lock of `part_`.
 };
 

@@ -91,7 +91,7 @@ Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
 
 /** Adds what the recording states from which a stream was imported, see RecordedLog. */
 void addRecorded(const log::Stream& stream, Json& meaning) {
-    const auto number = [&](const char* key) { return command::readJson(stream.metadatum(key)); };
+    const auto number = [&](const char* key) { return console::readJson(stream.metadatum(key)); };
     if (const Json frequency = number("insonify_frequency_khz"); frequency.is_number() && frequency > 0)
         meaning["frequency_khz"] = frequency;
     if (const Json bits = number("insonify_code_bits"); bits.is_number() && meaning["code"].is_object())
@@ -154,7 +154,7 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     else
         meaning["type"] = stream.type;
     if (const std::string names = stream.metadatum("insonify_objects"); !names.empty())
-        meaning["objects"] = command::readJson(names);
+        meaning["objects"] = console::readJson(names);
     if (const std::string seed = stream.metadatum("insonify_seed"); !seed.empty()) meaning["seed"] = seed;
     return meaning;
 }

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "components/command/Console.hpp"
+#include "components/console/Console.hpp"
 #include "components/logger/LoggerTask.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/output/PictureTask.hpp"
@@ -29,7 +29,7 @@ framework::Registry coreTasks() {
 
 framework::Registry allTasks() {
     framework::Registry registry = coreTasks();
-    for (const types::Diagnostic& wrong : registry.loadAll()) command::printDiagnostic("notice: {}\n", wrong.text());
+    for (const types::Diagnostic& wrong : registry.loadAll()) console::printDiagnostic("notice: {}\n", wrong.text());
     return registry;
 }
 

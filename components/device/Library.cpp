@@ -10,7 +10,7 @@ extern "C" {
 
 void insonify_register(insonify::framework::Registry& registry) { insonify::device::registerTasks(registry); }
 
-void insonify_add_command(CLI::App& app, insonify::command::Action& action) {
+void insonify_add_command(CLI::App& app, insonify::console::Action& action) {
     insonify::device::addCommand(app, action);
 }
 

@@ -9,7 +9,7 @@
 #include <regex>
 #include <utility>
 
-#include "components/command/Json.hpp"
+#include "components/console/Json.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::device {
@@ -233,7 +233,7 @@ struct Sonar3dEmulator::Api {
         if (request.method == "GET" && known.get) return {200, known.get().dump()};
         if (request.method != "POST" || !known.post)
             throw Refused{405, fmt::format("{} does not know {}", request.path, request.method)};
-        const Json body = command::readJson<Json>(request.body);
+        const Json body = console::readJson<Json>(request.body);
         if (body.is_discarded()) throw bad("the body is no JSON");
         const auto answer = known.post(body);
         return answer ? HttpReply{200, answer->dump()} : HttpReply{};

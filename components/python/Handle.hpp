@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "components/command/Json.hpp"
+#include "components/console/Json.hpp"
 
 namespace insonify::python {
 
@@ -19,7 +19,7 @@ struct Array {
 class Handle {
 public:
     virtual ~Handle() = default;
-    virtual command::Json facts() const = 0;
+    virtual console::Json facts() const = 0;
     virtual std::vector<Array> arrays() const { return {}; }
 };
 

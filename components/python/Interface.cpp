@@ -18,7 +18,7 @@
 namespace insonify::python {
 namespace {
 
-using command::Json;
+using console::Json;
 
 /** Something that steps, with threads, which only the process that made it may use. */
 class Stepped : public Handle {

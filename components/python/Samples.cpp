@@ -17,7 +17,7 @@
 namespace insonify::python {
 namespace {
 
-using command::Json;
+using console::Json;
 
 template <class Number>
 constexpr const char* typeOf() {

@@ -4,7 +4,7 @@
 
 INSONIFY_COMPONENT_LIBRARY;
 
-extern "C" void insonify_add_command(CLI::App& app, insonify::command::Action& action) {
+extern "C" void insonify_add_command(CLI::App& app, insonify::console::Action& action) {
     insonify::study::addCommand(app, action);
     insonify::study::addFit(app, action);
 }

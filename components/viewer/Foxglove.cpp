@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "components/command/Json.hpp"
+#include "components/console/Json.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -93,7 +93,7 @@ std::pair<std::string, std::string> settingOf(const Json& one) {
 }  // namespace
 
 ParameterRequest readParameterRequest(std::string_view text) {
-    const Json said = command::readJson<Json>(text);
+    const Json said = console::readJson<Json>(text);
     ParameterRequest request;
     request.kind = kindOf(said);
     if (request.kind == ParameterRequest::Kind::Other) return request;
@@ -137,7 +137,7 @@ void ParameterSubscriptions::take(const ParameterRequest& request) {
 // -- subscriptions ----------------------------------------------------------------------------------------------------
 
 std::string Subscriptions::take(std::string_view text) {
-    const Json said = command::readJson<Json>(text);
+    const Json said = console::readJson<Json>(text);
     if (!said.is_object() || !said.contains("op") || !said["op"].is_string()) return "is not a JSON object with an op";
     if (said["op"] == "unsubscribe") {
         for (const Json& id : listIn(said, "subscriptionIds"))

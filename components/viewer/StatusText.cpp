@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "components/command/Json.hpp"
+#include "components/console/Json.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -100,7 +100,7 @@ std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, 
 }
 
 void readRequest(const std::string& text, Request& request) {
-    const Json said = command::readJson<Json>(text);
+    const Json said = console::readJson<Json>(text);
     if (!said.is_object()) throw std::invalid_argument("is not a JSON object");
     const Json id = said.value("id", Json(0u));
     if (!id.is_number_unsigned()) throw std::invalid_argument("id is not an integer");

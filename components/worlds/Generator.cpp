@@ -13,8 +13,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "components/command/Console.hpp"
-#include "components/command/Sha256.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/Sha256.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "types/ConfigError.hpp"
 
@@ -96,7 +96,7 @@ Outcome runWith(const std::string& python, const std::vector<std::string>& optio
     std::vector<std::string> words = {python, "-m", package_name};
     words.insert(words.end(), options.begin(), options.end());
     std::vector<std::string> environment = environmentWith(folder);
-    command::flushResults();
+    console::flushResults();
     pid_t process = -1;
     const int error = posix_spawnp(&process, python.c_str(), &actions, nullptr, pointersTo(words).data(),
                                    pointersTo(environment).data());
@@ -143,7 +143,7 @@ void generate(const std::vector<std::string>& options) {
         if (outcome.code != 0)
             throw std::runtime_error(
                 fmt::format("{} ended with {}: {}", python, outcome.code, withoutLineEnd(outcome.errors)));
-        command::addDiagnostic(outcome.errors);
+        console::addDiagnostic(outcome.errors);
         return;
     }
     throw types::ConfigError("", "scene make",
@@ -156,8 +156,8 @@ std::string generatorDigest() {
     for (const auto& entry : fs::recursive_directory_iterator(packageFolder() / package_name))
         if (entry.path().extension() == ".py") files.push_back(entry.path());
     std::ranges::sort(files);
-    command::Sha256 hash;
-    for (const fs::path& file : files) hash.add(command::sha256OfFile(file) + "\n");
+    console::Sha256 hash;
+    for (const fs::path& file : files) hash.add(console::sha256OfFile(file) + "\n");
     return hash.hex();
 }
 

@@ -2,9 +2,10 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "components/deployer/Starter.hpp"
+#include "components/command/Starter.hpp"
 #include "tests/deployer/Command.hpp"
 
+using namespace insonify::command;
 using namespace insonify::deployer;
 using testing::HasSubstr;
 

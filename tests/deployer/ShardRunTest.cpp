@@ -4,7 +4,7 @@
 #include <iterator>
 #include <map>
 
-#include "components/command/Sha256.hpp"
+#include "components/console/Sha256.hpp"
 #include "components/deployer/ShardFolder.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "tests/deployer/Wall.hpp"
@@ -12,8 +12,8 @@
 #include "types/ConfigError.hpp"
 
 using namespace insonify::deployer;
-using insonify::command::Json;
-using insonify::command::Shard;
+using insonify::console::Json;
+using insonify::console::Shard;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -221,7 +221,7 @@ TEST(ShardRunTest, TheManifestHasEveryFileWithItsHashAndNothingOfTheMachine) {
     for (const json& file : manifest["files"]) {
         const std::string& bytes = files.at(file["file"]);
         EXPECT_EQ(file["bytes"], bytes.size());
-        EXPECT_EQ(file["sha256"], insonify::command::sha256Of(bytes));
+        EXPECT_EQ(file["sha256"], insonify::console::sha256Of(bytes));
     }
     EXPECT_EQ(manifest.dump().find(folder.path().string()), std::string::npos);
 }
@@ -400,7 +400,8 @@ TEST(ShardRunTest, ReportsEachTaskWhoseStateAShardCannotKnow) {
     EXPECT_THAT(refusal(replaced(movingWall(), "{from: noise.noisy, to: fan.ping}",
                                  "{from: noise.noisy, to: fan.ping}\n  - {from: sonar.pose, to: xtf.pose}\n"
                                  "  - {from: noise.noisy, to: xtf.ping}")
-                            .insert(movingWall().find("  fan:"), "  xtf: {type: output::XtfTask, properties: {samples: float32}}\n")),
+                            .insert(movingWall().find("  fan:"),
+                                    "  xtf: {type: output::XtfTask, properties: {samples: float32}}\n")),
                 HasSubstr("tasks.xtf: is a output::XtfTask, whose state depends on earlier pings"));
 }
 

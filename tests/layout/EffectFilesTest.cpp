@@ -25,7 +25,7 @@ const std::multimap<std::string, std::string> other_meanings{
     {"crosstalk", "components/sonar/effects/Imperfections.cpp"},  // Between a device's neighbouring beams.
     {"crosstalk", "components/sonar/config/SonarConfig.hpp"},     // The same.
     {"volume", "components/acoustics/Seabed"},                    // Scattering within a sediment.
-    {"volume", "components/deployer/BackscatterCommand.cpp"},     // The same.
+    {"volume", "components/command/BackscatterCommand.cpp"},      // The same.
     {"volume", "components/scene/Clusters.cpp"},                  // The inside of a mesh.
     {"volume", "components/scene/GltfFile.cpp"},                  // An extension of glTF.
     {"volume", "components/sonar/rays/Scatterers"},               // The space between the axes of a lattice.

@@ -12,9 +12,9 @@ namespace {
 
 /** Folders from which the files of a folder may include. */
 const std::map<std::string, std::set<std::string>> neighbours = {
-    {"dataset", {"command", "log", "output", "pose"}},
+    {"dataset", {"console", "log", "output", "pose"}},
     {"dds", {"ros"}},
-    {"device", {"command", "output"}},  // readJson, ByteFile
+    {"device", {"console", "output"}},  // readJson, ByteFile
     {"framework", {"loader"}},
     {"gazebo", {"meshes", "scene"}},
     {"log", {"ros"}},
@@ -30,8 +30,8 @@ const std::map<std::string, std::set<std::string>> neighbours = {
     {"study", {"acoustics", "device", "noise", "output", "receiver", "recordings", "scene", "sonar"}},
     {"survey", {"scene"}},
     {"video", {"output"}},
-    {"viewer", {"command", "ros"}},
-    {"worlds", {"command", "loader"}},
+    {"viewer", {"console", "ros"}},
+    {"worlds", {"console", "loader"}},
 };
 
 /** Folders that a file may include from, besides its own and `types`. */
@@ -39,7 +39,7 @@ std::set<std::string> neighboursOf(const Source& source) {
     const auto found = neighbours.find(source.folder());
     std::set<std::string> allowed = found == neighbours.end() ? std::set<std::string>() : found->second;
     if (source.isTaskHalf()) allowed.insert("framework");
-    if (source.isCommandHalf()) allowed.insert("command");
+    if (source.isCommandHalf()) allowed.insert("console");
     const std::set<std::string> pose_listeners = {"dds", "gazebo", "mavlink"};
     if (source.isTaskHalf() && pose_listeners.contains(source.folder())) allowed.insert("pose");
     return allowed;
@@ -62,7 +62,8 @@ bool reachesBehindTheLog(const Source& source, const Source& target) {
 bool mayInclude(const Source& source, const Source& target) {
     if (reachesBehindTheLog(source, target)) return false;
     const std::string from = source.folder(), to = target.folder();
-    if (from == "deployer" || from == "python" || source.isLibraryEntry()) return true;
+    if (to == "command" && from != "command") return false;  // the program: nothing links it
+    if (from == "command" || from == "deployer" || from == "python" || source.isLibraryEntry()) return true;
     if (source.isCommandHalf()) return true;  // commands count as part of the deployer
     if (from == to)
         return from == "framework" || source.isTaskHalf() || source.isCommandHalf() ||
@@ -90,23 +91,41 @@ TEST(IncludeRuleTest, ComponentsMeetInTypesOnly) {
 
 TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
     const std::multimap<std::string, std::string> homes = {
-        {"tiny_gltf.h", "scene"}, {"meshoptimizer.h", "scene"},
-        {"stb", "scene"},         {"opencv2/", "output"},
-        {"EGL/", "gpu"},          {"GL/", "gpu"},
-        {"epoxy/", "gpu"},        {"yaml-cpp/", "framework"},
-        {"yaml-cpp/", "log"},     {"CLI/", "deployer"},
-        {"CLI/", "dataset"},      {"CLI/", "device"},
-        {"CLI/", "study"},        {"nlohmann/", "command"},
-        {"nlohmann/", "viewer"},  {"boost/", "viewer"},
-        {"embree4/", "sonar"},    {"embree3/", "sonar"},
-        {"sdf/", "sdf"},          {"assimp/", "meshes"},
-        {"tinyxml2.h", "sdf"},    {"lz4frame.h", "log"},
-        {"zstd.h", "log"},        {"dds/", "dds"},
-        {"png.h", "output"},      {"boost/", "device"},
-        {"nlohmann/", "device"},  {"snappy.h", "device"},
-        {"zmq", "gazebo"},        {"stb", "meshes"},
-        {"gdal", "survey"},       {"opencv2/", "video"},
-        {"opencv2/", "study"},    {"google/protobuf/", "gazebo"},
+        {"tiny_gltf.h", "scene"},
+        {"meshoptimizer.h", "scene"},
+        {"stb", "scene"},
+        {"opencv2/", "output"},
+        {"EGL/", "gpu"},
+        {"GL/", "gpu"},
+        {"epoxy/", "gpu"},
+        {"yaml-cpp/", "framework"},
+        {"yaml-cpp/", "log"},
+        {"CLI/", "command"},
+        {"CLI/", "dataset"},
+        {"CLI/", "device"},
+        {"CLI/", "study"},
+        {"nlohmann/", "console"},
+        {"CLI/", "console"},
+        {"nlohmann/", "viewer"},
+        {"boost/", "viewer"},
+        {"embree4/", "sonar"},
+        {"embree3/", "sonar"},
+        {"sdf/", "sdf"},
+        {"assimp/", "meshes"},
+        {"tinyxml2.h", "sdf"},
+        {"lz4frame.h", "log"},
+        {"zstd.h", "log"},
+        {"dds/", "dds"},
+        {"png.h", "output"},
+        {"boost/", "device"},
+        {"nlohmann/", "device"},
+        {"snappy.h", "device"},
+        {"zmq", "gazebo"},
+        {"stb", "meshes"},
+        {"gdal", "survey"},
+        {"opencv2/", "video"},
+        {"opencv2/", "study"},
+        {"google/protobuf/", "gazebo"},
     };
     const auto livesIn = [&](const std::string& prefix, const std::string& folder) {
         const auto [first, last] = homes.equal_range(prefix);
@@ -130,25 +149,25 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/log/Reader.hpp"));
     EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/tasks/SonarTask.hpp"));
     EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/renderer/SonarRenderer.hpp"));
-    EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/command/Json.hpp"));
+    EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/console/Json.hpp"));
     EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/study/ErrorStudy.hpp"));
-    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/command/Json.hpp"));
+    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/console/Json.hpp"));
     EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/study/commands/StudyCommand.hpp"));
     EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/deployer/Pipeline.hpp"));
-    EXPECT_FALSE(allowed("components/command/Json.cpp", "components/framework/Port.hpp"));
-    EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/command/Json.hpp"));
+    EXPECT_FALSE(allowed("components/console/Json.cpp", "components/framework/Port.hpp"));
+    EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/console/Json.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseConfig.cpp", "components/acoustics/AmbientNoise.hpp"));
     EXPECT_FALSE(allowed("components/acoustics/Water.hpp", "components/sonar/config/SonarConfig.hpp"));
     EXPECT_FALSE(allowed("components/receiver/Receiver.cpp", "components/acoustics/Water.hpp"));
     EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/log/Writer.hpp"));
     EXPECT_FALSE(allowed("components/logger/LoggerTask.cpp", "components/log/pocolog/Writer.hpp"));
-    EXPECT_FALSE(allowed("components/deployer/LogCommand.cpp", "components/log/mcap/Reader.hpp"));
+    EXPECT_FALSE(allowed("components/command/LogCommand.cpp", "components/log/mcap/Reader.hpp"));
     EXPECT_FALSE(allowed("components/log/mcap/Reader.cpp", "components/log/pocolog/Wire.hpp"));
     EXPECT_TRUE(allowed("components/log/Reader.cpp", "components/log/pocolog/Reader.hpp"));
     EXPECT_TRUE(allowed("components/log/pocolog/Reader.cpp", "components/log/Reader.hpp"));
     EXPECT_FALSE(allowed("components/viewer/Server.cpp", "components/framework/Port.hpp"));
-    EXPECT_TRUE(allowed("components/dataset/Store.cpp", "components/command/Json.hpp"));
+    EXPECT_TRUE(allowed("components/dataset/Store.cpp", "components/console/Json.hpp"));
     EXPECT_FALSE(allowed("components/dataset/Samples.cpp", "components/framework/ConfigReader.hpp"));
     EXPECT_FALSE(allowed("components/dataset/SampleFiles.cpp", "components/output/FanImageTask.hpp"));
     EXPECT_TRUE(allowed("components/viewer/Messages.cpp", "components/ros/Cdr.hpp"));
@@ -159,5 +178,5 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_TRUE(allowed("components/gazebo/PoseTask.hpp", "components/pose/ListenerTask.hpp"));
     EXPECT_FALSE(allowed("components/gazebo/Poses.hpp", "components/pose/Trajectory.hpp"));
     EXPECT_TRUE(allowed("components/sonar/renderer/SonarRenderer.cpp", "components/gpu/Context.hpp"));
-    EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/NoiseTask.hpp"));
+    EXPECT_TRUE(allowed("components/command/main.cpp", "components/noise/NoiseTask.hpp"));
 }

@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "components/command/Json.hpp"
-#include "components/command/Sha256.hpp"
+#include "components/console/Json.hpp"
+#include "components/console/Sha256.hpp"
 #include "components/dataset/commands/SweepFile.hpp"
 #include "components/dataset/commands/SweepScenes.hpp"
 #include "components/deployer/DeploymentFile.hpp"
@@ -59,13 +59,13 @@ std::string generatorDigest() {
 }
 
 std::string originOf(const SceneChoice& scene, const std::string& generator) {
-    return fmt::format("recipe {} seed {} generator {}\n", command::sha256OfFile(scene.recipe), scene.seed, generator);
+    return fmt::format("recipe {} seed {} generator {}\n", console::sha256OfFile(scene.recipe), scene.seed, generator);
 }
 
 /** Returns the file of a scene, which is made if it does not exist. It is renamed to its final name when complete,
  *  because other processes may make it too. */
 std::string madeFile(const SceneChoice& scene, const std::string& generator) {
-    const fs::path folder = cacheFolder() / command::sha256Of(originOf(scene, generator)).substr(0, 32);
+    const fs::path folder = cacheFolder() / console::sha256Of(originOf(scene, generator)).substr(0, 32);
     const std::string stem = fmt::format("{}_{}", fs::path(scene.recipe).stem().string(), scene.seed);
     const fs::path file = folder / (stem + ".glb"), passing = folder / fmt::format("{}.{}.glb", stem, getpid());
     if (fs::is_regular_file(file)) return file;
@@ -116,7 +116,7 @@ constexpr const char* no_budget =
     "give rows or target_error";
 
 /** Returns a text as a value in YAML. */
-std::string quoted(const std::string& text) { return command::Json(text).dump(); }
+std::string quoted(const std::string& text) { return console::Json(text).dump(); }
 
 /** Returns the trajectory of a sweep. A file that does not exist is an error at its place in the sweep. */
 pose::Trajectory trajectoryOf(const Sweep& sweep) {
@@ -188,7 +188,7 @@ void addFiles(const YAML::Node& node, const fs::path& folder, std::string& text)
         for (const auto& entry : node) addFiles(entry.second, folder, text);
     std::error_code ignored;
     if (node.IsScalar() && !node.Scalar().empty() && fs::is_regular_file(folder / node.Scalar(), ignored))
-        text += fmt::format("file {}\n", command::sha256OfFile(folder / node.Scalar()));
+        text += fmt::format("file {}\n", console::sha256OfFile(folder / node.Scalar()));
 }
 
 /** Adds the files that a sweep names for properties, relative to the folder of the deployment, and its scenes. */
@@ -198,7 +198,7 @@ void addFiles(const Sweep& sweep, const fs::path& folder, std::string& text) {
     for (const DrawnSetting& drawn : sweep.drawn)
         for (const Written& value : drawn.choice) addFiles(framework::parseValue(value.yaml), folder, text);
     for (const SceneChoice& scene : sweep.scenes) {
-        if (!scene.file.empty()) text += fmt::format("file {}\n", command::sha256OfFile(scene.file));
+        if (!scene.file.empty()) text += fmt::format("file {}\n", console::sha256OfFile(scene.file));
         for (const auto& [property, value] : scene.set) addFiles(framework::parseValue(value.yaml), folder, text);
     }
 }
@@ -354,18 +354,18 @@ std::string DatasetRun::digestOfAll() const {
     const fs::path folder = fs::path(deployment_).parent_path();
     std::string text = fmt::format("insonify {}\n{}\ndeployment {}\nsweep {}\n", INSONIFY_VERSION,
                                    types::EnumNames<Format>::names[static_cast<size_t>(format_)],
-                                   command::sha256Of(spec_.text), command::sha256Of(sweep_.text));
-    text += fmt::format("seed {}\nset {}\n", sweep_.seed, command::Json(changes_.set).dump());
+                                   console::sha256Of(spec_.text), console::sha256Of(sweep_.text));
+    text += fmt::format("seed {}\nset {}\n", sweep_.seed, console::Json(changes_.set).dump());
     for (const framework::TaskSpec& task : spec_.tasks) {
         if (decides(task)) addFiles(task.properties, folder, text);
         for (const std::string& file : task.property_files.files)
-            text += fmt::format("file {}\n", command::sha256OfFile(folder / file));
+            text += fmt::format("file {}\n", console::sha256OfFile(folder / file));
     }
     addFiles(sweep_, folder, text);
     text += originsOf(sweep_);
     for (const SceneFile& scene : scenes_) text += fmt::format("scene {} {}\n", scene.name, scene.digest);
-    if (sweep_.trajectory) text += fmt::format("trajectory {}\n", command::sha256OfFile(sweep_.trajectory->file));
-    return command::sha256Of(text);
+    if (sweep_.trajectory) text += fmt::format("trajectory {}\n", console::sha256OfFile(sweep_.trajectory->file));
+    return console::sha256Of(text);
 }
 
 std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {
@@ -384,7 +384,7 @@ std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {
 
 /** Returns the scales of a scene's nodes from its task, with those of a sample's objects. */
 std::string DatasetRun::scaleOf(const std::string& task, const Sample& sample) const {
-    command::Json scales = command::Json::object();
+    console::Json scales = console::Json::object();
     const YAML::Node own = child(spec_.task(task)->properties, "scale");
     if (own.IsMap())
         for (const auto& entry : own) scales[entry.first.Scalar()] = entry.second.as<double>();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "components/command/Sha256.hpp"
+#include "components/console/Sha256.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dataset {
@@ -82,11 +82,11 @@ void addNode(const Sweep& sweep, const scene::Scene& scene, size_t node, ScenePa
 }
 
 template <class T>
-void addBytes(command::Sha256& hash, const std::vector<T>& values) {
+void addBytes(console::Sha256& hash, const std::vector<T>& values) {
     hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
 }
 
-void addMaterial(command::Sha256& hash, const types::Material& material) {
+void addMaterial(console::Sha256& hash, const types::Material& material) {
     hash.add(fmt::format("{} {} {} {} {} {} {} {} {} {}\n", material.name, material.lambert_db, material.seabed,
                          material.reflection, material.roughness_slope.value_or(-1), material.mirror,
                          material.reflectivity, material.has_acoustics, material.normal_map, material.normal_scale));
@@ -98,7 +98,7 @@ void addMaterial(command::Sha256& hash, const types::Material& material) {
     addBytes(hash, material.measured);
 }
 
-void addMap(command::Sha256& hash, const types::MappedMaterial& mapped) {
+void addMap(console::Sha256& hash, const types::MappedMaterial& mapped) {
     const types::SurfaceMap& map = *mapped.map;
     hash.add(fmt::format("map {} {} {} {} {}\n", mapped.material, map.width, map.height, map.repeat_u, map.repeat_v));
     addBytes(hash, map.strengths);
@@ -141,7 +141,7 @@ std::vector<Lineage> lineagesOf(const scene::Scene& scene) {
 }
 
 std::string digestOf(const types::Geometry& geometry) {
-    command::Sha256 hash;
+    console::Sha256 hash;
     for (const types::Mesh& mesh : geometry.meshes) {
         addBytes(hash, mesh.positions);
         addBytes(hash, mesh.normals);

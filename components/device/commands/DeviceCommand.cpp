@@ -9,8 +9,8 @@
 #include <memory>
 #include <tuple>
 
-#include "components/command/Console.hpp"
-#include "components/command/Json.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/Json.hpp"
 #include "components/device/DeviceTask.hpp"
 #include "components/device/Probe.hpp"
 #include "components/framework/Properties.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int answered = 0, silent = 1;
 
-using command::Action, command::Json, command::print;
+using console::Action, console::Json, console::print;
 
 /** Returns the properties of a task that are ports, with their defaults: "port 12345, discovery.port 30303". */
 Json portsOf(const framework::TaskContext& task) {
@@ -49,9 +49,9 @@ int listDevices(bool json) {
         return 0;
     }
     for (const Json& device : devices)
-        command::printResult("{:22} {}\n{:22} {}\n", device["type"].get<std::string>(),
+        console::printResult("{:22} {}\n{:22} {}\n", device["type"].get<std::string>(),
                              device["doc"].get<std::string>(), "", textOf(device["ports"]));
-    command::printResult(
+    console::printResult(
         "\nproperties: insonify describe TYPE; how to start and connect each: components/device/README.md\n");
     return 0;
 }
@@ -66,7 +66,7 @@ Json jsonOf(const ProbeOutcome& outcome) {
 
 void printDevices(const std::vector<ProbeOutcome>& outcomes) {
     for (const ProbeOutcome& outcome : outcomes)
-        if (!outcome.device.empty()) command::printResult("{}: {}\n", outcome.asked, outcome.device);
+        if (!outcome.device.empty()) console::printResult("{}: {}\n", outcome.asked, outcome.device);
 }
 
 /** Groups lines that failed for the same reason before the reason and its remedy. */
@@ -78,8 +78,8 @@ void printFailures(std::vector<ProbeOutcome> outcomes) {
             return reason(outcome) == reason(first);
         });
         for (auto outcome = outcomes.begin(); outcome != others; ++outcome)
-            command::printResult("{}: {}\n", outcome->asked, outcome->protocol);
-        command::printResult("  {}: {}\n", first.failure, first.advice);
+            console::printResult("{}: {}\n", outcome->asked, outcome->protocol);
+        console::printResult("  {}: {}\n", first.failure, first.advice);
         outcomes.erase(outcomes.begin(), others);
     }
 }
@@ -98,7 +98,7 @@ int probeDevice(const std::string& address, double timeout, bool json) {
     } else {
         printFailures(outcomes);
     }
-    if (!any) command::printDiagnostic("insonify: nothing answers at {}\n", address);
+    if (!any) console::printDiagnostic("insonify: nothing answers at {}\n", address);
     return any ? answered : silent;
 }
 

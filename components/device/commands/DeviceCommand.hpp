@@ -1,11 +1,11 @@
 #pragma once
 #include <CLI/App.hpp>
 
-#include "components/command/Action.hpp"
+#include "components/console/Action.hpp"
 
 namespace insonify::device {
 
 /** Adds the command `device` with its options to `app`; parsing it sets `action`. */
-void addCommand(CLI::App& app, command::Action& action);
+void addCommand(CLI::App& app, console::Action& action);
 
 }  // namespace insonify::device

@@ -12,7 +12,7 @@
 namespace insonify::device {
 namespace {
 
-using command::Json;
+using console::Json;
 using deployer::frequencyOf, deployer::meaningOf, deployer::pingsOf;
 namespace fs = std::filesystem;
 

@@ -6,10 +6,10 @@
 #include <memory>
 #include <thread>
 
-#include "components/command/Console.hpp"
-#include "components/command/Json.hpp"
-#include "components/command/OutputFolder.hpp"
-#include "components/command/ProgressLine.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/Json.hpp"
+#include "components/console/OutputFolder.hpp"
+#include "components/console/ProgressLine.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/study/ErrorEffects.hpp"
@@ -91,7 +91,7 @@ std::vector<StudyScene> scenesOf(const Options& options) {
     return scenes;
 }
 
-using command::Json;
+using console::Json;
 
 Json toJson(const Measurement& m, const ErrorResult& result) {
     return {{"scene", m.scene},
@@ -157,8 +157,8 @@ Json toJson(const ErrorResult& result) {
 
 int runStudy(Options options) {
     const std::vector<StudyScene> scenes = scenesOf(options);
-    command::OutputFolder folder(options.out, "study_error");
-    command::StudyProgress progress(!options.quiet, scenes.size());
+    console::OutputFolder folder(options.out, "study_error");
+    console::StudyProgress progress(!options.quiet, scenes.size());
     size_t scene = 0;
     options.study.progress = [&](const std::string& at) {
         for (; !at.starts_with(scenes[scene].name + " ") && scene + 1 < scenes.size(); ++scene) progress.advance();
@@ -166,7 +166,7 @@ int runStudy(Options options) {
     };
     const ErrorResult result = studyError(scenes, options.study);
     folder.keep();
-    command::write(toJson(result), (folder.path() / "error_time.json").string());
+    console::write(toJson(result), (folder.path() / "error_time.json").string());
     const std::filesystem::path sheet = folder.path() / "error_time.md";
     if (std::ofstream file(sheet, std::ios::binary); !(file << sheetOf(result)).flush())
         throw std::runtime_error(sheet.string() + " cannot be written");
@@ -176,19 +176,19 @@ int runStudy(Options options) {
     for (const Claim& claim : claims(result)) {
         all = all && !claim.fails();
         open = open || (!claim.fails() && !claim.holds());
-        command::printResult("{}  {}: {:.4g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
+        console::printResult("{}  {}: {:.4g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
                              claim.at_most ? "at most" : "at least", claim.bound);
     }
     if (open)
-        command::printResult(
+        console::printResult(
             "open: --levels or --reference-rays are too few to decide; nothing is wrong with the scene\n");
-    command::printResult("{} points; report in {}\n", result.measurements.size(), sheet.string());
+    console::printResult("{} points; report in {}\n", result.measurements.size(), sheet.string());
     return all ? 0 : 1;
 }
 
 }  // namespace
 
-void addErrorStudy(CLI::App& study, command::Action& action) {
+void addErrorStudy(CLI::App& study, console::Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = study.add_subcommand("error", "Error against run time, for each way to estimate an echo");
     command->add_option(

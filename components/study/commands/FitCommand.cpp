@@ -5,8 +5,8 @@
 #include <fstream>
 #include <memory>
 
-#include "components/command/Console.hpp"
-#include "components/command/ProgressLine.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/ProgressLine.hpp"
 #include "components/deployer/FittedDeployment.hpp"
 #include "components/study/FitReport.hpp"
 #include "components/study/RecordingFit.hpp"
@@ -42,8 +42,8 @@ void refuseFiles(const FitOptions& options) {
 }
 
 void printFindings(const RecordingFit& fit) {
-    for (const Finding& finding : fit.findings) command::printResult("{:<20} {}\n", finding.name, finding.text());
-    command::printResult("{:<20} {:.1f} dB rms\n", "levels unexplained", fit.levels.rms_db);
+    for (const Finding& finding : fit.findings) console::printResult("{:<20} {}\n", finding.name, finding.text());
+    console::printResult("{:<20} {:.1f} dB rms\n", "levels unexplained", fit.levels.rms_db);
 }
 
 int runFit(const FitOptions& options) {
@@ -51,7 +51,7 @@ int runFit(const FitOptions& options) {
     ChainAt at = chainAt(options.deployment, options.ping, {});
     const receiver::CodeConfig law = at.chain.code();
     const std::vector<CodedPing> recorded = recordedPings(options.real, &law, readLog);
-    command::StudyProgress progress(!options.quiet);
+    console::StudyProgress progress(!options.quiet);
     const RecordingFit fit = fitRecording(recorded, std::move(at.chain), options.scene_is == "rough",
                                           [&](const std::string& doing) { progress(doing); });
     progress.end();
@@ -68,13 +68,13 @@ int runFit(const FitOptions& options) {
         throw types::ConfigError(options.out, "--out", "cannot be written");
     const fs::path page = writePage(fit, recorded, options.out);
     printFindings(fit);
-    command::printResult("deployment in {}, page in {}\n", options.out, page.string());
+    console::printResult("deployment in {}, page in {}\n", options.out, page.string());
     return 0;
 }
 
 }  // namespace
 
-void addFit(CLI::App& app, command::Action& action) {
+void addFit(CLI::App& app, console::Action& action) {
     const auto options = std::make_shared<FitOptions>();
     CLI::App* command = app.add_subcommand("fit", "Finds the properties of a real sonar from its recordings");
     command

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "components/command/Console.hpp"
-#include "components/command/Json.hpp"
-#include "components/command/OutputFolder.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/Json.hpp"
+#include "components/console/OutputFolder.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/study/CodedPing.hpp"
 #include "components/study/LikenessReport.hpp"
@@ -16,7 +16,7 @@
 namespace insonify::study {
 namespace {
 
-using command::Json;
+using console::Json;
 
 Json toJson(const LikenessRow& row) {
     Json json{{"name", row.name}};
@@ -36,14 +36,14 @@ Json toJson(const LikenessResult& result) {
 }
 
 void printTable(const LikenessResult& result) {
-    command::printResult("{:<18}", "");
-    for (const LikenessRow& row : result.rows) command::printResult(" {:>15}", row.name);
+    console::printResult("{:<18}", "");
+    for (const LikenessRow& row : result.rows) console::printResult(" {:>15}", row.name);
     const auto first = figuresOf(result.rows.front());
     for (size_t i = 0; i < first.size(); ++i) {
-        command::printResult("\n{:<18}", first[i].name);
-        for (const LikenessRow& row : result.rows) command::printResult(" {:>15.4g}", figuresOf(row)[i].value);
+        console::printResult("\n{:<18}", first[i].name);
+        for (const LikenessRow& row : result.rows) console::printResult(" {:>15.4g}", figuresOf(row)[i].value);
     }
-    command::printResult("\n");
+    console::printResult("\n");
 }
 
 /** Prints the claims; returns whether none fails. */
@@ -54,11 +54,11 @@ bool printClaims(const LikenessResult& result) {
                              uniform = claims(result.row("uniform")->apart, result.recorded),
                              cosine = claims(result.row("cosine")->apart, result.recorded);
     for (size_t i = 0; i < all.size(); ++i)
-        command::printResult("{}  {}: {:.3g}, at most {:.3g} (a uniform picture {:.3g}, a cosine {:.3g})\n",
+        console::printResult("{}  {}: {:.3g}, at most {:.3g} (a uniform picture {:.3g}, a cosine {:.3g})\n",
                              all[i].verdict(), all[i].text, all[i].measured, all[i].bound, uniform[i].measured,
                              cosine[i].measured);
     if (std::ranges::any_of(all, [](const Claim& claim) { return !claim.holds() && !claim.fails(); }))
-        command::printResult("open: the recordings show no arc to compare with\n");
+        console::printResult("open: the recordings show no arc to compare with\n");
     return std::ranges::none_of(all, &Claim::fails);
 }
 
@@ -119,19 +119,19 @@ int runStudy(const LikenessOptions& options) {
     std::optional<CodedPing> simulated;
     if (law) simulated = simulatedLike(recorded.front(), options);
     const LikenessResult result = studyLikeness(recorded, simulated ? &*simulated : nullptr);
-    command::OutputFolder folder(options.out, "study_likeness");
+    console::OutputFolder folder(options.out, "study_likeness");
     folder.keep();
     writeReport(result, folder.path());
-    command::write(toJson(result), (folder.path() / "likeness.json").string());
+    console::write(toJson(result), (folder.path() / "likeness.json").string());
     printTable(result);
     const bool all_hold = printClaims(result);
-    command::printResult("report in {}\n", folder.path().string());
+    console::printResult("report in {}\n", folder.path().string());
     return all_hold ? 0 : 1;
 }
 
 }  // namespace
 
-void addLikenessStudy(CLI::App& study, command::Action& action) {
+void addLikenessStudy(CLI::App& study, console::Action& action) {
     const auto options = std::make_shared<LikenessOptions>();
     CLI::App* command = study.add_subcommand("likeness", "Compares simulated pings with recordings of a real sonar");
     options->addTo(*command, "a YAML file whose receiver outputs codes; absent: statistics of the recordings only")

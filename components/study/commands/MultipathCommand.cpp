@@ -6,16 +6,16 @@
 #include <memory>
 #include <stdexcept>
 
-#include "components/command/Console.hpp"
-#include "components/command/Json.hpp"
-#include "components/command/OutputFolder.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/Json.hpp"
+#include "components/console/OutputFolder.hpp"
 #include "components/study/MultipathStudy.hpp"
 #include "components/study/commands/StudyCommand.hpp"
 
 namespace insonify::study {
 namespace {
 
-using command::Json;
+using console::Json;
 
 Json toJson(const MultipathResult& result) {
     Json json{{"curves", Json::array()}, {"verdicts", Json::array()}};
@@ -41,20 +41,20 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 int runStudy(const std::string& out) {
     const MultipathResult result = studyMultipath();
-    command::OutputFolder folder(out, "study_multipath");
+    console::OutputFolder folder(out, "study_multipath");
     folder.keep();
     write(folder.path() / "multipath.csv", csvOf(result));
-    command::write(toJson(result), (folder.path() / "multipath.json").string());
+    console::write(toJson(result), (folder.path() / "multipath.json").string());
     for (const Claim& claim : result.claims)
-        command::printResult("{}  {}: {:.3g}, at most {:.3g}\n", claim.verdict(), claim.text, claim.measured,
+        console::printResult("{}  {}: {:.3g}, at most {:.3g}\n", claim.verdict(), claim.text, claim.measured,
                              claim.bound);
-    command::printResult("report in {}\n", folder.path().string());
+    console::printResult("report in {}\n", folder.path().string());
     return std::ranges::any_of(result.claims, &Claim::fails) ? 1 : 0;
 }
 
 }  // namespace
 
-void addMultipathStudy(CLI::App& study, command::Action& action) {
+void addMultipathStudy(CLI::App& study, console::Action& action) {
     const auto out = std::make_shared<std::string>();
     CLI::App* command = study.add_subcommand("multipath", "Echoes by way of mirrors against closed forms");
     command->add_option("--out", *out, "folder of the report");

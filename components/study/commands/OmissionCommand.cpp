@@ -7,10 +7,10 @@
 #include <memory>
 #include <stdexcept>
 
-#include "components/command/Console.hpp"
-#include "components/command/Json.hpp"
-#include "components/command/OutputFolder.hpp"
-#include "components/command/ProgressLine.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/Json.hpp"
+#include "components/console/OutputFolder.hpp"
+#include "components/console/ProgressLine.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/study/OmissionStudy.hpp"
 #include "components/study/commands/StudyCommand.hpp"
@@ -18,7 +18,7 @@
 namespace insonify::study {
 namespace {
 
-using command::Json;
+using console::Json;
 
 struct Options {
     std::string deployment, out;
@@ -68,8 +68,8 @@ std::string sheet(const std::string& deployment, const std::vector<OmissionRow>&
 
 int runStudy(const Options& options) {
     const deployer::SonarAt sonar = deployer::sonarAt(options.deployment, options.ping);
-    command::OutputFolder folder(options.out, "study_omission");
-    command::StudyProgress progress(!options.quiet);
+    console::OutputFolder folder(options.out, "study_omission");
+    console::StudyProgress progress(!options.quiet);
     const std::vector<OmissionRow> rows =
         studyOmissions(sonar.config, sonar.snapshot, options.pings, std::ref(progress));
     progress.end();
@@ -80,14 +80,14 @@ int runStudy(const Options& options) {
         throw std::runtime_error((folder.path() / "omission.md").string() + " cannot be written");
     Json json = Json::array();
     for (const OmissionRow& row : rows) json.push_back(toJson(row));
-    command::write(json, (folder.path() / "omission.json").string());
-    command::printResult("{}", text);
+    console::write(json, (folder.path() / "omission.json").string());
+    console::printResult("{}", text);
     return std::ranges::all_of(rows, &OmissionRow::holds) ? 0 : 1;
 }
 
 }  // namespace
 
-void addOmissionStudy(CLI::App& study, command::Action& action) {
+void addOmissionStudy(CLI::App& study, console::Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = study.add_subcommand("omission", "Bins and time with and without each omission of the plan");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file whose sonar and scene are studied")->required();

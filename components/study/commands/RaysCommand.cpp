@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "components/command/Json.hpp"
+#include "components/console/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/study/commands/StudyCommand.hpp"
 #include "components/study/oracles/EmbreeTracer.hpp"
@@ -62,7 +62,7 @@ RayTimes timeRays(const sonar::SonarConfig& config, const types::Snapshot& scene
 int runStudy(const Options& options) {
     const deployer::SonarAt sonar = deployer::sonarAt(options.deployment, options.ping);
     const RayTimes times = timeRays(sonar.config, sonar.snapshot, options.pings);
-    command::print({{"rays", times.rays},
+    console::print({{"rays", times.rays},
                     {"met", times.met},
                     {"alone_median_ms", times.alone_median_ms},
                     {"alone_p99_ms", times.alone_p99_ms},
@@ -73,7 +73,7 @@ int runStudy(const Options& options) {
 
 }  // namespace
 
-void addRaysStudy(CLI::App& study, command::Action& action) {
+void addRaysStudy(CLI::App& study, console::Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
         study.add_subcommand("rays", "Times ray tracing (Embree) with the number of rays of a sonar's quality");

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "components/command/Console.hpp"
-#include "components/command/Json.hpp"
-#include "components/command/OutputFolder.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/Json.hpp"
+#include "components/console/OutputFolder.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/study/CodedPing.hpp"
 #include "components/study/SpeckleStudy.hpp"
@@ -16,7 +16,7 @@
 namespace insonify::study {
 namespace {
 
-using command::Json;
+using console::Json;
 
 Json toJson(const SpeckleRow& row) {
     Json json{{"name", row.name}, {"loudest", row.loudest}, {"slices", Json::array()}};
@@ -37,23 +37,23 @@ Json toJson(const std::vector<SpeckleRow>& rows, const std::vector<Claim>& claim
 }
 
 void printTable(const std::vector<SpeckleRow>& rows) {
-    command::printResult("{:<22}", "where it is loudest");
-    for (const SpeckleRow& row : rows) command::printResult(" {:>16}", row.name);
+    console::printResult("{:<22}", "where it is loudest");
+    for (const SpeckleRow& row : rows) console::printResult(" {:>16}", row.name);
     const auto names = figuresOf(SpeckleSlice{});
     for (size_t i = 0; i < names.size(); ++i) {
-        command::printResult("\n{:<22}", names[i].name);
+        console::printResult("\n{:<22}", names[i].name);
         for (const SpeckleRow& row : rows) {
             const SpeckleSlice* loud = row.loudestSlice();
-            command::printResult(" {:>16}", loud ? fmt::format("{:.4g}", figuresOf(*loud)[i].value) : "too few bins");
+            console::printResult(" {:>16}", loud ? fmt::format("{:.4g}", figuresOf(*loud)[i].value) : "too few bins");
         }
     }
-    command::printResult("\n");
+    console::printResult("\n");
 }
 
 /** Prints the claims; returns whether none fails. */
 bool printClaims(const std::vector<Claim>& claims) {
     for (const Claim& claim : claims)
-        command::printResult("{}  {}: {:.3g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
+        console::printResult("{}  {}: {:.3g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
                              claim.at_most ? "at most" : "at least", claim.bound);
     return std::ranges::none_of(claims, &Claim::fails);
 }
@@ -86,19 +86,19 @@ int runStudy(const RecordingOptions& options) {
     const deployer::SonarAt found =
         options.deployment.empty() ? ownSonar() : deployer::sonarAt(options.deployment, options.ping);
     for (SpeckleRow& row : simulatedRows(found.config, found.snapshot)) rows.push_back(std::move(row));
-    command::OutputFolder folder(options.out, "study_speckle");
+    console::OutputFolder folder(options.out, "study_speckle");
     folder.keep();
     writeReport(rows, folder.path());
-    command::write(toJson(rows, claims), (folder.path() / "speckle.json").string());
+    console::write(toJson(rows, claims), (folder.path() / "speckle.json").string());
     printTable(rows);
     const bool all_hold = printClaims(claims);
-    command::printResult("report in {}\n", folder.path().string());
+    console::printResult("report in {}\n", folder.path().string());
     return all_hold ? 0 : 1;
 }
 
 }  // namespace
 
-void addSpeckleStudy(CLI::App& study, command::Action& action) {
+void addSpeckleStudy(CLI::App& study, console::Action& action) {
     const auto options = std::make_shared<RecordingOptions>();
     CLI::App* command = study.add_subcommand("speckle", "Statistics of speckle, simulated and recorded");
     options->addTo(*command, "a YAML file whose sonar and scene are studied; absent: a fan over a flat bottom");

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "components/command/Console.hpp"
-#include "components/command/ProgressLine.hpp"
+#include "components/console/Console.hpp"
+#include "components/console/ProgressLine.hpp"
 #include "components/study/StabilityStudy.hpp"
 #include "components/study/commands/StudyCommand.hpp"
 #include "types/ConfigError.hpp"
@@ -23,12 +23,12 @@ void makeFolder(const std::filesystem::path& folder) {
 
 void printRow(const StabilityRow& row) {
     const Outcome& outcome = row.outcome;
-    command::printResult("{:>3}  {:<7}  {:>8}  {}\n", row.number, nameOf(outcome.verdict),
+    console::printResult("{:>3}  {:<7}  {:>8}  {}\n", row.number, nameOf(outcome.verdict),
                          isEvaluated(outcome) ? fmt::format("{:.1e}", outcome.deviation) : "", row.name);
     if (outcome.verdict == Verdict::Fail)
-        command::printResult("     expected: {}\n     got: {}\n", row.expected, outcome.got);
-    if (outcome.verdict == Verdict::NotRun) command::printResult("     {}\n", outcome.got);
-    command::flushResults();
+        console::printResult("     expected: {}\n     got: {}\n", row.expected, outcome.got);
+    if (outcome.verdict == Verdict::NotRun) console::printResult("     {}\n", outcome.got);
+    console::flushResults();
 }
 
 /** Returns the cases whose names contain `text`; all if it is empty. */
@@ -42,8 +42,8 @@ std::vector<StabilityCase> casesWith(const std::string& text) {
 int runStudy(const std::filesystem::path& folder, const std::string& only) {
     std::vector<StabilityCase> cases = casesWith(only);
     makeFolder(folder);
-    command::printResult("case  verdict    deviation\n");
-    command::StudyProgress progress(true, cases.size());
+    console::printResult("case  verdict    deviation\n");
+    console::StudyProgress progress(true, cases.size());
     const std::vector<StabilityRow> rows = studyStability(std::move(cases), [&](const StabilityRow& row) {
         progress.end();
         printRow(row);
@@ -52,14 +52,14 @@ int runStudy(const std::filesystem::path& folder, const std::string& only) {
     });
     progress.end();
     writeStability(rows, folder);
-    command::printResult("{}; {} and stability.json\n", tally(rows), (folder / "stability.md").string());
+    console::printResult("{}; {} and stability.json\n", tally(rows), (folder / "stability.md").string());
     const auto failed = [](const StabilityRow& row) { return row.outcome.verdict == Verdict::Fail; };
     return std::ranges::any_of(rows, failed) ? 1 : 0;
 }
 
 }  // namespace
 
-void addStabilityStudy(CLI::App& study, command::Action& action) {
+void addStabilityStudy(CLI::App& study, console::Action& action) {
     const auto folder = std::make_shared<std::string>(), only = std::make_shared<std::string>();
     CLI::App* command = study.add_subcommand("stability", "Runs stiff and extreme cases and evaluates each");
     command->add_option("--out", *folder, "folder for stability.md and stability.json")->required();

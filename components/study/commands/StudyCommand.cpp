@@ -33,7 +33,7 @@ std::optional<LoggedPings> readLog(const std::filesystem::path& file) {
                        .altitudes = std::move(log->altitudes)};
 }
 
-void addCommand(CLI::App& app, command::Action& action) {
+void addCommand(CLI::App& app, console::Action& action) {
     CLI::App* study = app.add_subcommand("study", "Measures the simulator itself");
     study->require_subcommand(1);
     addErrorStudy(*study, action);
@@ -54,8 +54,8 @@ CLI::Option* RecordingOptions::addTo(CLI::App& command, const std::string& deplo
     return recordings;
 }
 
-command::Json verdictsOf(const std::vector<Claim>& claims) {
-    command::Json verdicts = command::Json::array();
+console::Json verdictsOf(const std::vector<Claim>& claims) {
+    console::Json verdicts = console::Json::array();
     for (const Claim& claim : claims)
         verdicts.push_back({{"claim", claim.text},
                             {"measured", claim.measured},

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "components/command/Action.hpp"
-#include "components/command/Json.hpp"
+#include "components/console/Action.hpp"
+#include "components/console/Json.hpp"
 #include "components/study/ErrorAnalysis.hpp"
 #include "components/study/FitChain.hpp"
 #include "components/study/FitReport.hpp"
@@ -27,10 +27,10 @@ ChainAt chainAt(const std::string& deployment, uint64_t ping, const std::vector<
 std::optional<LoggedPings> readLog(const std::filesystem::path& file);
 
 /** Adds the command `study` with its options to `app`; parsing it sets `action`. */
-void addCommand(CLI::App& app, command::Action& action);
+void addCommand(CLI::App& app, console::Action& action);
 
 /** Adds the command `fit`. */
-void addFit(CLI::App& app, command::Action& action);
+void addFit(CLI::App& app, console::Action& action);
 
 /** Options of the studies that compare simulated with recorded pings. */
 struct RecordingOptions {
@@ -44,15 +44,15 @@ struct RecordingOptions {
 };
 
 /** Returns {claim, measured, bound, verdict} of each claim. */
-command::Json verdictsOf(const std::vector<Claim>& claims);
+console::Json verdictsOf(const std::vector<Claim>& claims);
 
 // Each function adds one study to the command `study`.
-void addErrorStudy(CLI::App& study, command::Action& action);
-void addLikenessStudy(CLI::App& study, command::Action& action);
-void addMultipathStudy(CLI::App& study, command::Action& action);
-void addOmissionStudy(CLI::App& study, command::Action& action);
-void addRaysStudy(CLI::App& study, command::Action& action);
-void addSpeckleStudy(CLI::App& study, command::Action& action);
-void addStabilityStudy(CLI::App& study, command::Action& action);
+void addErrorStudy(CLI::App& study, console::Action& action);
+void addLikenessStudy(CLI::App& study, console::Action& action);
+void addMultipathStudy(CLI::App& study, console::Action& action);
+void addOmissionStudy(CLI::App& study, console::Action& action);
+void addRaysStudy(CLI::App& study, console::Action& action);
+void addSpeckleStudy(CLI::App& study, console::Action& action);
+void addStabilityStudy(CLI::App& study, console::Action& action);
 
 }  // namespace insonify::study

@@ -1,0 +1,225 @@
+// insonify backscatter
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "components/acoustics/Backscatter.hpp"
+#include "components/acoustics/Matter.hpp"
+#include "components/acoustics/RoughSurface.hpp"
+#include "components/acoustics/SeabedBackscatter.hpp"
+#include "components/command/CommandLine.hpp"
+#include "components/console/Console.hpp"
+#include "components/deployer/Json.hpp"
+#include "components/scene/Acoustics.hpp"
+#include "types/DidYouMean.hpp"
+
+namespace insonify::command {
+
+using namespace deployer;
+
+namespace {
+
+constexpr double mackenzie_db = -27;      // ACOUSTICS.md 3.2
+constexpr double water_density = 1025;    ///< [kg/m^3]
+constexpr double min_strength_db = -300;  ///< Printed for zero backscatter.
+
+struct BackscatterOptions {
+    std::string sediment, material;
+    std::optional<double> grain_size_phi, lambert_db;
+    double frequency_khz = 0, sound_speed = 1500;
+    std::vector<double> grazing_deg = {1, 2, 3, 5, 7, 10, 15, 20, 30, 40, 50, 60, 70, 80, 85, 90};
+    bool json = false;
+};
+
+/** A scatterer: its name, law and parameters, and sigma_b over the grazing angle [rad]. */
+struct Scatterer {
+    std::string name, law;
+    Json parameters;
+    std::function<double(double)> section;
+    std::vector<std::string> outside = {};            ///< Parameters outside of the law's validity.
+    std::function<double(double)> diffuse = {};       ///< The diffuse part without the lobe, if there is a lobe.
+    std::map<std::string, std::string> sources = {};  ///< Author and year of the parameters.
+};
+
+void require(const char* option, double value, double min, double max) {
+    if (!(value >= min && value <= max))
+        throw types::ConfigError("", option, fmt::format("is {:g}; must be from {:g} to {:g}", value, min, max));
+}
+
+void check(const BackscatterOptions& options) {
+    require("--frequency-khz", options.frequency_khz, 0.001, 1e5);
+    require("--sound-speed", options.sound_speed, 100, 20000);
+    for (const double angle : options.grazing_deg) require("--grazing-deg", angle, 0, 90);
+    if (options.grain_size_phi) require("--grain-size-phi", *options.grain_size_phi, -20, 20);
+    if (options.lambert_db) require("--lambert-db", *options.lambert_db, -200, 20);
+    const int given = (options.sediment.empty() ? 0 : 1) + (options.material.empty() ? 0 : 1) +
+                      (options.grain_size_phi ? 1 : 0) + (options.lambert_db ? 1 : 0);
+    if (given != 1)
+        throw types::ConfigError("", "backscatter",
+                                 fmt::format("names {} scatterers; give one of --sediment, --grain-size-phi, "
+                                             "--lambert-db and --material",
+                                             given));
+}
+
+Scatterer lambert(std::string name, double lambert_db, Json parameters) {
+    parameters["lambert_db"] = lambert_db;
+    return {std::move(name), "lambert", std::move(parameters),
+            [lambert_db](double grazing) { return acoustics::lambertSection(lambert_db, std::sin(grazing)); }};
+}
+
+Scatterer ofSeabed(std::string name, const acoustics::Seabed& seabed, Json parameters,
+                   const BackscatterOptions& options) {
+    const std::pair<const char*, double> values[] = {{"density_ratio", seabed.density_ratio},
+                                                     {"speed_ratio", seabed.speed_ratio},
+                                                     {"loss_parameter", seabed.loss},
+                                                     {"volume_parameter", seabed.volume},
+                                                     {"spectral_strength_cm4", seabed.roughness},
+                                                     {"spectral_exponent", seabed.roughness_slope}};
+    for (const auto& [key, value] : values) parameters[key] = value;
+    const acoustics::SeabedBackscatter model(seabed, options.frequency_khz, options.sound_speed);
+    Scatterer scatterer{std::move(name), "apl_uw_tr_9407", std::move(parameters),
+                        [model](double grazing) { return model.crossSection(grazing); }};
+    const std::string outside = acoustics::outsideSeabedModel(options.frequency_khz, options.sound_speed);
+    if (!outside.empty()) scatterer.outside.push_back(outside);
+    return scatterer;
+}
+
+[[noreturn]] void refuseName(const char* option, const std::string& name, const std::vector<std::string>& known) {
+    throw types::ConfigError(
+        "", option, fmt::format("is '{}'; {}may be {}", name, types::didYouMean(name, known), fmt::join(known, ", ")));
+}
+
+Scatterer ofSediment(const BackscatterOptions& options) {
+    const std::string& name = options.sediment;
+    if (name == "mackenzie") return lambert(name, mackenzie_db, Json::object());
+    std::vector<std::string> known = acoustics::seabedNames();
+    known.emplace_back("mackenzie");
+    const std::optional<acoustics::Seabed> seabed = acoustics::seabedNamed(name);
+    if (!seabed) refuseName("--sediment", name, known);
+    Json parameters = Json::object();
+    if (const auto phi = acoustics::grainSizeNamed(name)) parameters["grain_size_phi"] = *phi;
+    return ofSeabed(name, *seabed, std::move(parameters), options);
+}
+
+Scatterer ofGrainSize(const BackscatterOptions& options) {
+    const double phi = *options.grain_size_phi;
+    Scatterer scatterer =
+        ofSeabed(fmt::format("{:g} phi", phi), acoustics::seabedOfGrainSize(phi), {{"grain_size_phi", phi}}, options);
+    if (const std::string outside = acoustics::outsideGrainSizes(phi); !outside.empty())
+        scatterer.outside.push_back(outside);
+    return scatterer;
+}
+
+Json parametersOf(const acoustics::MatterProperties& matter) {
+    return {{"reflection", matter.reflection},
+            {"density_kg_m3", matter.density},
+            {"sound_speed_m_s", matter.sound_speed},
+            {"shear_speed_m_s", matter.shear_speed},
+            {"loss_parameter", matter.loss},
+            {"roughness_um", 1e6 * matter.roughness},
+            {"correlation_length_um", 1e6 * matter.length}};
+}
+
+/** Returns a rough solid, or Lambert's law where the relief is unknown. */
+Scatterer ofMaterial(const BackscatterOptions& options) {
+    const auto& names = types::EnumNames<acoustics::Matter>::names;
+    const std::string& name = options.material;
+    const std::optional<acoustics::Matter> known = acoustics::matterNamed(name);
+    if (!known) refuseName("--material", name, {std::begin(names), std::end(names)});
+    const acoustics::MatterProperties& matter = acoustics::propertiesOf(*known);
+    Scatterer scatterer = lambert(name, scene::lambertDb(*known), parametersOf(matter));
+    if (matter.hasRoughness()) {
+        const acoustics::RoughSurface surface =
+            acoustics::roughSurfaceOf(matter, options.frequency_khz, water_density, options.sound_speed);
+        scatterer.law = "rough_solid";
+        scatterer.parameters["reflection"] = surface.reflection();
+        scatterer.parameters["lobe_share"] = surface.lobeShare();
+        scatterer.parameters["lobe_slope"] = std::sqrt(surface.squareSlope());
+        scatterer.section = [surface](double grazing) { return acoustics::solidSection(surface, grazing); };
+        scatterer.diffuse = [surface](double grazing) { return surface.diffuse(grazing); };
+    }
+    scatterer.sources = {{"density_and_speeds", std::string(matter.source)},
+                         {"roughness", std::string(matter.roughness_source)}};
+    return scatterer;
+}
+
+Scatterer scattererOf(const BackscatterOptions& options) {
+    if (!options.sediment.empty()) return ofSediment(options);
+    if (options.grain_size_phi) return ofGrainSize(options);
+    if (options.lambert_db) return lambert("lambert", *options.lambert_db, Json::object());
+    return ofMaterial(options);
+}
+
+/** Returns 10 log10 of sigma_b. Below 0.001 deg it is the value at 0.001 deg, so that Lambert's law stays finite. */
+double strengthDb(const std::function<double(double)>& section, double grazing_deg) {
+    const double strength = section(std::max(grazing_deg, 0.001) * std::numbers::pi / 180);
+    return std::max(min_strength_db, 10 * std::log10(strength));
+}
+
+Json backscatterReport(const BackscatterOptions& options) {
+    const Scatterer scatterer = scattererOf(options);
+    Json strengths = Json::array(), warnings = Json::array();
+    for (const double angle : options.grazing_deg) strengths.push_back(strengthDb(scatterer.section, angle));
+    for (const std::string& outside : scatterer.outside)
+        warnings.push_back(fmt::format("{} is extrapolated: {}", scatterer.law, outside));
+    Json report = {{"name", scatterer.name},
+                   {"law", scatterer.law},
+                   {"parameters", scatterer.parameters},
+                   {"grazing_deg", options.grazing_deg},
+                   {"strength_db", strengths},
+                   {"warnings", warnings}};
+    if (scatterer.diffuse)
+        for (const double angle : options.grazing_deg)
+            report["diffuse_db"].push_back(strengthDb(scatterer.diffuse, angle));
+    if (!scatterer.sources.empty()) report["sources"] = scatterer.sources;
+    return report;
+}
+
+void printBackscatter(const Json& report) {
+    const bool has_lobe = report.contains("diffuse_db");
+    console::printResult("{}, by law {}\n", report["name"].get<std::string>(), report["law"].get<std::string>());
+    for (const auto& [key, value] : report["parameters"].items())
+        console::printResult("  {:22} {:.5g}\n", key, value.get<double>());
+    if (report.contains("sources"))
+        for (const auto& [key, source] : report["sources"].items())
+            console::printResult("  source of {:12} {}\n", key, source.get<std::string>());
+    console::printResult("grazing [deg]   strength [dB]{}\n", has_lobe ? "   without the lobe [dB]" : "");
+    for (size_t i = 0; i < report["grazing_deg"].size(); ++i)
+        console::printResult("  {:11g}   {:13.2f}{}\n", report["grazing_deg"][i].get<double>(),
+                             report["strength_db"][i].get<double>(),
+                             has_lobe ? fmt::format("   {:21.2f}", report["diffuse_db"][i].get<double>()) : "");
+    for (const Json& line : report["warnings"]) console::printResult("warning: {}\n", line.get<std::string>());
+}
+
+int showBackscatter(const BackscatterOptions& options) {
+    check(options);
+    const Json report = backscatterReport(options);
+    options.json ? print(report) : printBackscatter(report);
+    return 0;
+}
+
+}  // namespace
+
+void addBackscatterCommand(CLI::App& app, Action& action) {
+    const auto options = std::make_shared<BackscatterOptions>();
+    CLI::App* command = app.add_subcommand("backscatter", "Computes how strongly a seabed or a material scatters back");
+    command->add_option("--sediment", options->sediment, "a seabed of APL-UW TR 9407 by its name");
+    command->add_option("--grain-size-phi", options->grain_size_phi, "a seabed by its mean grain size [phi]");
+    command->add_option("--lambert-db", options->lambert_db, "Lambert's law with this parameter [dB]");
+    command->add_option("--material", options->material, "a material by its name, see `describe materials`");
+    command->add_option("--frequency-khz", options->frequency_khz, "[kHz]")->required();
+    command->add_option("--sound-speed", options->sound_speed, "in the water [m/s]")->capture_default_str();
+    command->add_option("--grazing-deg", options->grazing_deg, "grazing angle [deg]; may be repeated")
+        ->allow_extra_args(false);
+    command->add_flag("--json", options->json, "for machines");
+    command->callback([options, &action] { action = [options] { return showBackscatter(*options); }; });
+}
+
+}  // namespace insonify::command

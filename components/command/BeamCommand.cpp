@@ -1,0 +1,142 @@
+// insonify beam DEPLOYMENT
+#include <fmt/core.h>
+
+#include <cmath>
+#include <memory>
+
+#include "components/command/CommandLine.hpp"
+#include "components/console/Console.hpp"
+#include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/Json.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "components/framework/Deployment.hpp"
+#include "components/sonar/bins/EchoGrid.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::command {
+
+using namespace deployer;
+
+namespace {
+
+using types::degrees, types::radians;
+
+/** Two-way levels along one axis, and their data-sheet figures. */
+struct Cut {
+    std::vector<double> angle_deg, level_db;
+    acoustics::CutShape shape;
+
+    void add(double angle, double power) {
+        if (!(power > 0)) return;
+        angle_deg.push_back(degrees(angle));
+        level_db.push_back(10 * std::log10(power));
+    }
+};
+
+/** Returns the cut of a beam or an aperture with a box pattern. */
+Cut boxOf(double low, double high) {
+    Cut cut;
+    cut.add(low, 1);
+    cut.add(high, 1);
+    cut.shape = {high - low, (high - low) / 2, {}};
+    return cut;
+}
+
+/** Returns the azimuth cut of the beam nearest to straight ahead, at the azimuth cells, as the cells are weighted. */
+Cut azimuthCut(const sonar::RenderPlan& plan) {
+    const auto nearer = [](const sonar::Beam& a, const sonar::Beam& b) {
+        return std::abs(a.centre) < std::abs(b.centre);
+    };
+    const auto ahead = std::min_element(plan.beams.begin(), plan.beams.end(), nearer);
+    if (!plan.has(sonar::Pass::Beamform)) return boxOf(ahead->low - ahead->centre, ahead->high - ahead->centre);
+    const std::vector<double> weights =
+        sonar::beamformerOf(plan).weights(static_cast<size_t>(ahead - plan.beams.begin()));
+    Cut cut;
+    for (size_t c = 0; c < weights.size(); ++c) cut.add(plan.cells[c].centre - ahead->centre, weights[c]);
+    const double axis = plan.directivity->azimuth(ahead->centre, ahead->centre);
+    cut.shape = acoustics::shapeOf(
+        [&](double angle) { return plan.directivity->azimuth(ahead->centre + angle, ahead->centre) / axis; });
+    return cut;
+}
+
+/** Returns the weights of the rows of samples. */
+Cut elevationCut(const sonar::RenderPlan& plan) {
+    const double half = radians(plan.sampled.beam_height_deg) / 2;
+    if (!plan.directivity || !plan.directivity->hasElevation()) return boxOf(-half, half);
+    constexpr int steps = 2000;
+    Cut cut;
+    for (int i = 0; i <= steps; ++i) {
+        const double angle = half * (2.0 * i / steps - 1);
+        cut.add(angle, plan.directivity->elevation(angle));
+    }
+    const double axis = plan.directivity->elevation(0);
+    cut.shape = acoustics::shapeOf([&](double angle) { return plan.directivity->elevation(angle) / axis; });
+    return cut;
+}
+
+Json cutJson(const Cut& cut) {
+    const auto orNull = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+    Json first_null = cut.shape.first_null ? Json(degrees(*cut.shape.first_null)) : Json();
+    return {{"angle_deg", cut.angle_deg},
+            {"level_db", cut.level_db},
+            {"width_3db_deg", degrees(cut.shape.width_3db)},
+            {"first_null_deg", first_null},
+            {"peak_sidelobe_db", orNull(cut.shape.peak_sidelobe_db)}};
+}
+
+void printCut(const char* name, const Cut& cut) {
+    const auto shown = [](const std::optional<double>& value, const char* unit) {
+        return value ? fmt::format("{:.3f} {}", *value, unit) : std::string("none");
+    };
+    std::optional<double> first_null;
+    if (cut.shape.first_null) first_null = degrees(*cut.shape.first_null);
+    console::printResult("{}, two way: {:.3f} deg at -3 dB, first null {}, highest sidelobe {}\n", name,
+                         degrees(cut.shape.width_3db), shown(first_null, "deg"),
+                         shown(cut.shape.peak_sidelobe_db, "dB"));
+}
+
+struct BeamOptions {
+    std::string deployment, task;
+    bool json = false;
+};
+
+const sonar::PingTask& sonarOf(const framework::Deployment& deployment, const BeamOptions& options) {
+    std::string names;
+    for (const auto& task : deployment.tasks()) {
+        const auto* sonar = dynamic_cast<const sonar::PingTask*>(task.get());
+        if (sonar && (options.task.empty() || options.task == task->name())) return *sonar;
+        if (sonar) names += (names.empty() ? "" : ", ") + task->name();
+    }
+    const std::string has = names.empty() ? "there is none" : "may be " + names;
+    throw types::ConfigError(options.deployment, "--task", fmt::format("is {}, no sonar; {}", options.task, has));
+}
+
+int showBeam(const BeamOptions& options) {
+    framework::Registry registry = coreTasks();
+    const std::string file = deploymentIn(options.deployment);
+    const framework::Deployment deployment(framework::DeploymentSpec::load(file), registry);
+    const sonar::RenderPlan plan =
+        sonar::makeRenderPlan(sonarOf(deployment, options).locatedConfig(), types::Geometry{});
+    const Cut azimuth = azimuthCut(plan), elevation = elevationCut(plan);
+    if (options.json) {
+        print(Json{{"azimuth", cutJson(azimuth)}, {"elevation", cutJson(elevation)}});
+    } else {
+        printCut("azimuth", azimuth);
+        printCut("elevation", elevation);
+    }
+    return 0;
+}
+
+}  // namespace
+
+void addBeamCommand(CLI::App& app, Action& action) {
+    const auto options = std::make_shared<BeamOptions>();
+    CLI::App* command = app.add_subcommand("beam", "Shows a sonar's beam, two way, as its echoes are weighed");
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
+    command->add_option("--task", options->task, "the sonar; absent: the first");
+    command->add_flag("--json", options->json, "for machines; scripts/plot draws it");
+    command->callback([options, &action] { action = [options] { return showBeam(*options); }; });
+}
+
+}  // namespace insonify::command

@@ -1,0 +1,428 @@
+// insonify log info|export|cut|repair|check FILE
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "components/command/CommandLine.hpp"
+#include "components/console/Console.hpp"
+#include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/Export.hpp"
+#include "components/deployer/Import.hpp"
+#include "components/deployer/Json.hpp"
+#include "components/deployer/RecordedSettings.hpp"
+#include "components/deployer/StreamMeaning.hpp"
+#include "components/log/Check.hpp"
+#include "components/log/Copy.hpp"
+#include "components/log/Export.hpp"
+#include "types/DidYouMean.hpp"
+
+namespace insonify::command {
+
+using namespace deployer;
+
+namespace fs = std::filesystem;
+namespace {
+
+Json infoJson(const log::Reader& log) {
+    Json streams = Json::array();
+    for (const log::Stream& stream : log.streams())
+        streams.push_back({{"name", stream.name},
+                           {"type", stream.type},
+                           {"count", stream.count},
+                           {"first_s", stream.first.seconds()},
+                           {"last_s", stream.last.seconds()},
+                           {"rate_hz", stream.rate()},
+                           {"set_backs", stream.set_backs}});
+    return {{"bytes", log.bytes()}, {"complete", log.complete()}, {"streams", streams}};
+}
+
+void printTable(const log::Reader& log) {
+    console::printResult("{}: {} bytes, {}\n", log.path().string(), log.bytes(),
+                         log.complete() ? "complete" : "cut off");
+    console::printResult("  {:24} {:32} {:>8} {:>26} {:>26} {:>9}\n", "stream", "type", "samples", "first", "last",
+                         "rate Hz");
+    for (const log::Stream& s : log.streams())
+        console::printResult("  {:24} {:32} {:>8} {:>26} {:>26} {:>9.2f}\n", s.name, s.type, s.count,
+                             log::readable(s.first), log::readable(s.last), s.rate());
+    for (const log::Stream& s : log.streams())
+        if (s.set_backs > 0)
+            console::printResult("  {}: times go back {} times, by {:.6g} s in all: the clock was set back\n", s.name,
+                                 s.set_backs, s.set_back.seconds());
+}
+
+/** Opens a log, and prints a notice where it cannot be read to its end. */
+std::unique_ptr<log::Reader> opened(const std::string& file) {
+    auto log = log::openLog(file);
+    if (!log->complete()) console::printDiagnostic("notice: {}: {}\n", file, log->diagnostic());
+    return log;
+}
+
+/** Returns the metadata of each stream: the deployment, the seed and the plan, which the streams of a run share, and
+ *  the meaning of the stream's numbers. */
+Json metadataJson(const log::Reader& log) {
+    Json all = Json::object();
+    for (const log::Stream& stream : log.streams())
+        all[stream.name] = {{"metadata", stream.metadata}, {"meaning", meaningOf(log, stream)}};
+    return all;
+}
+
+void printMetadata(const log::Reader& log) {
+    std::set<std::pair<std::string, std::string>> reported;  // once for all streams with the same metadata
+    for (const log::Stream& stream : log.streams()) {
+        console::printResult("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
+        for (const auto& [key, value] : stream.metadata)
+            if (reported.emplace(key, value).second)
+                console::printResult("{}:{}{}\n", key, value.find('\n') == value.npos ? " " : "\n", value);
+    }
+}
+
+int logInfo(const std::string& file, bool json, bool metadata) {
+    const auto log = opened(file);
+    if (!json) {
+        printTable(*log);
+        if (metadata) printMetadata(*log);
+        return 0;
+    }
+    Json all = infoJson(*log);
+    if (metadata) all["metadata"] = metadataJson(*log);
+    print(all);
+    return 0;
+}
+
+void makeFolder(const fs::path& folder) {
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (!fs::is_directory(folder))
+        throw types::ConfigError(folder, "--to", "is no folder and cannot be made: " + failed.message());
+}
+
+/** Makes the folder of an output file. */
+void makeFolderOf(const fs::path& to) {
+    if (to.has_parent_path()) makeFolder(to.parent_path());
+}
+
+/** Pings as text are about ten times as large as in the log, and slow to read. */
+void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
+    constexpr double line = 40, reported_from = 1e8;  // [B]
+    const size_t index = log.indexOf(stream);
+    const log::Stream& pings = log.streams()[index];
+    if (!log::holdsPings(pings) || pings.count == 0) return;
+    types::Sonar ping;
+    readPing(log, *std::ranges::find(log.samples(), index, &log::SampleRef::stream), ping);
+    const double bins = static_cast<double>(ping.bins.size()) * static_cast<double>(pings.count);
+    if (bins * line > reported_from)
+        console::printDiagnostic(
+            "notice: {} gets a line for each bin, some {:.0f} million, {:.1f} GB; an .npz takes {:.2g} GB\n",
+            to.string(), bins / 1e6, bins * line / 1e9, bins * sizeof(float) / 1e9);
+}
+
+/** Returns the written files. */
+std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const std::string& poses, const fs::path& to,
+                               bool along_ground) {
+    const log::Stream& exported = log.streams()[log.indexOf(name)];
+    const std::string &stream = exported.name, meta = text(meaningOf(log, exported));
+    if (!to.has_extension() || fs::is_directory(to)) {
+        makeFolder(to);
+        return log::exportNpz(log, stream, to / (stream + ".npz"), meta);
+    }
+    if (along_ground && to.extension() != ".png")
+        throw types::ConfigError("", "--ground", "is for pictures: --to FILE.png");
+    makeFolderOf(to);
+    if (to.extension() == ".npz") return log::exportNpz(log, stream, to, meta);
+    if (to.extension() == ".png") return exportPictures(log, stream, to, along_ground);
+    if (to.extension() == ".xtf") return exportXtf(log, stream, poses, to), std::vector{to};
+    if (to.extension() == ".oculus") return exportOculus(log, stream, to), std::vector{to};
+    if (to.extension() != ".csv")
+        throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv, .png, .mcap, .xtf or .oculus");
+    noteSize(log, stream, to);
+    log::exportCsv(log, stream, to);
+    return {to};
+}
+
+struct Options {
+    std::string file, deployment, stream, poses, to, samples;
+    std::vector<std::string> files, streams;
+    std::string from, until;
+    std::string for_mcap;  ///< A given option that only an MCAP file takes; empty: none.
+    log::McapConfig mcap;
+    bool json = false, metadata = false, ground = false;
+};
+
+void reportLost(const log::Copied& copied) {
+    for (const std::string& lost : copied.lost) console::printDiagnostic("lost: {}\n", lost);
+}
+
+int exportMessages(const Options& options) {
+    makeFolderOf(options.to);
+    log::Selection selection;
+    if (!options.stream.empty()) selection.streams.insert(options.stream);
+    const log::Copied copied = log::copyLog({options.file}, options.to, {.selection = selection, .anew = options.mcap});
+    reportLost(copied);
+    console::printResult("{}: {} messages\n", options.to, copied.samples);
+    return 0;
+}
+
+int logExport(const Options& options) {
+    if (log::isMcap(options.to)) return exportMessages(options);
+    if (!options.for_mcap.empty())
+        throw types::ConfigError("", options.for_mcap, "is for FILE.mcap; --to is " + options.to);
+    const auto log = opened(options.file);
+    if (options.stream.empty())
+        throw types::ConfigError("", "--stream", "is missing; only an MCAP file takes all streams");
+    for (const fs::path& written : exportTo(*log, options.stream, options.poses, options.to, options.ground))
+        console::printResult("{}\n", written.string());
+    return 0;
+}
+
+/** Parses "10:20": the numbers from 10 on, without 20; either number may be missing. */
+void readRange(const std::string& text, log::Selection& selection) {
+    const auto fail = [&] {
+        throw types::ConfigError("", "--samples", "is " + text + "; it may be FIRST:LAST, either may be omitted");
+    };
+    const size_t colon = text.find(':');
+    if (colon == text.npos) fail();
+    const auto number = [&](std::string_view digits, size_t& value) {
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        if (!digits.empty() && (error != std::errc() || end != digits.data() + digits.size())) fail();
+    };
+    number(std::string_view(text).substr(0, colon), selection.first);
+    number(std::string_view(text).substr(colon + 1), selection.last);
+    if (selection.first >= selection.last)
+        throw types::ConfigError("", "--samples", "is " + text + "; FIRST must be less than LAST");
+}
+
+/** Returns the first and last stamp of the files of a log; none: the files have no sample. */
+std::optional<std::pair<types::Time, types::Time>> spanOf(const std::vector<std::string>& files) {
+    std::optional<std::pair<types::Time, types::Time>> span;
+    for (const std::string& file : files) {
+        const auto log = log::openLog(file);
+        if (log->samples().empty()) continue;
+        if (!span) span.emplace(log->samples().front().time, types::Time{});
+        span->second = log->samples().back().time;
+    }
+    return span;
+}
+
+log::Selection selectionOf(const Options& options) {
+    log::Selection selection;
+    selection.streams = {options.streams.begin(), options.streams.end()};
+    if (!options.from.empty() || !options.until.empty()) {
+        const types::Time start = spanOf(options.files).value_or(std::pair<types::Time, types::Time>{}).first;
+        if (!options.from.empty()) selection.from = log::readTime(options.from, "--from", start);
+        if (!options.until.empty()) selection.until = log::readTime(options.until, "--until", start);
+        if (selection.from >= selection.until)
+            throw types::ConfigError("", "--until", "is " + options.until + "; must be after --from");
+    }
+    if (!options.samples.empty()) readRange(options.samples, selection);
+    return selection;
+}
+
+void refuseOtherNames(const std::string& to) {
+    if (!log::isMcap(to) && fs::path(to).extension() != ".log")
+        throw types::ConfigError(to, "--to", "must end in .log or .mcap");
+    if (fs::path(to).filename() == "properties.0.log")
+        throw types::ConfigError(to, "--to", "is the name of a log of properties; give another");
+}
+
+/** Throws for a copy without a sample, which is not made. */
+[[noreturn]] void refuseNothing(const Options& options) {
+    const auto span = spanOf(options.files);
+    throw types::ConfigError(options.files.front(), "",
+                             span ? fmt::format("none of its samples is in the requested part; they are from {} to {}",
+                                                log::readable(span->first), log::readable(span->second))
+                                  : "holds no sample");
+}
+
+/** Copies into `--to`, and reports what was lost. */
+log::Copied copyTo(const std::string& to, const std::vector<fs::path>& files, const log::CopyOptions& options) {
+    refuseOtherNames(to);
+    makeFolderOf(to);
+    log::Copied copied = log::copyLog(files, to, options);
+    reportLost(copied);
+    return copied;
+}
+
+/** Copies also the log of properties, and reports what was copied. */
+int finish(const std::string& to, const fs::path& first, const log::Copied& copied) {
+    if (const std::string notice = log::copyProperties(first, to); !notice.empty())
+        console::printDiagnostic("notice: {}\n", notice);
+    console::printResult(
+        "{}: {} samples, {}\n", to, copied.samples,
+        copied.lost.empty() ? "nothing was lost" : fmt::format("lost in {} places", copied.lost.size()));
+    return 0;
+}
+
+/** Reports files of a log that begin before the previous file with one of their streams ends. */
+void reportOverlaps(const std::vector<std::string>& files) {
+    std::map<std::string, std::pair<types::Time, std::string>> ends;  // of each stream, and its file
+    for (const std::string& file : files) {
+        const auto log = log::openLog(file);
+        std::set<std::string> seen;
+        for (const log::SampleRef& at : log->samples()) {
+            const std::string& stream = log->streams()[at.stream].name;
+            const auto before = ends.find(stream);
+            if (seen.insert(stream).second && before != ends.end() && at.time <= before->second.first) {
+                console::printDiagnostic("notice: {} of {} begins before it ends in {}; the copy has both\n", stream,
+                                         file, before->second.second);
+                break;
+            }
+        }
+        for (const log::SampleRef& at : log->samples()) ends[log->streams()[at.stream].name] = {at.time, file};
+    }
+}
+
+int logCut(const Options& options) {
+    if (options.files.size() > 1) reportOverlaps(options.files);
+    const log::Copied copied = copyTo(options.to, {options.files.begin(), options.files.end()},
+                                      {.selection = selectionOf(options), .needs_samples = true});
+    if (copied.samples == 0) refuseNothing(options);
+    return finish(options.to, options.files.front(), copied);
+}
+
+int logRepair(const Options& options) {
+    return finish(options.to, options.file,
+                  copyTo(options.to, {fs::path(options.file)}, {.at_damage = log::AtDamage::Skip}));
+}
+
+int logImport(const Options& options) {
+    refuseOtherNames(options.to);
+    makeFolderOf(options.to);
+    std::optional<framework::DeploymentSpec> spec;
+    if (!options.deployment.empty()) spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
+    const Imported made = importRecording(options.file, std::move(spec), options.to);
+    for (const std::string& notice : made.notices) console::printDiagnostic("notice: {}: {}\n", options.file, notice);
+    for (const std::string& property : made.properties)
+        console::printDiagnostic("notice: as recorded: {}\n", withShortLists(property));
+    if (made.changes > 0)
+        console::printDiagnostic("notice: settings change {} times; {}\n", made.changes,
+                                 options.deployment.empty() ? "each ping has its own range and bins"
+                                                            : "properties.0.log next to the log has them");
+    console::printResult("{}: {} pings as {}\n", options.to, made.pings, made.stream);
+    return 0;
+}
+
+Json verdictJson(const log::Verdict& verdict) {
+    Json diagnostic;
+    if (const auto& found = verdict.diagnostic)
+        diagnostic = {{"file", found->file.string()}, {"byte", found->byte}, {"message", found->message}};
+    return {{"valid", !verdict.diagnostic},
+            {"streams", verdict.streams},
+            {"samples", verdict.samples},
+            {"set_backs", verdict.set_backs},
+            {"wrong", diagnostic}};
+}
+
+int logCheck(const Options& options) {
+    const log::Verdict verdict = log::check(options.file);
+    if (options.json) print(verdictJson(verdict));
+    if (const auto& found = verdict.diagnostic)
+        throw types::ConfigError(found->file, fmt::format("byte {}", found->byte), found->message);
+    if (!options.json)
+        console::printResult(
+            "{}: valid, {} streams, {} samples{}\n", options.file, verdict.streams, verdict.samples,
+            verdict.set_backs > 0
+                ? fmt::format("; times go back {} times, which Rock's readers may refuse", verdict.set_backs)
+                : "");
+    return 0;
+}
+
+/** Adds an option for the messages of an MCAP file, named as the logger's properties. */
+template <class E>
+void addMcapOption(CLI::App& command, const std::string& name, const char* help, Options& options, E& value) {
+    const auto& names = types::EnumNames<E>::names;
+    const auto take = [&options, &value, &names, name](const std::string& given) {
+        const auto* found = std::ranges::find(names, given);
+        if (found == std::end(names))
+            throw types::ConfigError(
+                "", name,
+                fmt::format("is {}; {}may be {}", given, types::didYouMean(given, {std::begin(names), std::end(names)}),
+                            fmt::join(names, ", ")));
+        value = static_cast<E>(found - std::begin(names));
+        options.for_mcap = name;
+    };
+    command.add_option_function<std::string>(name, take, help)->type_name(fmt::format("{{{}}}", fmt::join(names, ",")));
+}
+
+void addMcapOptions(CLI::App& command, Options& options) {
+    addMcapOption(command, "--dtype", "of echoes in an MCAP file (default: float32)", options, options.mcap.dtype);
+    addMcapOption(command, "--world-frame", "of poses in an MCAP file (default: enu)", options,
+                  options.mcap.world_frame);
+}
+
+/** Adds a subcommand of `log` that does `work`. */
+template <class Work>
+CLI::App* add(CLI::App& log, Action& action, const std::shared_ptr<Options>& options, const char* name,
+              const char* help, Work work) {
+    CLI::App* command = log.add_subcommand(name, help);
+    command->callback([options, &action, work] { action = [options, work] { return work(*options); }; });
+    return command;
+}
+
+}  // namespace
+
+void addLogCommand(CLI::App& app, Action& action) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* log = app.add_subcommand("log", "Inspects, cuts and repairs logs")->require_subcommand(1);
+
+    CLI::App* info = add(*log, action, options, "info", "Streams, types, counts, time span and rate",
+                         [](const Options& asked) { return logInfo(asked.file, asked.json, asked.metadata); });
+    info->add_flag("--json", options->json, "for machines");
+    info->add_flag("--metadata", options->metadata, "deployment, seed and plan, and what the numbers mean, with units");
+
+    CLI::App* out =
+        add(*log, action, options, "export",
+            "Writes a stream as numpy arrays, text, pictures, XTF or .oculus, or the log as ROS 2 messages", logExport);
+    out->add_option("--stream", options->stream, "task.port, as `log info` lists them; none: all, to an MCAP file");
+    out->add_option("--pose", options->poses, "of an XTF file: task.port of the sonar's poses, or its vehicle's");
+    out->add_option("--to", options->to,
+                    "FILE.npz, FILE.csv, FILE.png, FILE.mcap, FILE.xtf (side-scan), FILE.oculus, or a folder for "
+                    "FILE.npz")
+        ->required();
+    out->add_flag("--ground", options->ground,
+                  "a side-scan's pictures along a flat bottom, each line by the log's altitude at its time");
+    addMcapOptions(*out, *options);
+
+    CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);
+    cut->add_option("FILE", options->files, "a pocolog or MCAP file, or those of a log in order")->required();
+    cut->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
+    cut->add_option("--from", options->from,
+                    "earliest time: seconds after the log's first stamp, or a date, as in 2026-11-22T12:55:44Z");
+    cut->add_option("--until", options->until, "time at which the copy ends, not included; as for --from");
+    cut->add_option("--samples", options->samples, "FIRST:LAST, numbers from 0 in the kept streams, LAST not included");
+    cut->add_option("--stream", options->streams, "task.port to keep; may be given again; none: all")
+        ->allow_extra_args(false);
+
+    CLI::App* import = add(
+        *log, action, options, "import",
+        "Makes a log of a recording: XTF or JSF of a side-scan, an ARIS', a Gemini's or an Oculus', to be exported, "
+        "replayed and scored",
+        logImport);
+    import
+        ->add_option("FILE", options->file,
+                     "FILE.xtf, FILE.jsf, FILE.aris, FILE.glf, FILE.oculus, or messages of an Oculus as captured")
+        ->required();
+    import->add_option("DEPLOYMENT", options->deployment,
+                       "whose receiver's pings they become; a recording without poses gets its trajectories; none: the "
+                       "log has only the file's data");
+    import->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
+
+    CLI::App* repair =
+        add(*log, action, options, "repair",
+            "Copies the intact parts of a damaged log into a new log, and reports what was lost", logRepair);
+    repair->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
+
+    CLI::App* check =
+        add(*log, action, options, "check", "Reads a log strictly and names the first wrong byte", logCheck);
+    check->add_flag("--json", options->json, "for machines");
+
+    for (CLI::App* command : {info, out, repair, check})
+        command->add_option("FILE", options->file, "a pocolog or MCAP file")->required();
+}
+
+}  // namespace insonify::command

@@ -1,0 +1,235 @@
+// insonify replay LOG DEPLOYMENT [--rerender [--score]]
+#include <fmt/core.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <set>
+
+#include "components/command/CommandLine.hpp"
+#include "components/command/RunCommand.hpp"
+#include "components/console/Console.hpp"
+#include "components/deployer/RecordedSettings.hpp"
+#include "components/deployer/ReplaySpec.hpp"
+#include "components/deployer/Score.hpp"
+#include "components/deployer/StopSignal.hpp"
+#include "components/log/LoggerClock.hpp"
+#include "components/log/Reader.hpp"
+#include "types/Reason.hpp"
+
+namespace insonify::command {
+
+using namespace deployer;
+
+namespace {
+
+constexpr const char* rerendered_file = "rerendered.0.log";
+
+struct Asked : RunOptions {
+    ReplayOptions replay;
+    std::string from;
+    bool score = false, step = false;
+    size_t worst = 10;
+};
+
+void notice(const Asked& options, const std::string& text) {
+    if (!options.quiet && !text.empty()) console::printDiagnostic("notice: {}\n", text);
+}
+
+/** Applies the log's own settings of tasks that run, below the user's; returns the changes during the recording. */
+std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& options) {
+    RecordedSettings recorded =
+        recordedSettings(log, loadSpec(options), options.set, options.seed, options.replay.from);
+    const framework::DeploymentSpec kept = replaying(loadSpec(options), log, options.replay);
+    std::erase_if(recorded.assignments,
+                  [&](const std::string& setting) { return !kept.task(setting.substr(0, setting.find('.'))); });
+    std::erase_if(recorded.changed, [&](const RecordedProperty& property) { return !kept.task(property.task); });
+    notice(options, recorded.notice);
+    for (const std::string& setting : recorded.assignments)
+        notice(options, "as in the log: " + withShortLists(setting));
+    for (const RecordedProperty& property : recorded.changed)
+        for (const RecordedProperty::Change& change : property.changes)
+            notice(options, fmt::format("as in the log, from {} on: {}.{}={}", log::readable(change.from),
+                                        property.task, property.name, withShortLists(change.value)));
+    options.recorded = std::move(recorded.assignments);
+    if (!options.seed) options.seed = recordedSeed(log);
+    return std::move(recorded.changed);
+}
+
+/** Reports the tasks that do not run because they communicate outside. */
+void reportOmitted(const framework::DeploymentSpec& spec, const Asked& options) {
+    if (options.replay.outside) return;
+    for (const std::string& task : outsideTasks(spec))
+        notice(options, task + " is omitted, because it communicates outside the deployment; --outside runs it");
+}
+
+/** Reports the tasks whose settings by `--set` change nothing, because the log replaces their pings. */
+void reportReplaced(const framework::DeploymentSpec& spec, const log::Reader& log, const Asked& options) {
+    std::set<std::string> writers;
+    for (const std::string& stream : pingStreams(log, spec)) writers.insert(writerOf(spec, stream));
+    for (const std::string& task : writers)
+        if (std::ranges::any_of(options.set, [&](const std::string& set) { return set.starts_with(task + "."); }))
+            notice(options, task + ": the log replaces what it sends; --rerender makes its pings again");
+}
+
+/** Scores the log against the new rendering and prints the score. Returns the exit code. */
+int printScore(log::Reader& log, const std::vector<std::string>& streams, size_t worst,
+               const std::filesystem::path& folder) {
+    const auto again = log::openLog(folder / rerendered_file);
+    log::Reader& rendered = *again;
+    std::vector<StreamScore> scores;
+    for (const std::string& stream : streams) scores.push_back(score(log, rendered, stream));
+    write(scoreJson(scores), folder / "score.json");
+    writeScorePictures(log, rendered, scores, worst, folder);
+    console::printResult("{}", scoreTable(scores, worst));
+    for (const StreamScore& score : scores)
+        if (const std::string rest = findOmitted(score); !rest.empty())
+            console::printDiagnostic("warning: {}: not all pings were compared: {}\n", score.stream, rest);
+    if (std::ranges::any_of(scores, [](const StreamScore& score) { return !score.pings.empty(); })) return 0;
+    console::printDiagnostic("insonify: no ping of {} could be compared with one that was rendered again\n",
+                             log.path().string());
+    return 1;
+}
+
+/** Waits for a line on stdin; returns at the end of stdin. */
+std::string nextLine(const std::atomic<bool>& stop) {
+    std::string line;
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    for (char read_last = 0; !stop && read_last != '\n';) {
+        if (poll(&input, 1, 50) == 0) continue;
+        if (read(STDIN_FILENO, &read_last, 1) != 1) break;
+        if (read_last != '\n') line += read_last;
+    }
+    return line;
+}
+
+/** Waits for a line that starts the next instant; `seek S` first moves to another time. A refused line is ignored. */
+void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& stop) {
+    const std::string seek = "seek ";
+    for (std::string line = nextLine(stop); line.starts_with(seek); line = nextLine(stop)) try {
+            deployment.call(deployment.tasks().front()->name() + ".seek", {line.substr(seek.size())});
+            return;
+        } catch (const std::exception& error) {
+            console::printDiagnostic("insonify: {}\n", types::reasonOf(error));
+        }
+}
+
+/** Work between two instants: properties follow the log, and `--step` prints the time in the log and waits. */
+void followLog(Asked& options, std::vector<RecordedProperty> changed, types::Time start) {
+    const auto live = std::make_shared<LiveSettings>(std::move(changed));
+    std::function<void(framework::Deployment&)> step;
+    if (options.step)
+        step = [start, &stop = stopOnSignals()](framework::Deployment& deployment) {
+            const double place = deployment.status().tasks.front().playback.value().at_s;
+            const std::string date = log::readable(start + types::Time::fromSeconds(place));
+            console::printDiagnostic("{:.6f} s{}\n", place, date.ends_with(" s") ? "" : ", " + date);
+            waitForStep(deployment, stop);
+        };
+    if (!options.step && live->empty()) return;
+    options.progress = [live, step](framework::Deployment& deployment, const framework::Progress&) {
+        if (step) step(deployment);
+        live->follow(deployment);
+    };
+}
+
+/** Runs the deployment with the log in the place of tasks; `changed` are properties that follow the log. */
+int replayWith(std::vector<RecordedProperty> changed, log::Reader& log, Asked& options) {
+    framework::DeploymentSpec spec = loadSpec(options);
+    reportOmitted(spec, options);
+    if (!options.replay.rerender) reportReplaced(spec, log, options);
+    const std::vector<std::string> streams = options.score ? pingStreams(log, spec) : std::vector<std::string>{};
+    if (options.score && streams.empty())
+        throw types::ConfigError(log.path(), "", "holds no pings of a task of " + spec.file + "; nothing to score");
+    spec = replaying(std::move(spec), log, options.replay);
+    if (options.score) addLogger(spec, streams, rerendered_file);
+    followLog(options, std::move(changed), log.samples().empty() ? types::Time{} : log.samples().front().time);
+    std::filesystem::path folder;
+    const int code = runDeployment(std::move(spec), options, &folder);
+    return code == 0 && options.score ? printScore(log, streams, options.worst, folder) : code;
+}
+
+/** Returns the errors with the log as the origin of its own values. */
+types::ConfigError namingLog(types::Diagnostics diagnostics, const std::string& log) {
+    for (types::Diagnostic& each : diagnostics)
+        if (each.file == recorded_origin)
+            each.file = log, each.message += "; the value is the log's, and --set overrides it";
+    return types::ConfigError(std::move(diagnostics));
+}
+
+/** Refuses a folder of results that would replace the log, its properties and its pictures. */
+void refuseFolderOf(const std::string& log, const std::string& out) {
+    std::error_code none;
+    const std::filesystem::path folder = std::filesystem::absolute(log).parent_path();
+    if (!out.empty() && std::filesystem::equivalent(folder, out, none))
+        throw types::ConfigError(out, "--out", "is the folder of the log, whose files would be replaced; give another");
+}
+
+/** Returns where a replay starts, after the log's first stamp without the steps of the logger's clock [s]. A date is
+ *  that of the first sample with this stamp or a later one, which may be before or after a step. */
+double startIn(const log::Reader& log, const std::string& from) {
+    const std::vector<log::SampleRef>& samples = log.samples();
+    const types::Time first = samples.front().time, given = log::readTime(from, "--from", first);
+    if (given < first)
+        throw types::ConfigError("", "--from", "is " + from + "; the log begins at " + log::readable(first));
+    const bool is_date = log::readTime(from, "--from") == given && first != types::Time{};
+    if (!is_date) return (given - first).seconds();
+    const log::LoggerClock clock(samples);
+    const auto at = std::ranges::find_if(samples, [&](const auto& sample) { return sample.time >= given; });
+    if (at == samples.end())  // the task refuses it
+        return std::max(given - first, clock.span(samples) + types::Time{1}).seconds();
+    return (given - first + clock.evenTime(*at) - at->time).seconds();
+}
+
+int replay(Asked options) {
+    const auto opened = log::openLog(options.replay.log);
+    refuseFolderOf(options.replay.log, options.out);
+    log::Reader& log = *opened;
+    if (!options.from.empty() && !log.samples().empty()) options.replay.from = startIn(log, options.from);
+    std::vector<RecordedProperty> changed;
+    if (options.replay.rerender) changed = takeSettings(log, options);
+    try {
+        return replayWith(std::move(changed), log, options);
+    } catch (const types::ConfigError& error) {
+        throw namingLog(error.diagnostics(), options.replay.log);
+    }
+}
+
+}  // namespace
+
+void addReplayCommand(CLI::App& app, Action& action) {
+    const auto options = std::make_shared<Asked>();
+    CLI::App* command =
+        app.add_subcommand("replay", "Runs a deployment on a log's time, with its streams in the place of tasks");
+    command->add_option("LOG", options->replay.log, "a pocolog or MCAP file")->required();
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
+    auto* pace = command->add_option("--pace", options->limits.pace,
+                                     "log seconds per second of the wall clock (default: as fast as possible)");
+    pace->type_name("P")->check(console::refuseUnlessPositive);
+    command->add_option("--from", options->from, "start: seconds after the log's first stamp, or a date in UTC")
+        ->type_name("TIME");
+    auto* loop =
+        command->add_flag("--loop", options->replay.loop, "repeats the log until --pings, --duration or SIGINT");
+    command
+        ->add_flag("--step", options->step,
+                   "one instant of the log for each line on stdin, without waiting from its end on; a line `seek S` "
+                   "jumps to S "
+                   "seconds of the log")
+        ->excludes(pace);
+    auto* rerender =
+        command->add_flag("--rerender", options->replay.rerender, "renders the pings again, at the log's poses");
+    command->add_flag(
+        "--outside", options->replay.outside,
+        "also runs the tasks that communicate outside (DDS, viewer, devices); by default they are omitted");
+    auto* score = command->add_flag("--score", options->score, "compares what is rendered with the log's pings");
+    score->needs(rerender)->excludes(loop);
+    command->add_option("--worst", options->worst, "pings in the table and in pictures (default: 10)")
+        ->type_name("N")
+        ->needs(score);
+    options->addTo(*command);
+    command->callback([options, &action] { action = [options] { return replay(*options); }; });
+}
+
+}  // namespace insonify::command

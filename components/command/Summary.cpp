@@ -1,0 +1,161 @@
+#include "components/command/Summary.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "components/framework/Offers.hpp"
+
+namespace insonify::command {
+
+using namespace deployer;
+
+namespace {
+
+Summary::Times timesOf(const framework::Statistics& seconds) {
+    return {seconds.count(), seconds.median() * 1e3, seconds.p99() * 1e3, seconds.max() * 1e3};
+}
+
+Summary::Task taskSummary(const framework::TaskContext& task) {
+    Summary::Task summary{task.name(), framework::toString(task.state()), timesOf(task.cycles()), {}, {}, {}};
+    const framework::Timing& timing = task.timing();
+    summary.jitter = timesOf(timing.jitter);
+    summary.latency = timesOf(timing.latency);
+    summary.overruns = timing.overruns;
+    summary.late = timing.late;
+    summary.errors = timing.errors;
+    summary.hangs = timing.hangs;
+    for (const auto& [name, seconds] : task.stages()) summary.stages[name] = timesOf(seconds);
+    return summary;
+}
+
+void addOnce(std::vector<types::Omission>& all, const types::Omission& omission) {
+    const auto same = [&](const types::Omission& other) {
+        return other.name == omission.name && other.reason == omission.reason;
+    };
+    if (std::none_of(all.begin(), all.end(), same)) all.push_back(omission);
+}
+
+Json timesJson(const Summary::Times& times) {
+    return {
+        {"count", times.cycles}, {"median_ms", times.median_ms}, {"p99_ms", times.p99_ms}, {"max_ms", times.max_ms}};
+}
+
+Json taskJson(const Summary::Task& task, bool realtime) {
+    Json stages = Json::object();
+    for (const auto& [name, times] : task.stages)
+        stages[name] = {{"median_ms", times.median_ms}, {"p99_ms", times.p99_ms}};
+    Json json = {{"state", task.state},          {"cycles", task.update.cycles}, {"median_ms", task.update.median_ms},
+                 {"p99_ms", task.update.p99_ms}, {"max_ms", task.update.max_ms}, {"stages", stages}};
+    if (!realtime) return json;
+    json["jitter"] = timesJson(task.jitter);
+    json["latency"] = timesJson(task.latency);
+    json["overruns"] = task.overruns;
+    json["late"] = task.late;
+    json["errors"] = task.errors;
+    json["hangs"] = task.hangs;
+    return json;
+}
+
+std::string timesLine(const std::string& name, const std::string& state, const Summary::Times& times) {
+    return fmt::format("  {:20} {:14} {:>8} {:>10.3f} {:>10.3f} {:>10.3f}\n", name, state, times.cycles,
+                       times.median_ms, times.p99_ms, times.max_ms);
+}
+
+/** Returns a line for each count that is not 0. */
+std::string countsText(const std::map<std::string, uint64_t>& counts) {
+    std::string text;
+    for (const auto& [connection, count] : counts)
+        if (count > 0) text += fmt::format("  {:6}  {}\n", count, connection);
+    return text;
+}
+
+/** Returns a line for each omission, and one line for all that is not configured. */
+std::string omittedText(const std::vector<types::Omission>& omitted) {
+    std::string text, absent;
+    for (const types::Omission& omission : omitted)
+        if (omission.reason == "not configured")
+            absent += (absent.empty() ? "" : ", ") + omission.name;
+        else
+            text += fmt::format("  {}: {}\n", omission.name, omission.reason);
+    if (!absent.empty()) text += "  not configured: " + absent + "\n";
+    return text.empty() ? text : "omitted\n" + text;
+}
+
+}  // namespace
+
+Summary::Summary(const framework::Deployment& deployment, const framework::RunResult& result)
+    : pings(result.samples),
+      wall_s(result.wall_s),
+      realtime(!deployment.spec().lockstep),
+      losses(deployment.losses()),
+      passed_over(deployment.passedOver()),
+      warnings(result.warnings) {
+    for (const auto& task : deployment.tasks()) {
+        tasks.push_back(taskSummary(*task));
+        if (const types::Plan* plan = framework::planOf(*task)) {
+            for (const types::Omission& omission : plan->omitted) addOnce(omitted, omission);
+            plans[task->name()] = *plan;
+        }
+    }
+}
+
+Json Summary::json() const {
+    Json by_name = Json::object();
+    for (const Task& task : tasks) by_name[task.name] = taskJson(task, realtime);
+    Json quality = Json::object(), devices = Json::object();
+    for (const auto& [task, plan] : plans) {
+        quality[task] = toJson(plan)["quality"];
+        devices[task] = plan.device;
+    }
+    Json json = {{"pings", pings},     {"wall_s", wall_s},           {"tasks", by_name},
+                 {"losses", losses},   {"passed_over", passed_over}, {"omitted", toJson(omitted)},
+                 {"quality", quality}, {"devices", devices}};
+    if (realtime) json["warnings"] = warnings;
+    return json;
+}
+
+std::string Summary::text() const {
+    std::string text = fmt::format("{} pings in {:.2f} s: {:.1f} per second\n", pings, wall_s,
+                                   wall_s > 0 ? static_cast<double>(pings) / wall_s : 0.0);
+    for (const Task& task : tasks) {
+        if (plans.contains(task.name) && task.update.cycles > 0)
+            text += fmt::format("{}: {:.1f} ms per ping, the median; {:.1f} ms at most\n", task.name,
+                                task.update.median_ms, task.update.max_ms);
+        if (task.state == "Exception") text += task.name + ": Exception\n";
+        if (task.overruns + task.late + task.errors + task.hangs > 0)
+            text += fmt::format("{}: {} overruns, {} cycles late, {} errors, {} hangs\n", task.name, task.overruns,
+                                task.late, task.errors, task.hangs);
+    }
+    if (const std::string lost = countsText(losses); !lost.empty()) text += "lost samples\n" + lost;
+    return text;
+}
+
+std::string Summary::details() const {
+    std::string text = fmt::format("  {:20} {:14} {:>8} {:>10} {:>10} {:>10}\n", "task", "state", "cycles", "median ms",
+                                   "p99 ms", "max ms");
+    for (const Task& task : tasks) {
+        text += timesLine(task.name, task.state, task.update);
+        for (const auto& [name, times] : task.stages) text += timesLine("  " + name, "", times);
+    }
+    if (realtime) text += realtimeText();
+    for (const auto& [task, plan] : plans) text += fmt::format("{}: {}\n", task, qualityText(plan));
+    if (const std::string skipped = countsText(passed_over); !skipped.empty())
+        text += "skipped for newer samples\n" + skipped;
+    return text + omittedText(omitted);
+}
+
+std::string Summary::realtimeText() const {
+    const auto times = [](const Times& t) {
+        return t.cycles == 0 ? std::string(31, ' ')
+                             : fmt::format("{:>9.3f} {:>10.3f} {:>10.3f}", t.median_ms, t.p99_ms, t.max_ms);
+    };
+    std::string text = fmt::format("  {:20} {:>8} {:>6} {:>6} {:>5} | {:31} | {:31}\n", "in time", "overruns", "late",
+                                   "errors", "hangs", "jitter median, p99, max ms", "latency median, p99, max ms");
+    for (const Task& task : tasks)
+        text += fmt::format("  {:20} {:>8} {:>6} {:>6} {:>5} | {} | {}\n", task.name, task.overruns, task.late,
+                            task.errors, task.hangs, times(task.jitter), times(task.latency));
+    return text;
+}
+
+}  // namespace insonify::command
