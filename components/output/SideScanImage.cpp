@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "components/output/Sides.hpp"
+#include "types/BeamArc.hpp"
 
 namespace insonify::output {
 namespace {
@@ -15,7 +15,7 @@ constexpr float blank = std::numeric_limits<float>::quiet_NaN();
 
 /** Returns the bins of the first beam on a side, +1 for port; null if there is none. */
 const float* binsOf(const types::Sonar& ping, int side) {
-    const auto beam = firstBeamOn(ping, side);
+    const auto beam = types::firstBeamOn(ping, side);
     return beam ? ping.bins.data() + size_t{*beam} * ping.bin_count : nullptr;
 }
 

@@ -9,9 +9,9 @@
 #include <ctime>
 #include <stdexcept>
 
-#include "components/output/Sides.hpp"
 #include "components/recordings/XtfLayout.hpp"
 #include "types/Angle.hpp"
+#include "types/BeamArc.hpp"
 #include "types/Quaternion.hpp"
 
 namespace insonify::recordings {
@@ -95,7 +95,7 @@ void putPose(Block& header, const types::Pose& sonar) {
 }
 
 uint32_t beamOf(const types::Sonar& ping, int side) {
-    if (const auto beam = firstBeamOn(ping, side)) return *beam;
+    if (const auto beam = types::firstBeamOn(ping, side)) return *beam;
     throw std::invalid_argument("a ping has no beam to " + std::string(side > 0 ? "port" : "starboard") +
                                 "; lines of a side-scan have one to either side");
 }

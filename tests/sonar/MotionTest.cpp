@@ -8,6 +8,7 @@
 #include <random>
 
 #include "components/sonar/rays/RayPaths.hpp"
+#include "components/sonar/rays/RayVisibility.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/surfaces/Motion.hpp"
