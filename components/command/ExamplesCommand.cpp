@@ -11,8 +11,6 @@
 
 namespace insonify::command {
 
-using namespace deployer;
-
 namespace fs = std::filesystem;
 namespace {
 

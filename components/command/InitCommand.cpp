@@ -17,8 +17,6 @@
 
 namespace insonify::command {
 
-using namespace deployer;
-
 namespace fs = std::filesystem;
 namespace {
 

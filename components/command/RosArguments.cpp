@@ -11,8 +11,6 @@
 
 namespace insonify::command {
 
-using namespace deployer;
-
 namespace {
 
 constexpr const char *section_start = "--ros-args", *parameters_key = "ros__parameters";

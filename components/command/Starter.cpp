@@ -24,8 +24,6 @@ INSONIFY_EMBED(insonify_starter_sweep, "sweep.yml")
 
 namespace insonify::command {
 
-using namespace deployer;
-
 namespace {
 
 std::string_view between(const char* begin, const char* end) { return {begin, static_cast<size_t>(end - begin)}; }

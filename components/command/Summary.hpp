@@ -33,7 +33,7 @@ struct Summary {
     std::vector<std::string> warnings;            ///< In realtime, as from framework::Deployment::onWarning.
 
     Summary(const framework::Deployment& deployment, const framework::RunResult& result);
-    Json json() const;
+    console::Json json() const;
     /** Returns pings, time per ping, and what went wrong. */
     std::string text() const;
     /** Returns the times of all tasks and stages, the quality, and what is omitted. */
