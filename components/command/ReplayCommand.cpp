@@ -82,7 +82,7 @@ int printScore(log::Reader& log, const std::vector<std::string>& streams, size_t
     log::Reader& rendered = *again;
     std::vector<StreamScore> scores;
     for (const std::string& stream : streams) scores.push_back(score(log, rendered, stream));
-    write(scoreJson(scores), folder / "score.json");
+    console::write(scoreJson(scores), (folder / "score.json").string());
     writeScorePictures(log, rendered, scores, worst, folder);
     console::printResult("{}", scoreTable(scores, worst));
     for (const StreamScore& score : scores)
