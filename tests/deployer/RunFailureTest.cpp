@@ -119,11 +119,40 @@ TEST(RunFailureTest, AJumpOfThePoseDoesNotEndTheRun) {
 }
 
 /** Runs a deployment with a limited number of threads besides the first. */
-Outcome runWithThreads(const WallFolder& folder, int threads, const std::string& deployment) {
+Outcome runWithThreads(const WallFolder& folder, int threads, const std::string& deployment, int pings = 2) {
     const std::string limited = "INSONIFY_THREADS=" + std::to_string(threads) +
                                 " LD_PRELOAD=" + insonify::test::program("libinsonify_thread_limit.so") + " ";
-    const std::string run = insonify::test::program("insonify") + " run " + deployment + " --out out --pings 2";
+    const std::string run =
+        insonify::test::program("insonify") + " run " + deployment + " --out out --pings " + std::to_string(pings);
     return Process({"bash", "-c", limited + run}, folder.path()).wait();
+}
+
+/** A sonar that crosses a border of cells makes trees ahead, on a thread that only it can do without. */
+TEST(RunFailureTest, ARunWithoutAThreadForWhatIsMadeAheadHasTheSamePings) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer must be the first library";
+#endif
+    const WallFolder folder("", gltfOf({270, -20, 20, 270, -20, -20, 270, 20, -20, 270, 20, 20}, {0, 1, 2, 0, 2, 3}));
+    std::string text =
+        replaced(wall_deployment, "{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}",
+                 "{time: 0, position: [252, 0, -1]}, {time: 2, position: [262, 0, -1]}");
+    writeFile(folder / "wall.yml", replaced(text, "      range: 20\n", "      range: 20\n      visibility: cpu\n"));
+    constexpr int most = 60, pings = 20;
+    const auto binsOf = [&](int threads) {
+        fs::remove_all(folder / "out");
+        const Outcome outcome = runWithThreads(folder, threads, "wall.yml", pings);
+        if (outcome.code != 0) return std::string();
+        const Outcome out =
+            callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "x.npz"});
+        EXPECT_EQ(out.code, 0) << out.err;
+        return readFile(folder / "x.npz");
+    };
+    int threads = 0;
+    std::string fewest;
+    for (; threads < most && fewest.empty(); ++threads) fewest = binsOf(threads);
+    EXPECT_LT(threads, most);
+    EXPECT_EQ(fewest, binsOf(threads)) << "with one thread more";
+    EXPECT_EQ(fewest, binsOf(1000)) << "with all threads";
 }
 
 TEST(RunFailureTest, EveryThreadThatIsRefusedIsAnErrorOfTheRun) {
