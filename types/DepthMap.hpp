@@ -16,7 +16,8 @@ enum class Projection : int32_t { Polar = 0, Planar = 1 };
 /** Distances by direction, field for field Rock's base::samples::DepthMap.
  *
  *  Rows are from top to bottom, columns from left to right. Polar: `vertical_interval` contains the angle of each row
- *  about y, positive down, and `horizontal_interval` the angle of each column about z, positive to port. */
+ *  about y, positive down, and `horizontal_interval` the angle of each column about z, positive to port. `bin_width`
+ *  is beside Rock's fields, and only in memory. */
 struct DepthMap {
     static constexpr const char* type_name = "/base/samples/DepthMap";
     static constexpr bool shared = true;
@@ -32,6 +33,7 @@ struct DepthMap {
     uint32_t horizontal_size = 0;
     std::vector<float> distances;
     std::vector<float> remissions;
+    double bin_width = 0;  ///< Of the sonar's bins, in whose middles distances are [m]; 0: unknown.
 
     /** Returns the unit vector of a cell of a polar map with one angle for each row and column, x ahead, y to port, z
      *  up. */

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <numeric>
 
+#include "components/device/DeviceBins.hpp"
+
 namespace insonify::device {
 namespace {
 
@@ -158,8 +160,8 @@ bool Ping1dEmulator::wantsPing(types::Time now) const {
 void Ping1dEmulator::listen(types::Time now) {
     const double seconds = 2.0 * (start_ + length_) / speed_of_sound_;
     types::SonarSettings wanted;
-    wanted.bin_count =
-        static_cast<uint32_t>(std::lround(static_cast<double>(config_.profile_samples) * (start_ + length_) / length_));
+    // Bins at least as long as samples, which begin where the scan does.
+    wanted.bin_count = static_cast<uint32_t>(int64_t{config_.profile_samples} * (start_ + length_) / length_);
     wanted.gain_db = 20 * std::log10(gains[gain_]);
     Ping1dMeasurement& made = last_.measurement;
     made.start = start_;
@@ -173,18 +175,21 @@ void Ping1dEmulator::listen(types::Time now) {
 
 void Ping1dEmulator::finish(const types::Sonar& ping) {
     Ping1dMeasurement& made = last_.measurement;
-    const auto samples = std::min<size_t>(static_cast<size_t>(config_.profile_samples), ping.bin_count);
-    const auto profile = std::span(ping.bins).last(samples);
-    const double step = static_cast<double>(made.length) / static_cast<double>(samples);
-    const double blanked = std::max(0.0, (1000 * config_.nearest - made.start) / step);
-    const Ping1dReturn found = ping1dReturn(profile, static_cast<size_t>(blanked + 1e-9));
+    const double end = static_cast<double>(made.start) + made.length, bin = end / ping.bin_count;  // [mm], as reported
+    const double scale = ping.binWidth() / bin;  // [m/mm], in the water
+    // The bin that a limit divides has echoes of its farther part.
+    const double nearest = std::max(made.start / bin, config_.nearest / ping.binWidth());  // [bins]
+    const auto begin = static_cast<size_t>(made.start / bin + 1e-9);
+    std::vector<float> codes(ping.bins.begin() + static_cast<ptrdiff_t>(begin), ping.bins.end());
+    for (float& code : codes) code = code > 0 ? code : 0;  // also for unknown bins
+    const Ping1dReturn found = ping1dReturn(codes, static_cast<size_t>(nearest + 1e-9) - begin);
+    const double place = std::max(static_cast<double>(begin + found.bin) + 0.5, nearest);
     made.confidence = found.confidence;
-    made.distance =
-        found.confidence == 0
-            ? 0
-            : made.start + static_cast<uint32_t>(std::lround((static_cast<double>(found.bin) + 0.5) * step));
+    made.distance = found.confidence == 0 ? 0 : static_cast<uint32_t>(std::lround(place * bin));
     ++made.ping_number;
-    last_.data = bytesOfCodes(profile, max_code_);
+    const auto samples = static_cast<size_t>(config_.profile_samples);
+    const double sample = scale * made.length / config_.profile_samples;  // [m]
+    last_.data = bytesOfCodes(samplesOf(ping, 0, scale * made.start, sample, samples), max_code_);
     for (const Wanted& wanted : std::exchange(waiting_, {})) report(wanted, false);
     for (const Wanted& wanted : streams_) report(wanted, true);
     if (mode_auto_ != 0) adapt(found);

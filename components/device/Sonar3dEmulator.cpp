@@ -79,6 +79,16 @@ double degreesBetween(const std::vector<double>& angles) {
     return angles.empty() ? 0 : types::degrees(std::abs(angles.back() - angles.front()));
 }
 
+/** Returns a range, moved into the limits that a client has set; 0: none, it is outside them [m]. A bin that a limit
+ *  divides counts, because its echo may come from the part within.
+ *  @param bin_width of the sonar; 0: unknown, and ranges count as exact [m] */
+double rangeWithin(const Sonar3dState& state, double range, double bin_width) {
+    const double rounding = bin_width > 0 ? -1e-6 : 1e-6;  // of ranges in float: a bin that ends at a limit is outside
+    const bool is_within = range + bin_width / 2 >= state.range_min * (1 - rounding) &&
+                           range - bin_width / 2 <= state.range_max * (1 + rounding);
+    return is_within ? std::clamp(range, state.range_min, state.range_max) : 0;
+}
+
 }  // namespace
 
 /** One path of the API: the answer of GET and the action of POST, if it has them. */
@@ -342,9 +352,9 @@ void Sonar3dEmulator::sendImages(const types::DepthMap& map, const Sonar3dState&
     for (size_t row = map.vertical_size; row-- > 0;)  // the lowest first
         for (size_t column = 0; column < map.horizontal_size; ++column) {
             const size_t cell = row * map.horizontal_size + column;
-            const double range = map.distances[cell];
-            const bool seen = range >= asked.range_min && range <= asked.range_max;
-            const double pixel = seen ? std::round(range / static_cast<double>(ranges.pixel_scale)) : 0;
+            const double range = rangeWithin(asked, map.distances[cell], map.bin_width);
+            const bool seen = range > 0;
+            const double pixel = std::round(range / static_cast<double>(ranges.pixel_scale));
             ranges.pixels.push_back(static_cast<uint32_t>(std::min<double>(pixel, UINT16_MAX)));
             const double share =
                 seen && loudest != map.remissions.end() && *loudest > 0 ? map.remissions[cell] / *loudest : 0;

@@ -174,16 +174,28 @@ private:
         if (!recorded.isMoreThanChance() || correlation < 0.005) return std::nullopt;
         return std::clamp(1 / std::sqrt(-std::log(std::min(correlation, 0.99))), 0.3, 16.0);
     }
-    /** Makes a step of the secant method. Patches of one kind show less texture than there is. */
+    /** Moves the texture to the mean of what all rounds but the first suggest, because each round's statistic has an
+     *  error of its own. Patches of one kind show less texture than there is. */
     void improveTexture(const SpeckleMoments& recorded, double made) {
         const double area = areaAt(recorded), here = inverse_ / area;
-        const double way = here - texture_before_;
-        const bool has_slope = std::isfinite(made_before_) && std::abs(way) > 1e-3;
-        const double slope = has_slope ? std::clamp((made - made_before_) / way, 0.3, 1.2) : typical_slope;
+        rounds_.push_back({here, made});
+        const double slope = textureSlope();
         slope_ = std::min(slope, typical_slope);
-        texture_before_ = here, made_before_ = made;
-        const double there = here + (recorded.texture.value - made) / slope;
-        inverse_ = area * std::max(here > 0 ? 0.2 * here : 0.0, there);
+        double there = 0, count = 0;
+        for (size_t i = std::min<size_t>(1, rounds_.size() - 1); i < rounds_.size(); ++i)
+            there += rounds_[i].texture + (recorded.texture.value - rounds_[i].made) / slope, ++count;
+        inverse_ = area * std::max(here > 0 ? 0.2 * here : 0.0, there / count);
+    }
+    /** Returns the change of the statistic with the texture, by least squares over all rounds. */
+    double textureSlope() const {
+        double texture = 0, made = 0, squares = 0, products = 0;
+        for (const Round& round : rounds_) texture += round.texture, made += round.made;
+        const auto count = static_cast<double>(rounds_.size());
+        for (const Round& round : rounds_) {
+            const double off = round.texture - texture / count;
+            squares += off * off, products += off * (round.made - made / count);
+        }
+        return squares > 1e-6 ? std::clamp(products / squares, 0.3, 1.2) : typical_slope;
     }
     void apply() {
         if (!chain_.isSideScan())
@@ -209,11 +221,14 @@ private:
     double c_, bin_, spacing_, width_before_, length_before_;  // [m/s, m, rad, deg, m]
     SpeckleMoments recorded_;
     double beams_ = 0, bins_ = 0, noise_beams_ = 0, noise_bins_ = 0;  ///< Target statistics of the theory [1].
-    double texture_before_ = 0, made_before_ = NAN;  ///< 1 / shape in the previous round, and its statistic then [1].
-    double inverse_ = 0;                             ///< 1 / scatterers per area [m^2].
-    static constexpr double typical_slope = 0.6;     ///< Change of the statistic with the texture [1].
-    double slope_ = typical_slope;                   ///< At most the typical slope, as steps are noisy [1].
-    double rest_ = 0;                                ///< Recorded less simulated texture of the fitted device [1].
+    struct Round {
+        double texture, made;  ///< 1 / shape, and the statistic of pings that were simulated with it [1].
+    };
+    std::vector<Round> rounds_;
+    double inverse_ = 0;                          ///< 1 / scatterers per area [m^2].
+    static constexpr double typical_slope = 0.6;  ///< Change of the statistic with the texture [1].
+    double slope_ = typical_slope;                ///< At most the typical slope, as steps are noisy [1].
+    double rest_ = 0;                             ///< Recorded less simulated texture of the fitted device [1].
 };
 
 bool isWithin(const Fitted& fitted, double share) { return fitted.half() <= share * std::abs(fitted.value); }

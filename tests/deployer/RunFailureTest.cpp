@@ -1,12 +1,12 @@
 // Failures of a run's output.
 #include <gmock/gmock.h>
 
-#include <chrono>
+#include <csignal>
 #include <regex>
-#include <thread>
 
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Paths.hpp"
+#include "tests/support/Waiting.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
@@ -40,27 +40,29 @@ TEST(RunFailureTest, AFullDiskIsExitCode1AndFlushedSamplesAreKept) {
     EXPECT_GT(json::parse(reported.out)["streams"][0]["count"], 100);
 }
 
-/** Log and pictures are written to a disk that is full for the first second. */
+/** Log and pictures are written to a disk that is full until the log and two pictures have failed. */
 TEST(RunFailureTest, InRealtimeAFullDiskStopsNeitherTheSonarNorTheRun) {
-    std::string text = replaced(wall_deployment, "schedule: lockstep", "schedule: realtime");
-    text =
-        replaced(text, "  log:\n", "  fan: {type: output::FanImageTask, properties: {file: fan_%06d.png}}\n  log:\n");
+    const std::string text = replaced(
+        realtimeWall(), "  log:\n", "  fan: {type: output::FanImageTask, properties: {file: fan_%06d.png}}\n  log:\n");
     const WallFolder folder(text + "  - {from: noise.noisy, to: fan.ping}\n");
     fs::create_directory(folder / "out");
     const std::vector<fs::path> full{folder / "out/wall.0.log", folder / "out/fan_000000.png",
                                      folder / "out/fan_000001.png"};
     for (const fs::path& file : full) fs::create_symlink("/dev/full", file);
-    Process run({insonify::test::program("insonify"), "run", "wall.yml", "--out", "out", "--duration", "3.5",
-                 "--summary", "summary.json"},
-                folder.path());
-    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    const Process run(insonifyWords({"run", "wall.yml", "--out", "out", "--summary", "summary.json"}), folder.path());
+    const auto appears = [&](const char* file) {
+        return insonify::test::becomesTrue([&] { return fs::exists(folder / file); });
+    };
+    EXPECT_TRUE(says(folder, "samples are lost until a file can be written"));
+    EXPECT_TRUE(appears("out/fan_000002.png"));
     for (const fs::path& file : full) fs::remove(file);
+    EXPECT_TRUE(says(folder, "log: records again, in "));
+    EXPECT_TRUE(appears("out/fan_000030.png"));
+    run.signal(SIGINT);
     const Outcome outcome = run.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("No space left on device; samples are lost until a file can be written"));
-    EXPECT_THAT(outcome.err, HasSubstr("log: records again, in "));
     EXPECT_THAT(outcome.err, HasSubstr("warning: fan: 2 pictures are in no file; the last reason: cannot write "));
-    EXPECT_TRUE(fs::exists(folder / "out/fan_000002.png"));
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 30);
     const json info = json::parse(callInsonify(folder, {"log", "info", "out/wall.0.log", "--json"}).out);
@@ -117,11 +119,40 @@ TEST(RunFailureTest, AJumpOfThePoseDoesNotEndTheRun) {
 }
 
 /** Runs a deployment with a limited number of threads besides the first. */
-Outcome runWithThreads(const WallFolder& folder, int threads, const std::string& deployment) {
+Outcome runWithThreads(const WallFolder& folder, int threads, const std::string& deployment, int pings = 2) {
     const std::string limited = "INSONIFY_THREADS=" + std::to_string(threads) +
                                 " LD_PRELOAD=" + insonify::test::program("libinsonify_thread_limit.so") + " ";
-    const std::string run = insonify::test::program("insonify") + " run " + deployment + " --out out --pings 2";
+    const std::string run =
+        insonify::test::program("insonify") + " run " + deployment + " --out out --pings " + std::to_string(pings);
     return Process({"bash", "-c", limited + run}, folder.path()).wait();
+}
+
+/** A sonar that crosses a border of cells makes trees ahead, on a thread that only it can do without. */
+TEST(RunFailureTest, ARunWithoutAThreadForWhatIsMadeAheadHasTheSamePings) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer must be the first library";
+#endif
+    const WallFolder folder("", gltfOf({270, -20, 20, 270, -20, -20, 270, 20, -20, 270, 20, 20}, {0, 1, 2, 0, 2, 3}));
+    std::string text =
+        replaced(wall_deployment, "{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}",
+                 "{time: 0, position: [252, 0, -1]}, {time: 2, position: [262, 0, -1]}");
+    writeFile(folder / "wall.yml", replaced(text, "      range: 20\n", "      range: 20\n      visibility: cpu\n"));
+    constexpr int most = 60, pings = 20;
+    const auto binsOf = [&](int threads) {
+        fs::remove_all(folder / "out");
+        const Outcome outcome = runWithThreads(folder, threads, "wall.yml", pings);
+        if (outcome.code != 0) return std::string();
+        const Outcome out =
+            callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "x.npz"});
+        EXPECT_EQ(out.code, 0) << out.err;
+        return readFile(folder / "x.npz");
+    };
+    int threads = 0;
+    std::string fewest;
+    for (; threads < most && fewest.empty(); ++threads) fewest = binsOf(threads);
+    EXPECT_LT(threads, most);
+    EXPECT_EQ(fewest, binsOf(threads)) << "with one thread more";
+    EXPECT_EQ(fewest, binsOf(1000)) << "with all threads";
 }
 
 TEST(RunFailureTest, EveryThreadThatIsRefusedIsAnErrorOfTheRun) {

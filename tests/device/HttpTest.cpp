@@ -20,7 +20,7 @@ TEST(HttpTest, ReadsCompleteRequestsFromAnyPieces) {
     const std::string all = post + "GET /about HTTP/1.1\r\nHost: s\r\nConnection: close\r\n\r\n";
     std::vector<HttpRequest> requests;
     for (const char c : all) {
-        reader.add(bytesOf({c}));
+        reader.add(bytesOf(std::string{c}));
         while (auto request = reader.next()) requests.push_back(*request);
     }
     ASSERT_EQ(requests.size(), 2u);

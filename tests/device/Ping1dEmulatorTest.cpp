@@ -1,5 +1,6 @@
 #include "components/device/Ping1dEmulator.hpp"
 #include "tests/device/PingBench.hpp"
+#include "tests/support/Draw.hpp"
 
 namespace insonify::device {
 namespace {
@@ -159,6 +160,34 @@ TEST_F(Ping1dEmulatorTest, AWrongSpeedOfSoundMakesDistancesWrongInItsRatio) {
     device_.takePing(pingWithEcho(*asked, 5), bench_.now());
     bench_.wait(1);
     EXPECT_NEAR(bench_.only<Ping1dDistanceSimple>().distance, 10'000, 100);
+}
+
+/** The blanked range is one in the water, whatever speed of sound the driver has set. */
+TEST_F(Ping1dEmulatorTest, NoReturnBeyondTheBlankedRangeIsLostAtAnySpeedOfSound) {
+    const test::Seeds seeds(100);
+    for (uint64_t seed = seeds.first; seed < seeds.end(); ++seed) {
+        test::Draw draw(seed);
+        const double nearest = draw.between(0.2, 2), slow = draw.between(100, 3000), scale = slow / 1500;
+        Ping1dEmulator device({.nearest = nearest});
+        PingBench bench(device);
+        const auto length = static_cast<uint32_t>(std::max(1000.0, 4000 * nearest * scale));  // as reported [mm]
+        bench.say(Ping1dSetModeAuto{0});
+        bench.say(Ping1dSetRange{0, std::min(length, 100'000u)});
+        bench.say(Ping1dSetSpeedOfSound{static_cast<uint32_t>(1000 * slow)});
+        bench.received();
+        bench.say(PingGeneralRequest{Ping1dDistanceSimple::message});
+        const auto asked = bench.asked();
+        ASSERT_TRUE(asked);
+        const double bin = asked->range / asked->bin_count;
+        const double target = std::lerp(nearest, asked->range, draw.between(0, 0.999) * draw.once(2));
+        const auto ping = pingWithEcho(*asked, std::max(0.0, nearest - 1.001 * bin), 60000);  // blanked
+        if (nearest + 1e-6 < asked->range) ping->bins.at(static_cast<size_t>(target / bin)) = 30000;
+        device.takePing(ping, bench.now());
+        bench.wait(1);
+        const double reported = 1e-3 * bench.only<Ping1dDistanceSimple>().distance / scale;
+        EXPECT_NEAR(reported, target, 0.5 * bin + 0.6e-3 / scale) << seed;
+        EXPECT_GT(reported, nearest - 0.6e-3 / scale) << seed;
+    }
 }
 
 TEST_F(Ping1dEmulatorTest, AStreamKeepsItsIntervalUntilStopped) {

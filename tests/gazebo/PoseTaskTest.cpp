@@ -154,6 +154,31 @@ TEST_F(PoseTaskTest, APausedWorldGivesNoPoseAndAResetWorldBeginsAnew) {
     EXPECT_GT(pose.value_or(types::Pose{}).time, types::Time::fromSeconds(1e9)) << "on our clock";
 }
 
+/** A live world whose time jumps, as when its user rewinds it or seeks: each pose comes, at its arrival on our clock.
+ */
+TEST_F(PoseTaskTest, StepsOfTheWorldsClockInBothDirectionsLoseNoPose) {
+    startWith({entity("rov", "red")});
+    double stamp = 10'000;
+    meet(stamp);
+    int sent = 100;
+    types::Time last;
+    for (const double step : {600.0, -600.0, 7200.0, -1.5, -9000.0, 2.0, -600.0, 600.0}) {
+        stamp += step;
+        for (int i = 0; i < 10; ++i) {
+            world.publish(stamp += 0.02, ++sent);
+            const auto pose = next();
+            ASSERT_TRUE(pose) << i << " after a step of " << step << " s";
+            EXPECT_EQ(pose->position.x, sent) << i << " after a step of " << step << " s";
+            EXPECT_GE(pose->time, last) << i << " after a step of " << step << " s";
+            const double age = (framework::wallClock() - pose->time).seconds();
+            EXPECT_TRUE(age >= 0 && age < 30) << age << " s, " << i << " after a step of " << step << " s";
+            last = pose->time;
+        }
+    }
+    const std::vector<std::string> all = task.notices();
+    EXPECT_THAT(all, testing::Not(Contains(HasSubstr("the stamp is before")))) << testing::PrintToString(all);
+}
+
 TEST_F(PoseTaskTest, DropsAndReportsPosesThatAreNotFiniteAndMissingEntities) {
     startWith({entity("rov", "red"), entity("other", "auv")});
     meet();

@@ -72,7 +72,20 @@ def drawn(folder, seed, noisy):
     last = "sonar.ping"
     if noisy:
         tasks["noise"] = {"type": "noise::NoiseTask", "properties": {"speckle": {}, "ambient": {"level_db": -110}}}
-        tasks["receiver"] = {"type": "receiver::ReceiverTask", "properties": {"tvg": {"log_coefficient": 30}, "output": "level_db"}}
+        gains = [
+            {"tvg": {"log_coefficient": random.uniform(0, 40)}, "output": "level_db"},
+            {"brightness": {"gain": random.uniform(0, 1)}},
+            {
+                "automatic_gain": {
+                    "target_db": random.uniform(-60, 0),
+                    "attack_ms": random.uniform(0, 5),
+                    "release_ms": random.uniform(0, 20),
+                    "max_db": random.uniform(0, 80),
+                },
+                "output": str(random.choice(["intensity", "amplitude", "level_db"])),
+            },
+        ]
+        tasks["receiver"] = {"type": "receiver::ReceiverTask", "properties": gains[seed // 2 % 3]}
         links += [("sonar.ping", "noise.clean"), ("noise.noisy", "receiver.intensity")]
         last = "receiver.ping"
     if kind == "Altimeter":

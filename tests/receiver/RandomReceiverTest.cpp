@@ -14,6 +14,7 @@
 #include "components/receiver/ReceiverTask.hpp"
 #include "tests/support/Draw.hpp"
 #include "tests/support/Pings.hpp"
+#include "types/Geometry.hpp"
 
 namespace insonify::receiver {
 namespace {
@@ -200,6 +201,105 @@ TEST(RandomReceiverTest, NoiseAndEchoesScaleTogether) {
         for (float& bin : ping.bins) bin *= 100;
         const auto loud = noisy(louder, ping).bins, soft = noisy(one.noise, one.ping).bins;
         for (size_t k = 0; k < loud.size(); ++k) ASSERT_NEAR(loud[k], 100 * soft[k], 1e-3 * loud[k]) << "bin " << k;
+    });
+}
+
+/** Automatic gain with random settings, which reaches every level of drawPing() where `max_db` permits. */
+Properties withAutomaticGain(const Drawn& one, Draw& draw, const std::string& output, double max_db) {
+    Properties receiver = one.receiver;
+    receiver.erase("saturation_db");
+    receiver["output"] = output;
+    receiver["automatic_gain"] = fmt::format(
+        "{{target_db: {:.2f}, attack_ms: {:.3f}, release_ms: {:.3f}, max_db: {:.9g}}}", draw.between(-80, 20),
+        draw.once(3) ? 0 : draw.between(0, 10), draw.once(3) ? 0 : draw.between(0, 50), max_db);
+    return receiver;
+}
+Properties without(const char* key, Properties properties) {
+    properties.erase(key);
+    return properties;
+}
+
+/** One gain for all beams of a bin, of at most max_db, up or down. */
+TEST(RandomReceiverTest, AutomaticGainIsBoundedAndKeepsTheDifferencesOfBeams) {
+    forEachDrawn([](const Drawn& one, Draw& draw) {
+        const double max_db = draw.once(4) ? 0 : draw.between(0, 60);
+        const Properties receiver = withAutomaticGain(one, draw, "level_db", max_db);
+        const auto got = received(receiver, one.ping).bins,
+                   plain = received(without("automatic_gain", receiver), one.ping).bins;
+        std::vector<double> gain(one.ping.bin_count, NAN);
+        for (size_t i = 0; i < got.size(); ++i) {
+            if (plain[i] <= -3000) {
+                ASSERT_EQ(got[i], plain[i]) << "bin " << i << " is silent";
+                continue;
+            }
+            const double here = got[i] - plain[i];
+            double& of_bin = gain[i % one.ping.bin_count];
+            ASSERT_LE(std::abs(here), max_db + 1e-3) << "bin " << i;
+            ASSERT_TRUE(std::isnan(of_bin) || std::abs(here - of_bin) < 1e-3) << "bin " << i;
+            of_bin = here;
+            ASSERT_TRUE(max_db > 0 || got[i] == plain[i]) << "bin " << i << ": a bound of 0 dB changes no bit";
+        }
+    });
+}
+
+/** Where it is not at its bound, the mean of the beams is that of the target at once or in the times of its setting,
+ * and a louder sea changes nothing. */
+TEST(RandomReceiverTest, AutomaticGainMovesWithItsTargetAndNotWithTheLevel) {
+    forEachDrawn([](const Drawn& one, Draw& draw) {
+        Properties receiver = withAutomaticGain(one, draw, "level_db", 1000);
+        const auto got = received(receiver, one.ping).bins;
+        types::Sonar louder = one.ping;
+        const float factor = static_cast<float>(draw.between(1, 100));
+        for (float& bin : louder.bins) bin *= factor;
+        const auto loud = received(receiver, louder).bins;
+        Properties raised = receiver;
+        const double target = std::stod(receiver["automatic_gain"].substr(12)), rise = draw.between(0, 30);
+        raised["automatic_gain"].replace(12, receiver["automatic_gain"].find(',') - 12,
+                                         fmt::format("{:.6f}", target + rise));
+        const auto high = received(raised, one.ping).bins;
+        for (size_t i = 0; i < got.size(); ++i) {
+            const bool is_silent = got[i] <= -3000;
+            ASSERT_NEAR(loud[i], got[i], 2e-3) << "bin " << i;
+            ASSERT_NEAR(high[i], is_silent ? got[i] : got[i] + rise, 2e-3) << "bin " << i;
+        }
+        receiver["automatic_gain"] =
+            fmt::format("{{target_db: {}, attack_ms: 0, release_ms: 0, max_db: 1000}}", target);
+        const types::Sonar level = received(receiver, one.ping);
+        for (uint32_t k = 0; k < level.bin_count; ++k) {
+            double mean = 0;
+            for (uint32_t beam = 0; beam < level.beam_count; ++beam)
+                mean += std::pow(10, level.bins[beam * level.bin_count + k] / 10.0) / level.beam_count;
+            const bool is_silent = mean < 1e-290;
+            ASSERT_NEAR(is_silent ? target : 10 * std::log10(mean), target, 1e-3) << "bin " << k;
+        }
+    });
+}
+
+/** By the formula of the page, with the gain at 0.5 the neutral value of published pings. */
+TEST(RandomReceiverTest, BrightnessIsBetweenZeroAndOneAndRisesWithGainAndEcho) {
+    forEachDrawn([](const Drawn& one, Draw& draw) {
+        const types::Sonar& ping = one.ping;
+        const bool is_physical = draw.once(2);
+        const double gain = draw.once(4) ? 0.5 : draw.between(0, 1), more = draw.between(gain, 1);
+        const auto shown = [&](double at, const types::Sonar& of) {
+            return received({{"brightness", fmt::format("{{gain: {:.17g}, model: {}}}", at,
+                                                        is_physical ? "physical" : "cerqueira2017")}},
+                            of)
+                .bins;
+        };
+        types::Sonar louder = ping;
+        for (float& bin : louder.bins) bin *= static_cast<float>(draw.between(1, 3));
+        const auto bins = shown(gain, ping), brighter = shown(more, ping), loud = shown(gain, louder),
+                   dark = shown(0, ping), neutral = shown(0.5, ping);
+        const double cell = std::pow(10, types::Material{}.lambert_db / 10.0) * ping.beam_width.rad * ping.binWidth();
+        for (size_t i = 0; i < bins.size(); ++i) {
+            const double r = ping.binStart(static_cast<double>(i % ping.bin_count) + 0.5);
+            const double scale = 2 * gain * (is_physical ? r * r * r / cell : 1);
+            ASSERT_NEAR(bins[i], std::min(1.0, scale * double{ping.bins[i]}), 1e-5) << "bin " << i;
+            ASSERT_TRUE(bins[i] >= 0 && bins[i] <= 1) << "bin " << i << " is " << bins[i];
+            ASSERT_TRUE(brighter[i] >= bins[i] && loud[i] >= bins[i] && dark[i] == 0) << "bin " << i;
+            ASSERT_TRUE(is_physical || neutral[i] == std::min(1.0f, ping.bins[i])) << "bin " << i;
+        }
     });
 }
 

@@ -47,6 +47,25 @@ TEST_F(AltimeterTaskTest, MeasuresTheHeightOverAFlatBottom) {
     }
 }
 
+/** `range_min` divides a bin, in which the bottom lies behind it. */
+TEST_F(AltimeterTaskTest, ARangeIsNotNearerThanTheMinRange) {
+    for (const double range_min : {1.201, 1.215, 1.229}) {
+        AltimeterConfig config;
+        config.sonar.range = 30;
+        config.sonar.bin_count = 1000;
+        config.sonar.range_min = range_min;
+        config.sonar.beam_width_deg = config.sonar.beam_height_deg = 1;
+        task_.stop();
+        task_.cleanup();
+        startWith(config);
+        for (const double height : {range_min + 1e-4, 1.2299}) {
+            const types::Range range = rangeAt(height);
+            EXPECT_NEAR(range.range, height, bin / 2) << range_min;
+            EXPECT_GE(range.range, range.range_min) << range_min;
+        }
+    }
+}
+
 TEST_F(AltimeterTaskTest, MeasuresTheNearestPointInTheBeamOnATiltedVehicle) {
     const auto nearest = [](double height, double tilt, double half) {
         return tilt <= half ? height : height / std::cos(types::radians(tilt - half));

@@ -53,6 +53,19 @@ TEST(DetectionTest, TheFirstReturnIsTheFirstBinThatReachesTheThreshold) {
     EXPECT_NEAR(Found(config, ping).first(0)->range, 0.45, 1e-9);
 }
 
+/** The bin that `range_min` divides has echoes of its farther part. */
+TEST(DetectionTest, AReturnIsNotNearerThanTheMinRange) {
+    DetectionRules rules;
+    for (const double range_min : {0.81, 0.85, 0.88, 0.899}) {
+        rules.returns.range_min = range_min;
+        for (const auto& [bin, expected] : {std::pair{8u, std::max(0.85, range_min)}, {9u, 0.95}}) {
+            const Found found({}, withEcho(withEcho(pingOf(1, 20, 0), 0, 7, 5), 0, bin), rules);
+            EXPECT_NEAR(found.strongest(0)->range, expected, 1e-9) << range_min;
+            EXPECT_NEAR(found.first(0)->range, expected, 1e-9) << range_min;
+        }
+    }
+}
+
 TEST(DetectionTest, AWeakBeamInThePingOrBelowTheFloorHasNoReturn) {
     const types::Sonar ping = withEcho(withEcho(pingOf(2, 20, 0), 0, 4, 1), 1, 4, 1e-4f);
     DetectionConfig config;

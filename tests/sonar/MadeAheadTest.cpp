@@ -3,12 +3,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
 
 #include "components/sonar/base/MadeAhead.hpp"
+#include "components/sonar/renderer/SonarRenderer.hpp"
+#include "tests/support/Hills.hpp"
+#include "tests/support/Sonars.hpp"
+#include "tests/support/ThreadLimit.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -41,6 +46,50 @@ TEST(MadeAheadTest, AForkedChildEndsItWithoutWaitingForAThread) {
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
     ahead->take(oneNumber(3));
     EXPECT_TRUE(isMade(*ahead)) << "the parent goes on";
+}
+
+TEST(MadeAheadTest, ItWaitsForAPermittedThread) {
+    MadeAhead ahead("numbers");
+    {
+        const test::ThreadLimit limit(0);
+        ahead.take(oneNumber(1));
+        EXPECT_TRUE(ahead.isDone()) << "there is nothing to wait for";
+    }
+    std::atomic<bool> is_made{false};
+    ahead.take({{{2}, [&](const std::atomic<bool>&) {
+                     is_made = true;
+                     return std::make_shared<const int>(3);
+                 }}});
+    EXPECT_TRUE(isMade(ahead));
+    EXPECT_TRUE(is_made);
+}
+
+/** Returns the bins of the pings of a sonar that crosses borders of cells, over a scene that gets another object. */
+std::vector<std::vector<float>> pingsOnTheWay() {
+    SonarConfig config = test::sonarOf(
+        {.beams = 16, .width_deg = 90, .height_deg = 40, .bins = 100, .bin = 0.5, .rows = 32, .columns = 2});
+    config.visibility = Visibility::Cpu;
+    const types::Mesh floor = test::hills(40), ball = test::sphere(1, 12);
+    types::GeometryPtr scene = test::sceneOf({floor, ball}, 0, {{}, {270, 12, -5}});
+    SonarRenderer renderer(config, scene, {.threads = 1});
+    std::vector<std::vector<float>> pings;
+    for (int i = 0; i < 60; ++i) {
+        if (i == 30) scene = test::sceneOf({floor, ball, ball}, 0, {{}, {270, 12, -5}, {262, 8, -6}});
+        if (i == 30) renderer.setGeometry(scene);
+        types::Sonar ping;
+        renderer.render(test::snapshotOf(scene, {240 + 0.5 * i, 250 + 0.2 * i, -5}, 0, 0.4), ping);
+        pings.push_back(ping.bins);
+    }
+    return pings;
+}
+
+TEST(MadeAheadTest, WhereNoThreadIsPermittedPingsAreTheSame) {
+    const auto expected = pingsOnTheWay();
+    const test::ThreadLimit limit(0);
+    EXPECT_EQ(pingsOnTheWay(), expected);
+    const auto echoes = [](const auto& bins) { return *std::ranges::max_element(bins) > 0; };
+    EXPECT_EQ(std::ranges::count_if(expected, echoes), 60);
+    EXPECT_NE(expected[29], expected[30]);
 }
 
 TEST(MadeAheadDeathTest, AProcessThatEndsGivesUpAValueThatIsBeingMade) {

@@ -148,6 +148,56 @@ TEST(RandomKindTest, ThreadsChangeNoBit) {
     });
 }
 
+/** The world turns and moves, as far as float positions are exact. */
+TEST(RandomKindTest, PingsDoNotDependOnWhereTheWorldsAxesAre) {
+    int with_echoes = 0, all = 0;
+    forEachSonar(4 * test::kinds, [&](const RandomSonar& drawn, Draw& draw) {
+        RandomSonar one = drawn;
+        if (one.is_coherent) one.properties.erase("volume");  // the scatterers of the water stay in the world
+        const types::Snapshot scene = one.scene();
+        const glm::dquat turn = glm::angleAxis(draw.between(-3, 3), glm::normalize(glm::dvec3(0.2, -0.1, 1)));
+        const glm::dvec3 way(draw.between(-100, 100), draw.between(-100, 100), draw.between(-20, 20));
+        types::Snapshot turned = scene;
+        auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
+        for (types::Object& object : geometry->objects) {
+            object.world_from_object = glm::mat4_cast(turn) * object.world_from_object;
+            object.world_from_object[3] += glm::dvec4(way, 0);
+        }
+        turned.geometry = geometry;
+        turned.sonar.position = turn * scene.sonar.position + way;
+        turned.sonar.orientation = turn * scene.sonar.orientation;
+        const auto expected = binsOf(one, scene);
+        expectAlike(binsOf(one, turned), expected, one.is_coherent ? 0.05 : 0.01);
+        with_echoes += std::ranges::any_of(expected, [](float bin) { return bin > 0; });
+        ++all;
+    });
+    EXPECT_GE(2 * with_echoes, all);
+}
+
+TEST(RandomKindTest, TheOrderOfBeamsDoesNotChangeThem) {
+    int fans = 0;
+    forEachSonar(8 * test::kinds, [&](const RandomSonar& one, Draw& draw) {
+        if (one.kind != Kind::Fan) return;  // others have no list of bearings
+        RandomSonar listed = one;
+        const int beams = 2 + draw.upTo(6);
+        std::string there, back;
+        for (int k = 0; k < beams; ++k) {
+            const std::string bearing = fmt::format("{:.3f}", -50 + 100.0 * k / beams);
+            there += (k > 0 ? ", " : "") + bearing;
+            back = bearing + (k > 0 ? ", " : "") + back;
+        }
+        for (const char* replaced : {"beam_count", "field_of_view_deg"}) listed.properties.erase(replaced);
+        listed = listed.with("beam_width_deg", "6").with("bearings_deg", "[" + there + "]");
+        types::Sonar ping = test::SonarBench(listed.with("bearings_deg", "[" + back + "]")).pingsOf(one.scene())[0];
+        for (uint32_t beam = 0; beam < ping.beam_count / 2; ++beam)
+            std::swap_ranges(ping.bins.begin() + beam * ping.bin_count, ping.bins.begin() + (beam + 1) * ping.bin_count,
+                             ping.bins.end() - (beam + 1) * ping.bin_count);
+        expectAlike(ping.bins, binsOf(listed, one.scene()), 1e-5);
+        ++fans;
+    });
+    EXPECT_GT(fans, 0);
+}
+
 /** A world in another unit of length: E/S0 falls with the square of it, where nothing is given in metres. */
 TEST(RandomKindTest, AScaledWorldHasTheSamePictures) {
     forEachSonar(few, [](const RandomSonar& drawn, Draw& draw) {

@@ -31,6 +31,7 @@ void Detector::take(const types::Sonar& ping, const DetectionConfig& config, con
     ping_ = &ping;
     gate_share_ = shareOf(-config.gate_db);
     tables_.take(ping, ping.bin_count, rules.returns);
+    range_min_ = rules.returns.range_min;
     levels_.resize(ping.bins.size());
     double strongest = 0;
     for (size_t i = 0; i < levels_.size(); ++i) {
@@ -48,7 +49,7 @@ void Detector::take(const types::Sonar& ping, const DetectionConfig& config, con
 
 Detection Detector::at(uint32_t beam, double place, size_t bin) const {
     const size_t at = size_t{beam} * ping_->bin_count + bin;
-    return {place * ping_->binWidth(), ping_->bins[at], levels_[at], bin};
+    return {std::max(place * ping_->binWidth(), range_min_), ping_->bins[at], levels_[at], bin};
 }
 
 std::optional<Detection> Detector::strongest(uint32_t beam) const {

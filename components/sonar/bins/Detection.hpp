@@ -33,7 +33,7 @@ struct DetectionConfig {
 
 /** One return. */
 struct Detection {
-    double range;     ///< Slant range [m].
+    double range;     ///< Slant range, not nearer than the sonar's `range_min` [m].
     float intensity;  ///< Intensity of its strongest bin [1].
     double level;     ///< Level of that bin, without spreading and absorption [1].
     size_t bin;       ///< Number of its strongest bin [1].
@@ -66,6 +66,7 @@ private:
     const types::Sonar* ping_ = nullptr;
     double gate_share_ = 1;  ///< Min level of the other bins of a return, relative to its strongest bin [1].
     types::ReturnLevels tables_;
+    double range_min_ = 0;        ///< Of the sonar: the bin that it divides has echoes of its farther part [m].
     std::vector<double> levels_;  ///< Of each bin, 0 where it is no return.
     double minimum_ = 0;          ///< Min level of a return [1].
 };

@@ -126,6 +126,7 @@ void Sonar3dTask::shape(types::Sonar& sample) {
         sample.bearings[static_cast<size_t>(k)] = types::Angle::fromDeg(across.centreDeg(k));
     sample.bins.assign(columns * fan_.bin_count, 0);
     map_.time = fan_.time;
+    map_.bin_width = fan_.binWidth();
     map_.vertical_size = static_cast<uint32_t>(rows);
     map_.horizontal_size = static_cast<uint32_t>(columns);
     map_.vertical_interval.resize(rows);
