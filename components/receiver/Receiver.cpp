@@ -223,6 +223,14 @@ void Receiver::receive(const types::Sonar& intensities, types::Sonar& received) 
         receiveBeam(intensities.bins.data() + beam * count, received.bins.data() + beam * count);
 }
 
+const char* Receiver::diagnosticOf(const types::Sonar& intensities) const {
+    if (const char* why = intensities.notIntensities()) return why;
+    const bool needs_width = config_.brightness && config_.brightness->model == Model::Physical;
+    return needs_width && intensities.beam_width.isUnknown()
+               ? "the width of its beams is unknown, which brightness needs"
+               : nullptr;
+}
+
 Receiver::Flaws Receiver::flawsOf(const types::Sonar& intensities, const types::Sonar& received) const {
     Flaws flaws;
     const size_t count = axis_.bin_count, kept = count - silent_;

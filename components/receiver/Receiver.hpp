@@ -43,6 +43,9 @@ public:
     /** Copies `intensities` to `received` with the bins as the receiver outputs them. Allocates nothing when both had
      *  these shapes before. */
     void receive(const types::Sonar& intensities, types::Sonar& received);
+    /** Returns why it cannot receive a ping; null when it can. A brightness of the physical model needs beams of known
+     *  width. */
+    const char* diagnosticOf(const types::Sonar& intensities) const;
     /** The reasons why a received ping shows nothing. */
     struct Flaws {
         bool blanked = false;   ///< Every bin is blanked.

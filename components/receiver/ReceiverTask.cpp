@@ -28,7 +28,7 @@ void ReceiverTask::updateHook() {
     types::SonarPtr sample;
     if (!intensity.readNew(sample)) return;
     if (environment().rehearsing) return ping.write(sample);
-    if (const char* diagnostic = sample->notIntensities())
+    if (const char* diagnostic = receiver_->diagnosticOf(*sample))
         return error(std::string("intensity: ") + diagnostic + "; connect the noise, or a sonar's ping");
     if (state() == framework::TaskState::RunTimeError) recover();
     ping.write(received(sample));

@@ -57,6 +57,18 @@ TEST_F(ReceiverTaskTest, RejectsDecibelsWithARemedyAndRecoversWithIntensities) {
     EXPECT_EQ(task_.state(), framework::TaskState::Running);
 }
 
+TEST_F(ReceiverTaskTest, ABrightnessRejectsBeamsOfUnknownWidthAndRecovers) {
+    ReceiverConfig config;
+    config.brightness.emplace();
+    startWith(config);
+    types::Sonar ping = test::pingOf(2, 10);
+    ping.beam_width = {};
+    EXPECT_FALSE(answerTo(test::shared(ping)));
+    EXPECT_THAT(task_.lastError(), HasSubstr("the width of its beams is unknown, which brightness needs"));
+    EXPECT_TRUE(answerTo(test::shared(test::pingOf(2, 10))));
+    EXPECT_EQ(task_.state(), framework::TaskState::Running);
+}
+
 TEST_F(ReceiverTaskTest, RejectsAPingShorterThanItsCounts) {
     ReceiverConfig config;
     config.gain_db = 10;

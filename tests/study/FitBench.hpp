@@ -57,8 +57,9 @@ inline double tvgSpanDb(double log_coefficient, double db_per_m, double range) {
     return log_coefficient + 2 * db_per_m * 0.9 * range;
 }
 
-/** Expects what fits find of every simulated sonar. Returns whether the density of scatterers is determined. */
-inline bool expectTruth(const RecordingFit& fit, const auto& truth, double range) {
+/** Expects what fits find of every simulated sonar. Returns whether the density of scatterers is determined.
+ *  @param density_off max error of that density, if it is determined [1] */
+inline bool expectTruth(const RecordingFit& fit, const auto& truth, double range, double density_off = 0.2) {
     for (const Finding& finding : fit.findings) testing::Test::RecordProperty(finding.name, finding.text());
     expectFound(fit, "full scale", truth.chain.receiver.code->full_scale_db, 1);
     expectFound(fit, "noise", truth.noise_db, 1);
@@ -73,7 +74,7 @@ inline bool expectTruth(const RecordingFit& fit, const auto& truth, double range
     const double true_shape = shape->found.value / ratio;  // because the cell is the same
     EXPECT_TRUE(shape->found.low < true_shape && true_shape < shape->found.high) << shape->text();
     if (shape->is_determined) {  // then the interval is narrow
-        EXPECT_NEAR(ratio, 1, 0.2) << shape->text();
+        EXPECT_NEAR(ratio, 1, density_off) << shape->text();
         EXPECT_LT(shape->found.half(), 0.5 * shape->found.value) << shape->text();
     }
     return shape->is_determined;
