@@ -18,7 +18,7 @@ std::span<const double> arisBearings(ArisModel model, uint32_t beams, bool is_te
 
 /** Reads the frames of an .aris file (Sound Metrics, ARIS File SDK: DDF version 5).
  *
- *  Codes are levels, 80 dB from 0 to 255. Beams have the bearings of ArisBeams. Bins before the window are 0; the
+ *  Codes are levels, 80 dB from 0 to 255. Beams have the bearings of arisBearings(). Bins before the window are 0; the
  *  window begins at the nearest bin. A pose has the header's latitude and longitude, the platform's depth, and the
  *  angles of the sonar's compass. Without that compass it has the platform's angles; without a position it stays at x =
  *  y = 0. */

@@ -40,7 +40,7 @@ std::string wallWith(const std::vector<double>& bearings_deg) {
 }
 
 std::vector<double> arisBearingsDeg() {
-    const auto table = output::arisBearings(output::ArisModel::Aris1800, 48, false);
+    const auto table = recordings::arisBearings(recordings::ArisModel::Aris1800, 48, false);
     return {table.begin(), table.end()};
 }
 

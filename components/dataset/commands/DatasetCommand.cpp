@@ -10,6 +10,7 @@
 #include "components/console/Console.hpp"
 #include "components/console/OutputFolder.hpp"
 #include "components/console/ProgressLine.hpp"
+#include "components/console/Shard.hpp"
 #include "components/dataset/Collection.hpp"
 #include "components/dataset/commands/DatasetRun.hpp"
 #include "components/deployer/StopSignal.hpp"
