@@ -1,8 +1,4 @@
 #pragma once
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-
 #include "components/console/Action.hpp"
 
 namespace insonify::command {

@@ -1,5 +1,4 @@
 #pragma once
-#include <CLI/App.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -7,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "components/console/Action.hpp"
 #include "components/console/Shard.hpp"
 #include "components/framework/Deployment.hpp"
 

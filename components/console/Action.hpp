@@ -1,4 +1,8 @@
 #pragma once
+// CLI11 needs all three headers.
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
 #include <functional>
 #include <string>
 

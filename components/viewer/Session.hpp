@@ -91,8 +91,8 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using asio::ip::tcp;
-using Request = http::request<http::string_body>;
-using Response = http::response<http::string_body>;
+using HttpRequest = http::request<http::string_body>;
+using HttpResponse = http::response<http::string_body>;
 using Error = boost::system::error_code;
 
 constexpr size_t max_message = 64 << 10;  // from a client [B]
@@ -103,13 +103,14 @@ constexpr auto request_timeout = std::chrono::seconds(5), response_timeout = std
 
 inline std::string textOf(beast::string_view view) { return {view.data(), view.size()}; }
 
-inline AccessPolicy::Request admissionOf(const Request& request) {
+inline AccessPolicy::Request admissionOf(const HttpRequest& request) {
     return {textOf(request.target()), textOf(request[http::field::host]), textOf(request[http::field::origin]),
             textOf(request[http::field::authorization])};
 }
 
-inline Response responseTo(const Request& request, unsigned status, std::string_view type, std::string_view body) {
-    Response response(http::int_to_status(status), request.version());
+inline HttpResponse responseTo(const HttpRequest& request, unsigned status, std::string_view type,
+                               std::string_view body) {
+    HttpResponse response(http::int_to_status(status), request.version());
     response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
     response.set(http::field::cache_control, "no-cache");
     response.set(http::field::x_frame_options, "DENY");
@@ -162,7 +163,7 @@ private:
     void answer();
     void answerError(const Error& error);
     void refuse(const AccessPolicy::Refusal& refusal);
-    void respond(Response response);
+    void respond(HttpResponse response);
     void readRest();
     void upgrade();
     void countError(const Error& error);
@@ -179,7 +180,7 @@ private:
     websocket::stream<beast::tcp_stream> ws_;
     beast::flat_buffer buffer_{max_message + max_header};
     std::optional<http::request_parser<http::string_body>> parser_;
-    std::optional<Response> response_;
+    std::optional<HttpResponse> response_;
     Subscriptions subscriptions_;
     ParameterSubscriptions parameters_;
     std::string protocol_;  ///< The agreed protocol.
@@ -232,7 +233,7 @@ inline void Session::refuse(const AccessPolicy::Refusal& refusal) {
 
 inline void Session::answer() {
     asked_ = true;
-    const Request& request = parser_->get();
+    const HttpRequest& request = parser_->get();
     const AccessPolicy::Request asked = admissionOf(request);
     const bool wants_socket = websocket::is_upgrade(request);
     protocol_ = protocolOf(textOf(request[http::field::sec_websocket_protocol]));
@@ -258,7 +259,7 @@ inline void Session::answer() {
     respond(responseTo(request, 200, file->type, file->content));
 }
 
-inline void Session::respond(Response response) {
+inline void Session::respond(HttpResponse response) {
     response_.emplace(std::move(response));
     stream().expires_after(response_timeout);
     http::async_write(stream(), *response_, handler([](Session& self, const Error& error) {

@@ -1,6 +1,4 @@
 #pragma once
-#include <CLI/App.hpp>
-
 #include "components/console/Action.hpp"
 
 namespace insonify::dataset {
