@@ -59,15 +59,18 @@ bool reachesBehindTheLog(const Source& source, const Source& target) {
     return !wanted.empty() && (source.folder() != "log" || (!own.empty() && own != wanted));
 }
 
+/** Whether files of this kind may include everything but the program. */
+bool mayIncludeAll(const Source& source) {
+    const std::set<std::string> all{"command", "deployer", "python"};
+    return all.contains(source.folder()) || source.isLibraryEntry() || source.isCommandHalf();
+}
+
 bool mayInclude(const Source& source, const Source& target) {
-    if (reachesBehindTheLog(source, target)) return false;
     const std::string from = source.folder(), to = target.folder();
-    if (to == "command" && from != "command") return false;  // the program: nothing links it
-    if (from == "command" || from == "deployer" || from == "python" || source.isLibraryEntry()) return true;
-    if (source.isCommandHalf()) return true;  // commands count as part of the deployer
+    if (reachesBehindTheLog(source, target) || (to == "command" && from != "command")) return false;
+    if (mayIncludeAll(source)) return true;
     if (from == to)
-        return from == "framework" || source.isTaskHalf() || source.isCommandHalf() ||
-               (!target.isTaskHalf() && !target.isCommandHalf());
+        return from == "framework" || source.isTaskHalf() || !(target.isTaskHalf() || target.isCommandHalf());
     const std::set<std::string> of_any_program = {"OwnProcess", "Thread"};
     if (to == "types") return from != "gpu" || of_any_program.contains(target.stem());
     if ((from == "study" || from == "dataset") && target.isTaskHalf()) return false;
@@ -163,6 +166,8 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/log/Writer.hpp"));
     EXPECT_FALSE(allowed("components/logger/LoggerTask.cpp", "components/log/pocolog/Writer.hpp"));
     EXPECT_FALSE(allowed("components/command/LogCommand.cpp", "components/log/mcap/Reader.hpp"));
+    EXPECT_FALSE(allowed("components/python/Interface.cpp", "components/command/RunCommand.hpp"));
+    EXPECT_FALSE(allowed("components/deployer/Import.cpp", "components/command/Summary.hpp"));
     EXPECT_FALSE(allowed("components/log/mcap/Reader.cpp", "components/log/pocolog/Wire.hpp"));
     EXPECT_TRUE(allowed("components/log/Reader.cpp", "components/log/pocolog/Reader.hpp"));
     EXPECT_TRUE(allowed("components/log/pocolog/Reader.cpp", "components/log/Reader.hpp"));
