@@ -1,10 +1,15 @@
 // Flags of users and of distributions.
 #include <gmock/gmock.h>
 
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+
 #include "tests/install/Outside.hpp"
 #include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
+using json = nlohmann::json;
 using testing::HasSubstr;
 
 TEST(FlagsTest, CodeForVectorsOfOneKindCompilesForEveryProcessor) {
@@ -35,4 +40,20 @@ TEST(FlagsTest, WarningsAreNoErrorsWithFlagsOfAUser) {
                 succeeds());
     EXPECT_THAT(readFile(folder / "build/build.ninja"),
                 testing::AllOf(HasSubstr(" -Og "), testing::Not(HasSubstr("-Werror"))));
+}
+
+/** The link-time optimiser loses symbols of assembler code, and takes the versions of a member function for several
+ *  processors for two definitions. */
+TEST(FlagsTest, WhatTheLinkTimeOptimiserDoesNotSeeIsCompiledWithoutIt) {
+    const std::regex unseen(R"(\n *__asm__\(|INSONIFY_VECTOR_CLONES [\w:<> ]+ \w+::\w+\()");
+    std::map<std::string, std::string> commands;
+    for (const json& each : json::parse(readFile(fs::path(insonify::test::build_dir) / "compile_commands.json")))
+        commands[each.at("file")] = each.at("command");
+    size_t count = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(insonify::test::source_dir) / "components")) {
+        if (entry.path().extension() != ".cpp" || !std::regex_search(readFile(entry.path()), unseen)) continue;
+        EXPECT_THAT(commands[entry.path()], HasSubstr(" -fno-lto")) << entry.path();
+        ++count;
+    }
+    EXPECT_GE(count, 4u);
 }
