@@ -14,6 +14,7 @@ struct Diagnostic {
     std::string message;  ///< The value that is wrong, and the values that are allowed.
     std::string file = {};
     int line = 0, column = 0;  ///< From 1; 0: the place is unknown.
+    /** What is wrong: a value, or a key that nothing reads, which another task may have. */
     enum class Kind : uint8_t { Value, UnknownKey };
     Kind kind = Kind::Value;
 

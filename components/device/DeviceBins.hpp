@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -8,14 +9,14 @@
 
 namespace insonify::device {
 
-/** Returns samples of one beam of a ping, from a slant range on [m]: the value of the bin at the middle of each; NaN
- *  beyond the ping. Finds each bin that is at least as wide as a sample. */
-inline std::vector<float> samplesOf(const types::Sonar& ping, size_t beam, double from, double width, size_t count) {
-    std::vector<float> samples(count, std::numeric_limits<float>::quiet_NaN());
-    for (size_t i = 0; i < count; ++i)
-        if (const double at = (from + (static_cast<double>(i) + 0.5) * width) / ping.binWidth(); at < ping.bin_count)
-            samples[i] = ping.bins[beam * ping.bin_count + static_cast<size_t>(at)];
-    return samples;
+/** Fills samples of `width` [m] of one beam of a ping, from a slant range on [m]: the value of the bin at the middle of
+ *  each; NaN beyond the ping. Finds each bin that is at least as wide as a sample. */
+inline void resampleBeam(const types::Sonar& ping, size_t beam, double from, double width, std::span<float> samples) {
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const double at = (from + (static_cast<double>(i) + 0.5) * width) / ping.binWidth();
+        samples[i] = at < ping.bin_count ? ping.bins[beam * ping.bin_count + static_cast<size_t>(at)]
+                                         : std::numeric_limits<float>::quiet_NaN();
+    }
 }
 
 /** Puts the bins of a ping into those of a device whose protocol does not state their width, because its driver
@@ -24,11 +25,9 @@ inline std::vector<float> samplesOf(const types::Sonar& ping, size_t beam, doubl
 inline bool takeBinWidth(double width, types::Sonar& ping) {
     const double own = ping.binWidth();
     if (!(own > 0 && width > 0) || std::abs(own / width - 1) * ping.bin_count < 0.01) return false;
-    std::vector<float> bins;
-    for (size_t beam = 0; beam < ping.bins.size() / ping.bin_count; ++beam) {
-        const std::vector<float> samples = samplesOf(ping, beam, 0, width, ping.bin_count);
-        bins.insert(bins.end(), samples.begin(), samples.end());
-    }
+    std::vector<float> bins(ping.bins.size());
+    for (size_t beam = 0; beam < bins.size() / ping.bin_count; ++beam)
+        resampleBeam(ping, beam, 0, width, std::span(bins).subspan(beam * ping.bin_count, ping.bin_count));
     ping.bins = std::move(bins);
     ping.setBins(width, static_cast<double>(ping.speed_of_sound));
     return true;

@@ -187,9 +187,9 @@ void Ping1dEmulator::finish(const types::Sonar& ping) {
     made.confidence = found.confidence;
     made.distance = found.confidence == 0 ? 0 : static_cast<uint32_t>(std::lround(place * bin));
     ++made.ping_number;
-    const auto samples = static_cast<size_t>(config_.profile_samples);
-    const double sample = scale * made.length / config_.profile_samples;  // [m]
-    last_.data = bytesOfCodes(samplesOf(ping, 0, scale * made.start, sample, samples), max_code_);
+    std::vector<float> profile(static_cast<size_t>(config_.profile_samples));
+    resampleBeam(ping, 0, scale * made.start, scale * made.length / config_.profile_samples, profile);
+    last_.data = bytesOfCodes(profile, max_code_);
     for (const Wanted& wanted : std::exchange(waiting_, {})) report(wanted, false);
     for (const Wanted& wanted : streams_) report(wanted, true);
     if (mode_auto_ != 0) adapt(found);

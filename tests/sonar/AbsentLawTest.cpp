@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "components/sonar/multipath/DirectSound.hpp"
+#include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/tasks/AltimeterTask.hpp"
 #include "components/sonar/tasks/Sonar3dTask.hpp"
 #include "tests/support/ClosedForms.hpp"

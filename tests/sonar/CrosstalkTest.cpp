@@ -12,7 +12,7 @@
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
-#include "components/sonar/multipath/DirectSound.hpp"
+#include "components/sonar/multipath/OtherSonars.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/sonar/multipath/DirectSound.hpp"
+#include "components/sonar/multipath/OtherSonars.hpp"
 #include "types/Transmission.hpp"
 
 namespace insonify::sonar {

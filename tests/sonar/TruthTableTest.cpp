@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/sonar/bins/TruthTable.hpp"
+#include "components/sonar/bins/Truth.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "components/sonar/beams/WaterView.hpp"
 #include "components/sonar/bins/Cells.hpp"
-#include "components/sonar/bins/TruthTable.hpp"
+#include "components/sonar/bins/Truth.hpp"
 
 namespace insonify::sonar {
 

@@ -4,7 +4,7 @@
 
 #include "components/sonar/bins/CellDeposit.hpp"
 #include "components/sonar/bins/Estimators.hpp"
-#include "components/sonar/bins/TruthTable.hpp"
+#include "components/sonar/bins/Truth.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -1,4 +1,4 @@
-#include "components/sonar/multipath/DirectSound.hpp"
+#include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/multipath/ForeignEchoes.hpp"
 #include "components/sonar/plan/Effect.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "components/sonar/multipath/DirectSound.hpp"
+#include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/multipath/PathCells.hpp"
 #include "components/sonar/multipath/SharedBins.hpp"
 #include "components/sonar/multipath/WayPatterns.hpp"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "components/sonar/beams/BeamFan.hpp"
-#include "components/sonar/bins/TruthTable.hpp"
+#include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/multipath/MirrorChain.hpp"
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/multipath/PathCells.hpp"

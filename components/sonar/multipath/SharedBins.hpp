@@ -2,7 +2,7 @@
 #include <atomic>
 
 #include "components/sonar/bins/Estimators.hpp"
-#include "components/sonar/bins/TruthTable.hpp"
+#include "components/sonar/bins/Truth.hpp"
 
 namespace insonify::sonar {
 namespace {

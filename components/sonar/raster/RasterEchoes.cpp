@@ -7,7 +7,7 @@
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/bins/BinLevels.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
-#include "components/sonar/bins/TruthTable.hpp"
+#include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/plan/EchoRenderer.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/raster/DeviceNeeds.hpp"

@@ -45,7 +45,7 @@ struct TracedTile {
     const float* gains = nullptr;  ///< Factor of each sample's echo by surface maps; null: 1 [1].
     const float* late = nullptr;   ///< Slant range of each sample's echo beyond that of its surface; null: none [m].
     const ApparentPlane* apparent = nullptr;  ///< Apparent surfaces behind refracting fills; null or focus 0: none.
-    uint32_t path = 0;                        ///< behind_walls, rung_in_wall (TruthTable.hpp), or 0.
+    uint32_t path = 0;                        ///< behind_walls, rung_in_wall (Truth.hpp), or 0.
 
     /** Returns the mean of `passed` of `count` samples from `first` [1]. */
     double meanPassed(int first, int count) const {

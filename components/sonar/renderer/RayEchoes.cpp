@@ -11,7 +11,7 @@
 #include "components/sonar/bins/BinLevels.hpp"
 #include "components/sonar/bins/EchoField.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
-#include "components/sonar/bins/TruthTable.hpp"
+#include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/multipath/WallRays.hpp"
 #include "components/sonar/plan/EchoRenderer.hpp"

@@ -12,7 +12,7 @@
 #include "components/acoustics/SoundProfile.hpp"
 #include "components/framework/Activity.hpp"
 #include "components/sonar/effects/Refraction.hpp"
-#include "components/sonar/multipath/DirectSound.hpp"
+#include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
 #include "types/ConfigError.hpp"
 

@@ -8,7 +8,7 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/sonar/bins/Detection.hpp"
-#include "components/sonar/multipath/DirectSound.hpp"
+#include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/renderer/PingDiagnostics.hpp"
 #include "components/sonar/renderer/QualityKeeper.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"

@@ -2,7 +2,7 @@
 
 #include "components/framework/Properties.hpp"
 #include "components/sonar/bins/Detection.hpp"
-#include "components/sonar/bins/TruthTable.hpp"
+#include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
 #include "types/DepthMap.hpp"
 #include "types/PointCloud.hpp"

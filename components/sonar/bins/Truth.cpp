@@ -1,4 +1,4 @@
-#include "components/sonar/bins/TruthTable.hpp"
+#include "components/sonar/bins/Truth.hpp"
 
 #include <algorithm>
 #include <atomic>
