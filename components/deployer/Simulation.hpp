@@ -121,6 +121,10 @@ public:
     /** Gives each scene its pose at a time later than that of the step before [s]. Returns one entry for each of
      *  pings(), with a null ping where the step made none. */
     std::vector<SteppedPing> step(std::map<std::string, types::Pose> at, std::optional<double> time);
+    /** Changes properties between steps, "task.property" to a value in YAML: all, or none. They stay after reset().
+     *  Throws types::ConfigError as the same assignments in SimulationOptions::overrides, and std::runtime_error for
+     *  properties that a running task cannot change. */
+    void set(const std::map<std::string, std::string>& values);
     /** Throws std::invalid_argument for 0, the deployment's own seeds, which only a new simulation has. */
     static void refuseSeed(std::optional<uint64_t> seed);
     /** Returns to the state right after construction, with this seed, not 0; none: the same seed. The scene stays

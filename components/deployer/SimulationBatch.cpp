@@ -58,6 +58,10 @@ std::vector<std::vector<SteppedPing>> SimulationBatch::step(std::vector<std::map
     return made;
 }
 
+void SimulationBatch::set(const std::map<std::string, std::string>& values) {
+    for (const auto& simulation : simulations_) simulation->set(values);  // what one refuses, the first refuses
+}
+
 void SimulationBatch::reset(std::span<const size_t> which, std::span<const std::optional<uint64_t>> seeds) {
     for (const size_t number : which)
         if (number >= size()) throw std::out_of_range(fmt::format("there is no simulation {} of {}", number, size()));

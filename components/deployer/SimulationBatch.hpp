@@ -28,6 +28,8 @@ public:
     /** Steps each simulation to its own next time, with its own poses. When some fail, steps all others and throws
      *  std::runtime_error with the number of the first that failed. */
     std::vector<std::vector<SteppedPing>> step(std::vector<std::map<std::string, types::Pose>> at);
+    /** Changes properties of all simulations, as Simulation::set(). */
+    void set(const std::map<std::string, std::string>& values);
     /** Resets these simulations, each with a seed, not 0; none: the same seed. */
     void reset(std::span<const size_t> which, std::span<const std::optional<uint64_t>> seeds);
 

@@ -1,6 +1,9 @@
 #include "components/framework/Properties.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
+
+#include <algorithm>
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/ConfigReader.hpp"
@@ -13,6 +16,23 @@ namespace {
 std::string setterName(std::string property) {
     property.front() = types::raised(property.front());
     return "set" + property;
+}
+
+/** Inserts a value into a block, below the blocks of a dotted name. Returns false where one of these is a value. */
+bool insert(YAML::Node block, const std::string& name, const YAML::Node& value) {
+    if (block.IsDefined() && !block.IsNull() && !block.IsMap()) return false;
+    const size_t dot = name.find('.');
+    const std::string key = name.substr(0, dot);
+    const YAML::Node known = child(block, key);
+    if (dot == std::string::npos) {
+        if (known.IsDefined()) return false;
+        block.force_insert(key, value);
+        return true;
+    }
+    if (known.IsDefined()) return insert(known, name.substr(dot + 1), value);
+    const YAML::Node inner(YAML::NodeType::Map);
+    block.force_insert(key, inner);
+    return insert(inner, name.substr(dot + 1), value);
 }
 
 class Setter final : public OperationBase {
@@ -43,17 +63,27 @@ void PropertiesBase::addSetters() {
             setters_.push_back(std::make_unique<Setter>(owner_, *this, property));
 }
 
-void PropertiesBase::setAll(const std::map<std::string, std::string>& values) {
+std::function<void()> PropertiesBase::setAll(const std::map<std::string, std::string>& values) {
     ConfigReader reader("");
-    reader.takeOutByNull();
     YAML::Node block(YAML::NodeType::Map);
     std::string names;
     for (const auto& [name, yaml] : values) {
         YAML::Node value;
         reader.readText(yaml, name, value);
-        block.force_insert(name, value);
+        if (!insert(block, name, value)) reader.report(value, name, "is given as a block and as a value");
         names += (names.empty() ? "" : ", ") + name;
     }
+    return apply(reader, block, names);
+}
+
+void PropertiesBase::change(const std::map<std::string, std::optional<double>>& values) {
+    std::map<std::string, std::string> texts;
+    for (const auto& [name, value] : values) texts[name] = value ? fmt::format("{}", *value) : "null";
+    setAll(texts);
+}
+
+std::function<void()> PropertiesBase::apply(ConfigReader& reader, const YAML::Node& block, const std::string& names) {
+    reader.takeOutByNull();
     const auto putBack = keep();
     if (reader.diagnostics().empty()) load(reader, block, "");
     if (!reader.diagnostics().empty()) {
@@ -65,6 +95,20 @@ void PropertiesBase::setAll(const std::map<std::string, std::string>& values) {
         throw std::runtime_error(outcome.reason);
     }
     owner_.refreshRecord();
+    return [this, putBack, names] {
+        putBack();
+        owner_.applyProperties(names);
+        owner_.refreshRecord();
+    };
+}
+
+PropertiesBase& blockWith(const std::string& property, const std::vector<PropertiesBase*>& blocks) {
+    const std::string name = property.substr(0, property.find('.'));
+    const auto has = [&](const PropertiesBase* block) {
+        return std::ranges::any_of(block->list(), [&](const PropertyInfo& each) { return each.name == name; });
+    };
+    const auto found = std::ranges::find_if(blocks, has);
+    return found == blocks.end() ? *blocks.front() : **found;
 }
 
 }  // namespace insonify::framework

@@ -2,6 +2,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,12 +27,15 @@ public:
     virtual std::vector<PropertyInfo> list() const = 0;
     /** The properties that are present, in the form of a log. */
     virtual std::map<std::string, types::PropertyValue> values() const = 0;
+    const TaskContext& owner() const { return owner_; }
     /** Sets one property in any state of the task; in a block, only the fields that `yaml` names. Null removes a
      *  property or resets it to its default. For the task's thread. Throws types::ConfigError when the value does not
      *  fit. Throws std::runtime_error when the task refuses the value. After a throw the old value stays. */
     void set(const std::string& name, const std::string& yaml) { setAll({{name, yaml}}); }
-    /** Sets several properties: all, or none. */
-    void setAll(const std::map<std::string, std::string>& values);
+    /** Sets several properties: all, or none. Dotted names reach into blocks. Returns a function that sets them back. */
+    std::function<void()> setAll(const std::map<std::string, std::string>& values);
+    /** Sets several properties to numbers, as setAll() does; none: removes a property or resets it to its default. */
+    void change(const std::map<std::string, std::optional<double>>& values);
 
 protected:
     void addSetters();
@@ -39,9 +43,16 @@ protected:
     virtual std::function<void()> keep() = 0;
 
 private:
+    /** Loads a block over the values and applies it; `names` for a refusal. */
+    std::function<void()> apply(ConfigReader& reader, const YAML::Node& block, const std::string& names);
+
     TaskContext& owner_;
     std::vector<std::unique_ptr<OperationBase>> setters_;
 };
+
+/** Returns the block of properties, among at least one, that has a property, by its dotted name; the first where none
+ *  has, whose error names it. */
+PropertiesBase& blockWith(const std::string& property, const std::vector<PropertiesBase*>& blocks);
 
 /** Properties in one described struct. Each top-level field is a property with an operation `set<Name>`, named as
  *  oroGen names it (setRange, setMax_size). */

@@ -258,6 +258,21 @@ double insonify_time(const Handle* simulation) {
                    [&] { return dynamic_cast<const SimulationHandle&>(*simulation).simulation.time(); });
 }
 
+int insonify_set(Handle* stepped, const char* const* assignments, size_t count) {
+    return guarded(-1, [&] {
+        std::map<std::string, std::string> values;
+        for (const std::string assignment : std::span(assignments, count)) {
+            const size_t equals = assignment.find('=');
+            values[assignment.substr(0, equals)] = assignment.substr(equals + 1);
+        }
+        if (dynamic_cast<BatchHandle*>(stepped))
+            Stepped::usable<BatchHandle>(*stepped).batch.set(values);
+        else
+            Stepped::usable<SimulationHandle>(*stepped).simulation.set(values);
+        return 0;
+    });
+}
+
 int insonify_reset(Handle* simulation, const uint64_t* seed) {
     return guarded(-1, [&] {
         Stepped::usable<SimulationHandle>(*simulation).simulation.reset(unlessNull(seed));

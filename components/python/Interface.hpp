@@ -34,6 +34,8 @@ int insonify_step(Handle* simulation, const char* const* ports, const double* po
                   const double* time, Handle** pings);
 /** Returns the default time of a simulation's next step [s]. On any thread, also while another one steps. */
 double insonify_time(const Handle* simulation);
+/** Changes properties of a simulation or of all simulations of a batch: "task.property=value" each, all or none. */
+int insonify_set(Handle* stepped, const char* const* assignments, size_t count);
 /** Resets a simulation.
  *  @param seed null: the same.
  *  @return 0; -1 on errors. */

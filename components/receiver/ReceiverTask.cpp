@@ -20,7 +20,7 @@ void ReceiverTask::takeSettings() {
     types::SonarSettings asked;
     if (settings.readNewest(asked, false) != framework::FlowStatus::NewData) return;
     if (std::isfinite(asked.gain_db) && asked.gain_db != config->gain_db)
-        config.set("gain_db", fmt::format("{}", asked.gain_db));
+        config.change({{"gain_db", asked.gain_db}});
 }
 
 void ReceiverTask::updateHook() {

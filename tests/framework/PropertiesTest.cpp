@@ -117,6 +117,30 @@ always: {mean: 2}
     EXPECT_EQ(config.always.law, Law::Rayleigh);
 }
 
+TEST(PropertiesTest, NumbersChangeTogetherOrNotAtAllAndDottedNamesReachIntoBlocks) {
+    Task task("t");
+    task.config.change({{"range", 12.5}, {"always.mean", 0.1 + 0.2}, {"bins", 7}});
+    EXPECT_EQ(task.config->range, 12.5);
+    EXPECT_EQ(task.config->always.mean, 0.1 + 0.2) << "to the last bit";
+    EXPECT_EQ(task.config->bins, 7);
+    const auto refusal = [&](const std::map<std::string, std::optional<double>>& values) -> std::string {
+        try {
+            task.config.change(values);
+        } catch (const types::ConfigError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_THAT(refusal({{"bins", 8}, {"rang", 5}}), testing::HasSubstr("rang: is not a key here; did you mean range?"));
+    EXPECT_THAT(refusal({{"range", std::nan("")}}), testing::HasSubstr("must be a finite number"));
+    EXPECT_THAT(refusal({{"always", 1}, {"always.mean", 2}}), testing::HasSubstr("is given as a block and as a value"));
+    EXPECT_THAT(refusal({{"always.mean", 2}, {"bins", 1.5}}), testing::HasSubstr("must be a whole number"));
+    EXPECT_EQ(task.config->bins, 7) << "all or none";
+    EXPECT_EQ(task.config->always.mean, 0.1 + 0.2);
+    task.config.change({{"range", std::nullopt}});
+    EXPECT_EQ(task.config->range, Config().range);
+}
+
 /** The results of a value in a deployment's properties, in one `--set` and in a live setter, and the state after
  *  both. */
 TEST(PropertiesTest, SettingsFromOutsideAndLiveAreEquivalent) {

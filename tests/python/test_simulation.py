@@ -402,3 +402,56 @@ time.sleep(0.01)
     for _ in range(5):
         ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=100, check=False)
         assert ended.returncode == 0 and ended.stderr == ""
+
+
+def test_settings_between_steps_give_the_pings_of_overrides(deploy):
+    fixed = {"sonar.quality": {"rows": 64, "columns_per_beam": 2}, "sonar.visibility": "cpu"}
+    changed = insonify.Simulation(deploy / "minimal.yml", overrides=fixed)
+    first = changed.step(insonify.Pose())
+    draw = np.random.default_rng(5)
+    for _ in range(6):
+        values = {"sonar.range": float(draw.uniform(5, 30)), "sonar.bin_count": int(draw.integers(50, 300)),
+                  "sonar.beam_count": int(draw.integers(1, 64)), "sonar.speed_of_sound": float(draw.uniform(1400, 1560)),
+                  "sonar.absorption": {"db_per_m": float(draw.uniform(0, 0.3))},
+                  "sonar.quality.rows": int(draw.integers(16, 128))}
+        changed.set(values)
+        ping = changed.step(insonify.Pose())
+        made = insonify.Simulation(deploy / "minimal.yml", overrides=fixed | values).step(insonify.Pose())
+        assert np.array_equal(ping.bins, made.bins) and np.array_equal(ping.ranges, made.ranges)
+    changed.reset()
+    assert np.array_equal(changed.step(insonify.Pose()).bins, made.bins), "they stay after a reset"
+    changed.set(dict.fromkeys(values) | {"sonar.quality": fixed["sonar.quality"]})
+    assert np.array_equal(changed.step(insonify.Pose()).bins, first.bins), "None: the default again"
+
+
+def test_wrong_settings_change_nothing_and_are_reported_as_overrides(deploy):
+    sim = insonify.Simulation(deploy / "minimal.yml", overrides={"sonar.quality": {"rows": 64, "columns_per_beam": 2}})
+    before = sim.step(insonify.Pose()).bins
+    for values in ({"sonar.range": -3}, {"sonar.rang": 3}, {"sona.range": 3}, {"sonar": 3}, {"sonar.activity.period": 1},
+                   {"sonar.range": 9, "sonar.beam_count": 0}, {"sonar.range": 9, "sonar.quality": {"rws": 3}},
+                   {"sonar.range": "far"}, {"sonar.bin_count": 2.5}, {"sonar.range": [1, 2]}):
+        with pytest.raises(insonify.ConfigError) as live:
+            sim.set(values)
+        assert np.array_equal(sim.step(insonify.Pose()).bins, before), values
+        with pytest.raises(insonify.ConfigError) as given:
+            insonify.Simulation(deploy / "minimal.yml", overrides=values)
+        if len(values) == 1 and "sonar" not in values:  # which also says that it could be a namespace
+            told = [d["message"].split(";")[0] for d in live.value.diagnostics]
+            assert told == [d["message"].split(";")[0] for d in given.value.diagnostics], values
+    with pytest.raises(RuntimeError, match="scene is Running"):
+        sim.set({"scene.file": "other.glb"})
+    with pytest.raises(TypeError, match="values: is a list"):
+        sim.set([1])
+    assert np.array_equal(sim.step(insonify.Pose()).bins, before)
+
+
+def test_settings_of_a_batch_are_those_of_each(deploy):
+    fixed = {"sonar.quality": {"rows": 64, "columns_per_beam": 2}}
+    batch = insonify.SimulationBatch(deploy / "minimal.yml", 3, overrides=fixed)
+    single = insonify.Simulation(deploy / "minimal.yml", overrides=fixed)
+    for stepped in (batch, single):
+        stepped.set({"sonar.range": 7.5})
+    bins = batch.step([insonify.Pose()] * 3).bins
+    assert all(np.array_equal(each, single.step(insonify.Pose()).bins) for each in bins[:1])
+    with pytest.raises(insonify.ConfigError):
+        batch.set({"sonar.range": -1})

@@ -227,6 +227,49 @@ TEST(QualityTaskTest, AStillSceneKeepsItsBitsAndItsPrediction) {
     }
 }
 
+/** From then on no ping is rendered many times: its cost is that of its own samples, and of one coarser ping. */
+TEST(QualityTaskTest, ChangedSettingsKeepTheQualityAndMoveItInSmallSteps) {
+    const auto scene = floorAndWall();
+    Fed<SonarTask> sonar(small());
+    for (int i = 0; i < 5; ++i) sonar.ping(outwards(scene));
+    double before = sonar.quality().samples();
+    EXPECT_GT(before, 4 * Quality().samples());
+    const char* ranges[] = {"12", "45", "20", "30"};
+    size_t off = 0, pings = 0;
+    for (int second = 0; second < 20; ++second) {
+        sonar.task.config.set("range", ranges[second % 4]);
+        if (second % 3 == 0) sonar.task.config.change({{"speed_of_sound", 1450 + second}, {"frequency_khz", 300}});
+        for (int i = 0; i < 10; ++i) {
+            const types::Snapshot snapshot = outwards(scene);
+            const types::SonarPtr ping = sonar.ping(snapshot);
+            ASSERT_TRUE(ping) << sonar.task.lastError();
+            const double samples = sonar.quality().samples();
+            EXPECT_LE(samples, 1.5 * before) << second << ", " << i;
+            before = samples;
+            ++pings;
+            off += i > 5 && sonar.quality().error > 1.2 * 0.05;
+        }
+    }
+    EXPECT_EQ(off, 0u) << "of " << pings << ": within five pings the prediction is at the target";
+}
+
+TEST(QualityTaskTest, OtherChoicesOfQualityAreMadeAnew) {
+    const auto scene = floorAndWall();
+    Fed<SonarTask> sonar(small());
+    sonar.ping(outwards(scene));
+    const Quality first = sonar.quality();
+    sonar.task.config.set("quality", "{target_error: 0.02}");
+    sonar.ping(outwards(scene));
+    EXPECT_LE(sonar.quality().error, 0.02);
+    EXPECT_GT(sonar.quality().samples(), first.samples());
+    sonar.task.config.set("quality", "null");
+    sonar.ping(outwards(scene));
+    EXPECT_EQ(sonar.quality(), first);
+    sonar.task.config.set("quality", "{rows: 100, columns_per_beam: 3}");
+    sonar.ping(outwards(scene));
+    EXPECT_EQ(sonar.quality(), (Quality{100, 3}));
+}
+
 TEST(QualityTaskTest, ASwayingSonarDoesNotAlternateBetweenQualities) {
     const auto scene = floorAndWall();
     Fed<SonarTask> sonar(small());

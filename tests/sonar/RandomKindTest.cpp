@@ -74,6 +74,33 @@ TEST(RandomKindTest, TheMirrorImageOfASceneHasTheMirrorImageOfItsPings) {
     });
 }
 
+/** The renderer keeps its data of the scene when properties change. */
+TEST(RandomKindTest, ASonarWhosePropertiesChangePingsAsOneMadeWithThem) {
+    forEachSonar(2 * few, [](const RandomSonar& drawn, Draw& draw) {
+        RandomSonar from = drawn, to = test::randomSonar(static_cast<uint64_t>(drawn.kind) + 6000 + static_cast<uint64_t>(draw.upTo(100) * test::kinds));
+        if (draw.once(2)) from = withPaths(from, draw);
+        if (draw.once(2)) to = withPaths(to, draw);
+        if (drawn.kind == Kind::Scanning) to.properties["head"] = from.properties["head"];  // stays where it is
+        RandomSonar nearer = to;
+        nearer.properties["range"] = fmt::format("{:.3f}", draw.between(8, 40));
+        nearer.properties["speed_of_sound"] = fmt::format("{:.2f}", draw.between(1400, 1560));
+        nearer.properties["frequency_khz"] = fmt::format("{:.1f}", draw.between(100, 900));
+        const types::Snapshot scene = from.scene();
+        test::SonarBench changed(from);
+        changed.pingsOf(scene);
+        int turns = 1;  // of a head, which goes on where it is
+        const RandomSonar* before = &from;
+        for (const RandomSonar* now : {&to, &nearer, &from}) {
+            test::SonarBench made(*now);
+            for (int turn = 0; turn < turns; ++turn) made.pingsOf(scene);
+            changed.change(*before, *now);
+            expectAlike(binsOf(changed.pingsOf(scene)), binsOf(made.pingsOf(scene)), 0);
+            before = now;
+            ++turns;
+        }
+    });
+}
+
 TEST(RandomKindTest, TheOrderOfObjectsChangesNoBit) {
     forEachSonar(few, [](const RandomSonar& drawn, Draw& draw) {
         for (const RandomSonar& one : {drawn, withPaths(drawn, draw)}) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <set>
 #include <thread>
 
 #include "components/gpu/EglContext.hpp"
@@ -51,6 +52,40 @@ TEST(SonarRendererTest, SonarsSideBySideRenderTheSameAsAlone) {
         });
     for (std::thread& sonar : sonars) sonar.join();
     EXPECT_EQ(differing, 0);
+}
+
+/** As when a driver changes the range: the device keeps the scene where it can. */
+TEST(SonarRendererTest, ARasterisingSonarThatIsChangedRendersAsOneMadeSo) {
+    auto surfaces = std::make_shared<types::Geometry>(*test::surfaces());
+    surfaces->materials.front().has_acoustics = true;
+    surfaces->materials.front().seabed = "coarse_sand";
+    surfaces->materials.front().roughness_slope = 0.2;
+    const auto snapshot = test::snapshotOf(types::GeometryPtr(surfaces));
+    std::vector<SonarConfig> all(9, oneFan());
+    for (SonarConfig& config : all) config.frequency_khz = 60;
+    all[1].range *= 1.7;
+    all[2].frequency_khz = 30;
+    all[3].range_min = 0.9 * all[3].range / 2;
+    all[3].speed_of_sound = 1430;
+    all[4].field_of_view_deg = 30;  // fewer images
+    all[5].beam_count = 40;
+    all[5].bin_count = 123;
+    all[6].deposit = Deposit::Gpu;
+    all[7].visibility = Visibility::Cpu;
+    SonarRenderer changed(all[0], snapshot.geometry);
+    types::Sonar ping;
+    std::set<std::vector<float>> seen;
+    for (size_t i = 0; i < all.size(); ++i) {
+        SCOPED_TRACE(i);
+        const std::vector<float> made = test::pingOf(all[i], snapshot).bins;
+        changed.setConfig(all[i]);
+        for (int again = 0; again < 2; ++again) {
+            changed.render(snapshot, ping);
+            EXPECT_EQ(ping.bins, made);
+        }
+        seen.insert(made);
+    }
+    EXPECT_GE(seen.size(), 6u) << "the settings matter";
 }
 
 TEST(SonarRendererTest, RejectsAnotherThread) {

@@ -122,6 +122,15 @@ public:
         }
         return pings;
     }
+    /** Changes the properties of the running task from those of one sonar to those of another. */
+    void change(const RandomSonar& from, const RandomSonar& to) {
+        std::map<std::string, std::string> values = to.properties;
+        for (const auto& [name, value] : from.properties)
+            if (!values.try_emplace(name, "null").second && values[name] == value) values.erase(name);
+        for (const auto& [name, value] : values)  // a block is replaced, not merged
+            if (value.starts_with('{')) task_->properties().front()->setAll({{name, "null"}});
+        task_->properties().front()->setAll(values);
+    }
     types::SonarTruthPtr truth;  ///< Of the last ping.
 
 private:

@@ -300,6 +300,15 @@ class Simulation:
         made = [handle and Ping(handle) for handle in handles]
         return made[0] if len(made) == 1 else dict(zip(self.pings, made))
 
+    def set(self, values: Mapping[str, object]) -> None:
+        """Changes properties from the next step on: values of "task.property", as `overrides`; None removes one or
+        resets it to its default. They stay after reset(). The sonar keeps its quality and its data of the scene.
+
+        :raises ConfigError: as for `overrides`; then nothing has changed.
+        :raises RuntimeError: for properties that a running task cannot change, such as the file of a scene.
+        """
+        native.change(self._simulation, _assignments(values, "values"))
+
     def reset(self, seed: int | None = None) -> None:
         """Resets to the start, as if made anew with this seed, not 0; None: the same seed. The scene stays
         loaded."""
@@ -397,6 +406,10 @@ class SimulationBatch:
             _warn(self._batch.facts()["notices"], self._warned)
         return Pings(pings)
 
+    def set(self, values: Mapping[str, object]) -> None:
+        """Changes properties of all simulations, as Simulation.set()."""
+        native.change(self._batch, _assignments(values, "values"))
+
     def reset(self, which: Sequence[int] | None = None, seeds: Sequence[int] | None = None) -> None:
         """Resets simulations, as if just made, with these seeds, none 0; None: all of them, the same seeds."""
         native.batch_reset(self._batch, range(len(self)) if which is None else which, seeds)
@@ -420,9 +433,9 @@ def _warn(notices: list[str], warned: list[str]) -> list[str]:
     return notices
 
 
-def _assignments(overrides: Mapping[str, object] | None) -> list[str]:
+def _assignments(overrides: Mapping[str, object] | None, what: str = "overrides") -> list[str]:
     if overrides is not None and not isinstance(overrides, Mapping):
-        raise TypeError(f"overrides: is a {type(overrides).__name__}; must be a mapping from task.property to values")
+        raise TypeError(f"{what}: is a {type(overrides).__name__}; must be a mapping from task.property to values")
     return [f"{name}={json.dumps(value, default=_plain)}" for name, value in (overrides or {}).items()]
 
 

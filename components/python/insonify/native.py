@@ -93,6 +93,7 @@ for _name, _result, *_arguments in (
     ("simulation", _handle, _text, ctypes.c_uint64, ctypes.POINTER(_text), _size, ctypes.c_int, ctypes.POINTER(ctypes.c_double)),
     ("step", ctypes.c_int, _handle, ctypes.POINTER(_text), _handle, _size, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(_handle)),
     ("time", ctypes.c_double, _handle),
+    ("set", ctypes.c_int, _handle, ctypes.POINTER(_text), _size),
     ("reset", ctypes.c_int, _handle, ctypes.POINTER(ctypes.c_uint64)),
     ("batch", _handle, _text, ctypes.c_uint64, ctypes.POINTER(_text), _size, ctypes.c_int, ctypes.POINTER(ctypes.c_double), _size),
     ("batch_step", _handle, _handle, _handle),
@@ -195,6 +196,12 @@ def time(simulation: Handle) -> float:
     if value != value:  # NaN: it failed
         _raise()
     return value
+
+
+def change(stepped: Handle, assignments: Sequence[str]) -> None:
+    texts = (_text * len(assignments))(*(each.encode() for each in assignments))
+    if _functions.set(stepped.pointer, texts, len(texts)):
+        _raise()
 
 
 def reset(simulation: Handle, seed: int | None) -> None:

@@ -41,12 +41,16 @@ Beamformer::Rules rulesOfZones(const RenderPlan& plan, size_t samples,
 
 EchoGrid::EchoGrid(const RenderPlan& plan, int threads)
     : bin_count_(static_cast<size_t>(plan.grid.bin_count)), beam_count_(plan.beams.size()) {
-    if (plan.has(Pass::Beamform)) beamformer_ = beamformerOf(plan);
     if (plan.has(Pass::Pulse))
         response_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound), plan.grid);
-    if (!passes()) echoes_.resize(plan.cells.size() * bin_count_);
     if (response_)
         padded_.assign(static_cast<size_t>(threads), std::vector<float>(bin_count_ + 2 * response_->margin()));
+    takeQuality(plan);
+}
+
+void EchoGrid::takeQuality(const RenderPlan& plan) {
+    if (plan.has(Pass::Beamform)) beamformer_ = beamformerOf(plan);
+    if (!passes()) echoes_.resize(plan.cells.size() * bin_count_);
 }
 
 void EchoGrid::finishBeam(size_t beam, std::span<float> padded, types::Sonar& ping) const {

@@ -28,6 +28,8 @@ class EchoGrid {
 public:
     /** `threads`: size of the pool that will finish it. */
     EchoGrid(const RenderPlan& plan, int threads);
+    /** Switches to the same plan with other azimuth cells. */
+    void takeQuality(const RenderPlan& plan);
 
     /** Returns the buffer for the intensities of a cell, one for each bin; each cell is filled once per ping. */
     std::span<float> cell(size_t cell, types::Sonar& ping) {

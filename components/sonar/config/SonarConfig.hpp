@@ -223,6 +223,7 @@ struct QualityConfig {
     std::optional<double> target_error, budget_ms;
     std::optional<int> max_samples;
 
+    bool operator==(const QualityConfig&) const = default;
     bool isGiven() const { return rows || columns_per_beam; }
 
     static void describe(auto& self, auto& visit) {

@@ -35,6 +35,9 @@ public:
     /** Switches to another geometry and keeps what has not changed. Returns false where another renderer is needed.
      *  Without `same_plan` the plan may have other laws, features and passes. */
     virtual bool takeScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
+    /** Switches to the plan, which is of another configuration now, and keeps what depends on the scene alone. Returns
+     *  false where another renderer is needed. */
+    virtual bool changePlan() { return false; }
     /** Switches to the geometry of `meshes`, whose objects deform, and takes their shapes in each ping from then on;
      *  null: to `geometry`, in which no object deforms. A rasterising renderer must have that geometry already. */
     virtual void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) = 0;

@@ -38,10 +38,16 @@ Culler::View Culler::viewOf(const ViewFrustum& frustum) {
 Culler::Culler(const types::Geometry& geometry, const CullRules& rules)
     : geometry_(geometry),
       rules_(rules),
-      places_(geometry, rules.reach, rules.draw_all),
+      places_(std::in_place, geometry, rules.reach, rules.draw_all),
       range_max_(static_cast<float>(rules.reach.range_max)) {
     for (const types::Object& object : geometry.objects)
         draw_range_limit_ += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
+}
+
+void Culler::setRules(const CullRules& rules) {
+    rules_ = rules;
+    places_.emplace(geometry_, rules.reach, rules.draw_all);
+    range_max_ = static_cast<float>(rules.reach.range_max);
 }
 
 void Culler::visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges) const {
@@ -52,9 +58,9 @@ void Culler::visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges)
 }
 
 uint32_t Culler::inView(const View& view, size_t object) const {
-    if (places_.isFar(object)) return NOT_IN_VIEW;
+    if (places_->isFar(object)) return NOT_IN_VIEW;
     if (rules_.draw_all) return WHOLE_IN_VIEW;
-    const Box& box = places_.box(object);
+    const Box& box = places_->box(object);
     const glm::vec3 centre(box.low * 0.5 + box.high * 0.5), half(box.high * 0.5 - box.low * 0.5);
     const float distance = nearest(view, records()[object], centre, half);
     if (!(distance <= range_max_)) return NOT_IN_VIEW;

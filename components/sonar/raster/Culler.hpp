@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <optional>
 #include <vector>
 
 #include "components/sonar/beams/BeamFan.hpp"
@@ -31,11 +32,13 @@ public:
     /** `geometry` must outlive the culler. */
     Culler(const types::Geometry& geometry, const CullRules& rules);
 
+    /** Switches to other rules from the next ping on. */
+    void setRules(const CullRules& rules);
     /** Places all objects relative to the sonar; call it once per ping, before `visible`. */
-    void place(const types::Snapshot& snapshot) { places_.place(snapshot); }
+    void place(const types::Snapshot& snapshot) { places_->place(snapshot); }
     /** Lists the runs that a frustum may see, neighbours joined. */
     void visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges) const;
-    const std::vector<ObjectRecord>& records() const { return places_.records(); }
+    const std::vector<ObjectRecord>& records() const { return places_->records(); }
     size_t drawRangeLimit() const { return draw_range_limit_; }  ///< Max runs from `visible`.
 
     /** Outward normals of the planes that bound a frustum's view, all through the sonar; sonar axes, of any length. */
@@ -63,7 +66,7 @@ private:
 
     const types::Geometry& geometry_;
     CullRules rules_;
-    ObjectPlaces places_;
+    std::optional<ObjectPlaces> places_;
     float range_max_;
     size_t draw_range_limit_ = 0;
 };

@@ -49,6 +49,7 @@ public:
     RasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
     ~RasterEchoes() override;
     void takeQuality() override;
+    bool changePlan() override;
     void deform(DeformedMeshes* meshes, types::GeometryPtr /*geometry*/) override { deformed_ = meshes; }
     void takeShapes(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
@@ -80,6 +81,7 @@ private:
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     const PingEffects& effects_;
+    const std::string wanted_device_;  ///< As configured.
     gpu::EglContext context_;
     std::string why_on_processor_;  ///< Empty unless the device was to sum the pictures and cannot.
     std::string device_;
@@ -105,7 +107,8 @@ RasterEchoes::RasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry, 
     : plan_(plan),
       geometry_(std::move(geometry)),
       effects_(effects),
-      context_(plan.config.device),
+      wanted_device_(plan.config.device),
+      context_(wanted_device_),
       why_on_processor_(checkDevice()),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
@@ -143,7 +146,7 @@ SurfacePass::Setup RasterEchoes::surfaceSetup() const {
 
 void RasterEchoes::makeDeposit() {
     DepositSetup setup = depositSetup(plan_, effects_);
-    grid_.emplace(plan_, threads_.size());
+    grid_ ? grid_->takeQuality(plan_) : void(grid_.emplace(plan_, threads_.size()));
     rules_ = setup.rules;
     if (depositsOnProcessor())
         deposit_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
@@ -253,6 +256,24 @@ void RasterEchoes::takeQuality() {
     sums_ = {};
     makeDeposit();
     context_.check();
+}
+
+bool RasterEchoes::changePlan() {
+    context_.requireThread();
+    if (plan_.config.device != wanted_device_) return false;
+    const auto alone = context_.transferring();
+    why_on_processor_ = checkDevice();
+    if (!surface_.serves(surfaceSetup())) return false;
+    culler_.setRules({nearest_rasterised, reachOf(plan_), plan_.config.draw_all});
+    levels_ = BinLevels(plan_.config, plan_.grid);
+    surface_.takeLaws();
+    surface_.resize(plan_.frusta);
+    sums_ = {};
+    rendered_ = false;
+    grid_.reset();
+    makeDeposit();
+    context_.check();
+    return true;
 }
 
 bool RasterEchoes::hasEchoes() const {

@@ -178,6 +178,17 @@ SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, Culler& culler, 
     }
 }
 
+bool SurfacePass::serves(const Setup& other) const {
+    return other.frusta.size() == setup_.frusta.size() && other.defines == setup_.defines &&
+           other.near_plane == setup_.near_plane && other.empty_too == setup_.empty_too &&
+           other.cull_on_device == setup_.cull_on_device;
+}
+
+void SurfacePass::takeLaws() {
+    scene_.takeLaws(setup_.geometry, setup_.laws);
+    if (parts_.size() > 1) gpu::Fence::here().wait();  // the other contexts must find the buffers filled
+}
+
 void SurfacePass::resize(const std::vector<ViewFrustum>& frusta) {
     setup_.frusta = frusta;
     onEachPart([this](size_t part) { makePictures(part); });

@@ -85,7 +85,11 @@ public:
     SurfacePass(gpu::EglContext& context, Setup setup, Culler& culler, ThreadPool& threads);
     ~SurfacePass();
 
-    /** Switches to pictures of the same frusta with other numbers of pixels. */
+    /** Returns whether this pass serves another setup of the same scene, after takeLaws() and resize(). */
+    bool serves(const Setup& other) const;
+    /** Switches to the present laws of materials. */
+    void takeLaws();
+    /** Switches to pictures of as many frusta, with other numbers of pixels. */
     void resize(const std::vector<ViewFrustum>& frusta);
 
     /** Switches to the present shape of an object's mesh, before uploadShapes(). Several threads may take different

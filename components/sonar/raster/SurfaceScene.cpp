@@ -129,6 +129,12 @@ void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {
     normal_maps_.push_back(std::move(flat));
 }
 
+void SurfaceScene::takeLaws(const types::Geometry& geometry, const MaterialLaws& laws) {
+    facet_list_ = facetLobes(geometry, laws);
+    materials_ = uploaded(laws.records);
+    triangles_ = {};
+}
+
 size_t SurfaceScene::endOf(size_t mesh) const {
     return mesh + 1 < places_.size() ? places_[mesh + 1].first_triangle : plane_list_.size();
 }

@@ -25,6 +25,8 @@ public:
     const std::vector<PlaneRecord>& planes() const { return plane_list_; }
     /** Returns the facet of each triangle; empty where no material has a lobe. */
     const std::vector<FacetRecord>& facets() const { return facet_list_; }
+    /** Switches to other laws of the same materials. */
+    void takeLaws(const types::Geometry& geometry, const MaterialLaws& laws);
     /** Computes planes and facets of a mesh that has another shape now. Several threads may take different meshes. */
     void takeShape(const types::Geometry& geometry, const MaterialLaws& laws, size_t mesh);
     /** Uploads the shape of a mesh after takeShape(). */

@@ -46,6 +46,7 @@ public:
      *  It has at least the rows and columns of `least`, and at most `max_samples` per beam; `least` itself where there
      *  is none. Its error is that of `model`. */
     Quality choose(const ErrorModel& model, double target, double max_samples, const Quality& minimum = {}) const;
+    int maxColumns() const { return columns_.back(); }
 
 private:
     std::vector<int> rows_, columns_;

@@ -25,6 +25,7 @@ constexpr double pings_to_measure = 15, max_delay = 4;  ///< Max time to measure
 constexpr double off_measure = 1.2;  ///< Margin where the error of another quality is taken from one comparison [1].
 constexpr int min_pings = 64, settled = 20, max_notices = 20;
 constexpr double worth_reporting = 1.2;
+constexpr double max_move = 1.5;  ///< Max growth of samples from ping to ping after a change of settings [1].
 
 }  // namespace
 
@@ -81,6 +82,19 @@ double QualityKeeper::maxSamples() const {
     return std::max(maximum / beams_, Quality().samples());
 }
 
+bool QualityKeeper::changeConfig(const SonarConfig& config) {
+    const QualityLadder ladder(config);
+    if (!chosen_ || !(config.quality == config_.quality) || upcoming().columns_per_beam > ladder.maxColumns())
+        return false;
+    config_ = config;
+    beams_ = config.beams();
+    ladder_ = ladder;
+    estimator_ = ErrorEstimator(config, target_ > 0 ? min_share * target_ : min_error);
+    steady_ = approaching_ = true;
+    if (upcoming().samples() > maxSamples()) next_ = ladder_.choose(model_, target_share * target_, maxSamples());
+    return true;
+}
+
 bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
                            double period_ms) {
     const Quality before = model_.at;
@@ -97,11 +111,14 @@ bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene
             choose(renderer, scene, ping, target_, {});
         } else {
             keepBudget(renderer, scene, ping, ms, period_ms);
-            if (!next_ && isDue()) watch(renderer, scene, ping);
+            if (!next_ && approaching_)
+                approach(renderer, scene, ping);
+            else if (!next_ && isDue())
+                watch(renderer, scene, ping);
             reportBudget(scene, ms);
         }
     }
-    const Quality& next = next_ ? *next_ : model_.at;
+    const Quality& next = upcoming();
     const SonarConfig& set = renderer.renderPlan().config;
     if (set.rows() != next.rows || set.columnsPerBeam() != next.columns_per_beam)
         renderer.setQuality(next.rows, next.columns_per_beam);
@@ -156,10 +173,32 @@ double QualityKeeper::errorOf(double change) {
     return measured_ * fall + std::max(per_change_, min_per_change) * rise;
 }
 
+void QualityKeeper::approach(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping) {
+    approaching_ = false;
+    change_ = -1;
+    since_change_ = 0;
+    worst_ = errorOf(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
+    if (target_ > 0 && worst_ > off_target * target_) moveUp(worst_);
+    if (!next_ && std::max(model_.at.samples() / reported_.samples(), reported_.samples() / model_.at.samples()) >
+                      worth_reporting)
+        reportChoice(scene);
+}
+
+void QualityKeeper::moveUp(double error) {
+    model_ = model_.scaled(error / model_.at.error);
+    const double max_samples = std::min(maxSamples(), max_move * model_.at.samples());
+    const Quality next = ladder_.choose(model_, target_share * target_, max_samples, model_.at);
+    if (next == model_.at) return;
+    next_ = next;
+    approaching_ = true;
+}
+
 void QualityKeeper::watch(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
     const double error = errorOf(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
     worst_ = std::max(worst_, error);
-    if (error > std::max(off_target * target_, off_prediction * measured_) && mayChoose()) {
+    const bool is_off = error > std::max(off_target * target_, off_prediction * measured_);
+    if (is_off && steady_) return moveUp(error);
+    if (is_off && mayChoose()) {
         if (std::exchange(lowered_, false)) turns_ = std::min(more_patience * turns_, max_turns);
         return choose(renderer, scene, ping, target_, turn_ == 1 ? Quality() : model_.at);
     }
@@ -172,6 +211,12 @@ void QualityKeeper::settle(SonarRenderer& renderer, const types::Snapshot& scene
     since_change_ = 0;
     model_.at.error = worst;
     const bool is_idle = worst <= well_within * target_ && worst <= has_fallen * measured_;
+    if (is_idle && steady_ && worst > 0) {
+        model_ = model_.scaled(worst / model_.at.error);
+        const Quality lower = ladder_.choose(model_, target_share * target_, maxSamples());
+        if (lower.samples() < model_.at.samples()) next_ = lower, approaching_ = true;
+        return;
+    }
     if (!is_idle || model_.at == Quality() || !mayChoose()) return;
     const double look = worst > 0 ? std::max(error / worst, min_look) : 1;
     choose(renderer, scene, ping, target_ * look, {});
@@ -188,7 +233,7 @@ void QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& s
     const double before = maxSamples();
     if (!budget_ || !budget_->note(ms, model_.at.samples() * beams_)) return;
     const bool rises = maxSamples() > before;
-    if (rises && pings_to_measure * ms <= max_delay * budget_->budget()) {
+    if (rises && !steady_ && pings_to_measure * ms <= max_delay * budget_->budget()) {
         estimator_.begin();
         take(estimator_.measure(renderer, scene, ping, model_.at), renderer, scene, ping);
     }

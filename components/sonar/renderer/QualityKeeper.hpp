@@ -63,7 +63,12 @@ private:
  *  times the error of the choice. Rows and columns are not lowered then for a head. It is chosen again as well if all
  *  errors of a whole turn of the head, and of at least 64 pings, were within half the target and had fallen by a third:
  *  a still scene keeps its quality. New choices have at most 15 % of the pings' samples plus 100 pings. All decisions
- *  depend on the pings alone, so that a run can be repeated bit for bit; with a budget also on their times. */
+ *  depend on the pings alone, so that a run can be repeated bit for bit; with a budget also on their times.
+ *
+ *  When settings of the sonar change, such as the range, the quality stays. From then on the quality is not chosen anew
+ *  on one ping, so that no ping takes much longer than the others. It moves by at most half of its samples from ping to
+ *  ping, and each ping of such a move is compared with a coarser one, until the predicted error is within 1.2 times the
+ *  target. */
 class QualityKeeper {
 public:
     /** `turn`: pings in which the sonar covers all its look directions [1]. */
@@ -73,6 +78,11 @@ public:
      *  `period_ms`: period of the pings, which is the budget where there is no other; 0: none. */
     bool follow(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
                 double period_ms = 0);
+    /** Switches to a sonar with other settings. Returns false where the quality must be chosen anew by another keeper:
+     *  before the first choice, with another `quality`, or where these columns cannot be rasterised. */
+    bool changeConfig(const SonarConfig& config);
+    /** Returns the quality of the next ping. */
+    const Quality& upcoming() const { return next_ ? *next_ : model_.at; }
     /** Returns the quality of the last ping that was followed, with its predicted error. */
     const Quality& quality() const { return model_.at; }
     /** Returns whether the quality has been chosen, on a ping with an echo. */
@@ -92,6 +102,10 @@ private:
     double errorOf(double change);
     void watch(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping);
     bool isDue() const;
+    /** Evaluates a ping after a change of settings or of the quality, and moves the quality towards the target. */
+    void approach(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping);
+    /** Moves the next ping's quality towards an error at the target, from one that is predicted for this ping. */
+    void moveUp(double error);
     void settle(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double error);
     /** Chooses the quality of the next ping for its time. */
     void keepBudget(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping, double ms,
@@ -115,6 +129,8 @@ private:
     double per_change_ = 0;        ///< Predicted error per difference to a coarser ping [1].
     std::optional<Quality> next_;  ///< Quality of the next ping, where it is another.
     bool chosen_ = false, missed_ = false, late_reported_ = false;
+    bool steady_ = false;       ///< Whether settings have changed: the quality only moves in steps.
+    bool approaching_ = false;  ///< Whether each ping is evaluated, since the last change of settings.
     int64_t pings_ = 0;            ///< Pings with an echo [1].
     double received_samples_ = 0;  ///< Samples per beam of all pings with an echo [1].
     double choosing_ = 0;          ///< Samples per beam of all choices [1].

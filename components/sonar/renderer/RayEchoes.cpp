@@ -59,6 +59,7 @@ public:
     RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
     void takeQuality() override;
     bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
+    bool changePlan() override;
     void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) override;
     void takeShapes(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
@@ -91,6 +92,8 @@ private:
             last = now;
         }
     };
+    /** Computes what depends on scene and plan, such as the facets of materials with a specular lobe. */
+    void takeLaws();
     void takePlan();
     void shareOut();
     int beamsTogether() const {
@@ -211,11 +214,8 @@ bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     if (before != geometry_)
         visibility_.takeScene(
             *geometry_, deformed_ ? std::span<const uint32_t>(deformed_->objects()) : std::span<const uint32_t>());
-    // Data shared with the predecessors is kept, because these are destroyed after the new objects are made.
-    places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
     normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
     std::vector<MeshFacts::Planes> planes;
-    std::vector<MeshFacts::Facets> facets;
     std::vector<MeshFacts::Curves> curves;
     std::vector<bool> deforms(geometry_->meshes.size());
     if (deformed_)
@@ -225,18 +225,36 @@ bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     for (size_t i = 0; i < geometry_->meshes.size(); ++i) {
         const auto facts = MeshFacts::of(geometry_->meshes.shared(i));
         planes.push_back(facts->planes());
-        facets.push_back(facts->facets(worldFromMesh(*geometry_, i), plan_.laws));
         curves.push_back(deforms[i] ? flat : facts->curves(worldFromMesh(*geometry_, i)));
     }
-    planes_ = std::move(planes);
-    facets_ = std::move(facets);
+    planes_ = std::move(planes);  // shared data is kept, because the predecessors are destroyed after the new are made
     curves_ = std::move(curves);
+    takeLaws();
+    if (ray_paths_) ray_paths_->takeScene(*geometry_);
+    if (!same_plan) takePlan();
+    return true;
+}
+
+void RayEchoes::takeLaws() {
+    places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
+    std::vector<MeshFacts::Facets> facets;
+    for (size_t i = 0; i < geometry_->meshes.size(); ++i)
+        facets.push_back(
+            MeshFacts::of(geometry_->meshes.shared(i))->facets(worldFromMesh(*geometry_, i), plan_.laws));
+    facets_ = std::move(facets);
     reverberation_ = Reverberation(plan_, *geometry_, facets_);
     surface_maps_.reset();
     if (plan_.has(Pass::SurfaceMaps)) surface_maps_.emplace(*geometry_, visibility_.commands());
     runs_.reserve(scene().commands.size());
-    if (ray_paths_) ray_paths_->takeScene(*geometry_);
-    if (!same_plan) takePlan();
+}
+
+bool RayEchoes::changePlan() {
+    ray_paths_.reset();
+    grid_.reset();
+    field_.reset();
+    truth_rules_.reset();
+    takeLaws();
+    takePlan();
     return true;
 }
 
@@ -265,6 +283,8 @@ void RayEchoes::takeQuality() {
     if (plan_.features.has(Feature::Speckle)) {
         field_.emplace(plan_, threads_.size());
         truth_rules_ = makeEnergyRules(plan_, effects_);
+    } else if (grid_) {
+        grid_->takeQuality(plan_);
     } else {
         grid_.emplace(plan_, threads_.size());
     }

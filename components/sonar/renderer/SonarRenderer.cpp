@@ -37,6 +37,7 @@ struct SonarRenderer::Parts {
     void makeEchoes();
     void deform(const types::Snapshot& snapshot);
     bool takeScene(types::GeometryPtr given);
+    void takeConfig(const SonarConfig& config);
     void takeShapes(const types::Snapshot& snapshot);
     void describePlan();
     types::SonarTruth* truthOf(const types::Sonar& ping) const { return &ping == reported_ping ? truth : nullptr; }
@@ -122,6 +123,21 @@ bool SonarRenderer::Parts::takeScene(types::GeometryPtr given) {
     if (!echoes->takeScene(std::move(given), same_plan)) start();
     if (!same_plan) describePlan();
     return !same_plan;
+}
+
+void SonarRenderer::Parts::takeConfig(const SonarConfig& config) {
+    const bool traced_rays = plan.traces_rays;
+    RenderPlan next = makeRenderPlan(config, *scene, plan.options);
+    if (!traced_rays && next.traces_rays) {
+        const auto alone = gpu::EglContext::making();
+        echoes.reset();
+    }
+    plan = std::move(next);
+    effects = PingEffects(plan, *geometry);
+    array.reset();
+    if (deformed) deformed->forget();
+    if (traced_rays != plan.traces_rays || !echoes->changePlan()) start();
+    describePlan();
 }
 
 SonarRenderer::Parts::~Parts() {
@@ -224,6 +240,8 @@ bool SonarRenderer::forget() {
 }
 
 bool SonarRenderer::setGeometry(types::GeometryPtr geometry) { return parts_->takeScene(std::move(geometry)); }
+
+void SonarRenderer::setConfig(const SonarConfig& config) { parts_->takeConfig(config); }
 
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {
     parts_->plan.setQuality(rows, columns_per_beam);

@@ -52,6 +52,11 @@ public:
      *  changed. */
     bool setGeometry(types::GeometryPtr geometry);
 
+    /** Switches to another configuration, such as another range, and forgets all pings. With rays it keeps threads and
+     *  the data of the scene. Allocates memory. Throws as the constructor does; a configuration that cannot be planned
+     *  changes nothing. */
+    void setConfig(const SonarConfig& config);
+
     /** Switches to this number of rows of samples and columns per beam [1]. Allocates memory. */
     void setQuality(int rows, int columns_per_beam);
 

@@ -96,18 +96,20 @@ bool PingTask::configureHook() {
             "is connected; the sonar does not receive other sonars: give it `crosstalk: {}`, or remove the connection");
     sonarConfig().requireDevice(name());
     transmitted_ = {};
-    renderer_.reset();
-    plan_.reset();
+    is_changed_ = renderer_ != nullptr;
+    if (!renderer_) plan_.reset();
     resetTrigger();
     return true;
 }
 
 framework::Outcome PingTask::restart() {
     std::unique_ptr<SonarRenderer> kept;
+    const bool changed = is_changed_;
     if (renderer_ && !quality_ && renderer_->forget()) kept = std::move(renderer_);
     if (framework::Outcome outcome = cleanup(); !outcome) return outcome;
     if (framework::Outcome outcome = configure(); !outcome || !kept) return outcome;
     renderer_ = std::move(kept);
+    is_changed_ = changed;
     diagnostics_.emplace(pingsPerTurn());
     takePlan();
     return {};
@@ -204,14 +206,36 @@ std::string PingTask::indivisible() const {
 }
 
 void PingTask::prepareRenderer() {
-    if (renderer_ && geometry_ == takenScene().geometry) return;
+    if (renderer_ && geometry_ == takenScene().geometry && !is_changed_) return;
     const types::GeometryPtr before = std::exchange(geometry_, takenScene().geometry);  // kept until unused
     takenScene().moved.reserve(geometry_->objects.size());
-    if (renderer_) {
-        if (renderer_->setGeometry(geometry_)) takePlan();
-        return;
+    if (!renderer_) return makeRenderer();
+    const bool has_plan = renderer_->setGeometry(geometry_);
+    if (is_changed_) return changeRenderer();
+    if (has_plan) takePlan();
+}
+
+void PingTask::changeRenderer() {
+    SonarConfig config = locatedConfig();
+    if (!config.choosesQuality())
+        quality_.reset();
+    else if (!quality_ || !quality_->changeConfig(config))
+        quality_.emplace(config, pingsPerTurn());
+    if (quality_ && quality_->isChosen()) {
+        const Quality quality = quality_->upcoming();
+        config.quality = {};
+        config.quality.rows = quality.rows;
+        config.quality.columns_per_beam = quality.columns_per_beam;
     }
+    renderer_->setConfig(initial(config));
+    is_changed_ = false;
+    diagnostics_.emplace(pingsPerTurn());
+    takePlan();
+}
+
+void PingTask::makeRenderer() {
     const SonarConfig config = locatedConfig();
+    is_changed_ = false;
     quality_.reset();
     diagnostics_.emplace(pingsPerTurn());
     RenderOptions options;

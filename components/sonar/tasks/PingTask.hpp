@@ -24,7 +24,8 @@ namespace insonify::sonar {
 /** Base of the sonar tasks: renders one ping for each input that a TriggeredTask takes.
  *
  *  The renderer is made at the first ping, when the geometry is known. When the geometry changes, the renderer keeps
- *  its threads, its quality and its data of meshes that are still in use. A scene that cannot be rendered leads to
+ *  its threads, its quality and its data of meshes that are still in use. When a property changes, such as the range
+ *  that a driver requests, it keeps its threads, its quality and its data of the scene. A scene that cannot be rendered leads to
  *  RunTimeError, from which the next good ping recovers. In realtime a ping is written once the last echo of its range
  *  has arrived. That is 2 range / c after its snapshot's time on the deployment's clock, or after the task took it,
  *  whichever is later. Pings thus never overlap. A ping that is still waiting for echoes at the stop is not written.
@@ -147,8 +148,11 @@ private:
     types::Time lastEcho() const;
     /** Waits in realtime until lastEcho(). Returns false if the task is to stop. */
     bool waitForLastEcho();
-    /** Makes the renderer, or switches it to the geometry of the next ping. */
+    /** Makes the renderer, or switches it to the geometry and the configuration of the next ping. */
     void prepareRenderer();
+    void makeRenderer();
+    /** Switches the renderer to the present configuration, at the quality that it has. */
+    void changeRenderer();
     void takePlan();
     /** Returns the diagnostic of a ping that may be empty. */
     std::string diagnosticOf(bool received, const types::Sonar& sample);
@@ -165,6 +169,7 @@ private:
     int threads_ = 0;                      ///< Threads of the renderer [1].
     std::optional<types::Plan> plan_;      ///< Outlives the renderer, for the summary.
     bool plan_reported_ = false;           ///< Whether the record has the current plan.
+    bool is_changed_ = false;              ///< Whether the renderer lacks the present configuration.
     types::GeometryPtr geometry_;          ///< The renderer's.
     types::Transmission transmitted_;      ///< Everything except time and pose; made for the first ping.
     OthersReceived others_received_;

@@ -62,20 +62,20 @@ void Sonar3dConfig::check(types::Diagnostics& diagnostics) const {
     if (diagnostics.empty()) standing().checkBeam(diagnostics);
 }
 
-std::map<std::string, std::string> Sonar3dTask::changedBy(const types::SonarSettings& asked) const {
-    types::SonarSettings of_all = asked;
+TriggeredTask::Changes Sonar3dTask::changedBy(const types::SonarSettings& requested) const {
+    types::SonarSettings of_all = requested;
     of_all.field_of_view = of_all.beam_height = {};
     of_all.beam_count = 0;
-    auto changed = PingTask::changedBy(of_all);
+    Changes changes = PingTask::changedBy(of_all);
     const BeamRow& row = config->horizontal;
-    const double view_deg = asked.field_of_view.isUnknown() ? row.field_of_view_deg : asked.field_of_view.deg();
-    const auto beams = asked.beam_count == 0 ? static_cast<uint32_t>(row.beam_count) : asked.beam_count;
-    if (view_deg != row.field_of_view_deg || beams != static_cast<uint32_t>(row.beam_count))
-        changed["horizontal"] = fmt::format("{{beam_count: {}, field_of_view_deg: {}}}", beams, view_deg);
-    if (const double height_deg = asked.beam_height.deg();
-        !asked.beam_height.isUnknown() && height_deg != config->sonar.beam_height_deg)
-        changed["beam_height_deg"] = fmt::format("{}", height_deg);
-    return changed;
+    if (const auto beams = requested.beam_count; beams != 0 && beams != static_cast<uint32_t>(row.beam_count))
+        changes["horizontal.beam_count"] = beams;
+    const auto compare = [&](const char* name, types::Angle wanted, double now) {
+        if (!wanted.isUnknown() && wanted.deg() != now) changes[name] = wanted.deg();
+    };
+    compare("horizontal.field_of_view_deg", requested.field_of_view, row.field_of_view_deg);
+    compare("beam_height_deg", requested.beam_height, config->sonar.beam_height_deg);
+    return changes;
 }
 
 RenderPlan Sonar3dTask::coverage(const types::Snapshot& scene) const {

@@ -86,7 +86,7 @@ protected:
     void writeMore(const types::Sonar& sample, const types::Pose& sonar) override;
     void findStrongest(const types::Sonar& sample, std::vector<uint32_t>& strongest) override;
     /** Applies `field_of_view` and `beam_count` to a row of beams side by side, and `beam_height` to one beam. */
-    std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const override;
+    Changes changedBy(const types::SonarSettings& requested) const override;
 
 private:
     /** Writes the returns of one upright fan into a column of the map, and their truth if there is one. */

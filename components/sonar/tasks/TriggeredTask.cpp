@@ -26,15 +26,6 @@ const char* normalisePose(types::Pose& pose) {
     return nullptr;
 }
 
-/** Returns the block of properties that has this one; the first where none has, whose error names it. */
-framework::PropertiesBase* blockWith(const std::string& property, const std::vector<framework::PropertiesBase*>& all) {
-    const auto has = [&](const framework::PropertiesBase* block) {
-        return std::ranges::any_of(block->list(), [&](const auto& each) { return each.name == property; });
-    };
-    const auto found = std::ranges::find_if(all, has);
-    return found == all.end() ? all.front() : *found;
-}
-
 }  // namespace
 
 double TriggeredTask::realtimePeriod() const { return activity().realtime() ? period_.period() : 0; }
@@ -74,35 +65,35 @@ bool TriggeredTask::takeGiven() {
     return true;
 }
 
-std::map<std::string, std::string> TriggeredTask::changedBy(const types::SonarSettings& asked) const {
+TriggeredTask::Changes TriggeredTask::changedBy(const types::SonarSettings& requested) const {
     const SonarConfig config = sonarConfig();
-    std::map<std::string, std::string> changed;
+    Changes changes;
     const auto compare = [&](const char* name, double wanted, std::optional<double> now) {
-        if (std::isfinite(wanted) && wanted != now) changed[name] = fmt::format("{}", wanted);
+        if (std::isfinite(wanted) && wanted != now) changes[name] = wanted;
     };
-    const auto compareCount = [&](const char* name, uint32_t wanted, uint32_t now) {
-        if (wanted != 0 && wanted != now) changed[name] = fmt::format("{}", wanted);
+    const auto compareCount = [&](const char* name, uint32_t wanted, int now) {
+        if (wanted != 0 && wanted != static_cast<uint32_t>(now)) changes[name] = wanted;
     };
-    compare("range", asked.range, config.range);
-    compare("frequency_khz", asked.frequency_khz, config.frequency_khz);
-    if (asked.speed_of_sound != 0)
-        compare("speed_of_sound", asked.speed_of_sound, config.speed_of_sound);
+    compare("range", requested.range, config.range);
+    compare("frequency_khz", requested.frequency_khz, config.frequency_khz);
+    if (requested.speed_of_sound != 0)
+        compare("speed_of_sound", requested.speed_of_sound, config.speed_of_sound);
     else if (own_speed_ && *own_speed_ != config.speed_of_sound)
-        changed["speed_of_sound"] = *own_speed_ ? fmt::format("{}", **own_speed_) : "null";
-    compare("field_of_view_deg", asked.field_of_view.deg(), config.field_of_view_deg);
-    compare("beam_height_deg", asked.beam_height.deg(), config.beam_height_deg);
-    compareCount("bin_count", asked.bin_count, static_cast<uint32_t>(config.bin_count));
-    compareCount("beam_count", asked.beam_count, static_cast<uint32_t>(config.beam_count));
-    return changed;
+        changes["speed_of_sound"] = *own_speed_;
+    compare("field_of_view_deg", requested.field_of_view.deg(), config.field_of_view_deg);
+    compare("beam_height_deg", requested.beam_height.deg(), config.beam_height_deg);
+    compareCount("bin_count", requested.bin_count, config.bin_count);
+    compareCount("beam_count", requested.beam_count, config.beam_count);
+    return changes;
 }
 
 void TriggeredTask::applySettings(const types::SonarSettings& asked) {
-    const auto changed = changedBy(asked);
+    const Changes changes = changedBy(asked);
     const auto before = sonarConfig().speed_of_sound;
-    if (!changed.empty()) blockWith(changed.begin()->first, properties())->setAll(changed);
+    if (!changes.empty()) framework::blockWith(changes.begin()->first, properties()).change(changes);
     if (asked.speed_of_sound == 0)
         own_speed_.reset();
-    else if (!own_speed_ && changed.contains("speed_of_sound"))
+    else if (!own_speed_ && changes.contains("speed_of_sound"))
         own_speed_ = before;
     if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
 }

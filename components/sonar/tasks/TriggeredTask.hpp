@@ -58,9 +58,10 @@ protected:
     /** Returns the period of the pings in realtime [s]; 0 where it is not known, or not in realtime. */
     double realtimePeriod() const;
 
-    /** Returns the settings that differ from the configuration: names and YAML of properties, named as for a fan of
-     *  beams. */
-    virtual std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const;
+    /** Properties and their new numbers; none: the default. */
+    using Changes = std::map<std::string, std::optional<double>>;
+    /** Returns the requested settings that differ from the configuration, named as for a fan of beams. */
+    virtual Changes changedBy(const types::SonarSettings& requested) const;
     /** Sets the bearing of a turning head from the next ping on. */
     virtual void turnHead(types::Angle /*bearing*/) {}
     /** Makes the last changes to a snapshot with a valid pose before it is rendered. Returns the reason for refusing
