@@ -11,4 +11,7 @@ namespace insonify::types {
  * The last part of a known name with a namespace is enough, also without "Task". */
 std::string didYouMean(std::string_view wrong, const std::vector<std::string>& known);
 
+/** Returns the choices as a message lists them: ".a, .b or .c". */
+std::string alternatives(const std::vector<std::string_view>& choices);
+
 }  // namespace insonify::types

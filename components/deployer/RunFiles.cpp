@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "components/framework/StreamNames.hpp"
+#include "components/output/PictureFiles.hpp"
 #include "types/Ascii.hpp"
 #include "types/Sonar.hpp"
 
@@ -24,7 +25,7 @@ std::string kindOf(const fs::path& file) {
 }
 
 bool hasExtension(const fs::path& file, std::initializer_list<const char*> extensions) {
-    return std::ranges::count(extensions, file.extension().string()) > 0;
+    return std::ranges::count(extensions, types::lowered(file.extension().string())) > 0;
 }
 
 /** Returns the last picture of the first series, or else a video: scanning sonars and waterfalls fill their pictures.
@@ -33,7 +34,7 @@ fs::path firstPicture(const std::map<std::string, Files>& kinds) {
     for (const auto& [kind, files] : kinds)
         if (hasExtension(files.back(), {".png"})) return files.back();
     for (const auto& [kind, files] : kinds)
-        if (hasExtension(files.back(), {".avi", ".mp4"})) return files.back();
+        if (output::isVideo(files.back())) return files.back();
     return {};
 }
 
