@@ -112,25 +112,11 @@ Scene readByExtension(const std::filesystem::path& file) {
 
 std::span<const SceneFormat> sceneFormats() { return all_formats; }
 
-const SceneFormat* findSceneFormat(const std::filesystem::path& file) {
-    const auto* const found = std::ranges::find(all_formats, extensionOf(file), &SceneFormat::ending);
-    return found == std::end(all_formats) ? nullptr : found;
-}
+const SceneFormat* findSceneFormat(const std::filesystem::path& file) { return types::findFormat(all_formats, file); }
 
-const std::string& sceneEndings() {
-    static const std::string text = [] {
-        std::vector<std::string_view> endings;
-        for (const SceneFormat& format : all_formats) endings.push_back(format.ending);
-        return types::alternatives(endings);
-    }();
-    return text;
-}
-
-std::string sceneEndings(std::string_view library) {
-    std::vector<std::string_view> endings;
-    for (const SceneFormat& format : all_formats)
-        if (format.library == library) endings.push_back(format.ending);
-    return types::alternatives(endings);
+std::string sceneEndings(std::optional<std::string_view> library) {
+    return types::alternativeEndings(all_formats,
+                                     [&](const SceneFormat& format) { return !library || format.library == *library; });
 }
 
 const char* sceneFileMeaning() {

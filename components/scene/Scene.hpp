@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <glm/mat4x4.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -59,10 +60,8 @@ struct SceneFormat {
 std::span<const SceneFormat> sceneFormats();
 /** Returns the format of a file by its name; null: it has no ending of a scene. Does not look at the file. */
 const SceneFormat* findSceneFormat(const std::filesystem::path& file);
-/** Returns the endings of all formats for a message: ".gltf, .glb, .world, .sdf or .urdf". */
-const std::string& sceneEndings();
-/** Returns the endings that a component library reads: ".world, .sdf or .urdf"; empty names the core. */
-std::string sceneEndings(std::string_view library);
+/** Returns the endings of all formats, or of those that a component library reads: ".world, .sdf or .urdf". */
+std::string sceneEndings(std::optional<std::string_view> library = {});
 /** Returns the meaning of the property that names the file of a scene. It stays valid until the program ends. */
 const char* sceneFileMeaning();
 
