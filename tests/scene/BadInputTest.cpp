@@ -39,10 +39,10 @@ std::string glb(const std::string& json, const std::string& binary) {
 
 TEST_F(BadInputTest, ReportsMissingEmptyAndForeignFilesAndFolders) {
     std::filesystem::create_directory(folder_ / "folder.glb");
-    expectDiagnostic(folder_ / "missing.glb", "must be a scene, which may be .gltf, .glb, .world, .sdf or .urdf");
+    expectDiagnostic(folder_ / "missing.glb", "must be a scene, which may be " + sceneEndings());
     expectDiagnostic(folder_ / "folder.glb", "is not a file");
     expectDiagnostic(write("empty.glb", ""), "is empty");
-    expectDiagnostic(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be .gltf, .glb, .world, .sdf or .urdf");
+    expectDiagnostic(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be " + sceneEndings());
     expectDiagnostic(write("noise.glb", "this is no model at all"), "cannot be read as glTF 2.0");
 }
 
