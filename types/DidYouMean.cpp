@@ -56,4 +56,11 @@ std::string didYouMean(std::string_view wrong, const std::vector<std::string>& k
     return holding.size() == 1 ? "did you mean " + holding.front() + "? " : "";
 }
 
+std::string alternatives(const std::vector<std::string_view>& choices) {
+    std::string text;
+    for (size_t i = 0; i < choices.size(); ++i)
+        text.append(i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ").append(choices[i]);
+    return text;
+}
+
 }  // namespace insonify::types

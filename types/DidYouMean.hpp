@@ -1,7 +1,12 @@
 #pragma once
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "types/Ascii.hpp"
 
 namespace insonify::types {
 
@@ -10,5 +15,24 @@ namespace insonify::types {
  * name of three letters or fewer must also begin with the same letter. A part of exactly one known name is close, too.
  * The last part of a known name with a namespace is enough, also without "Task". */
 std::string didYouMean(std::string_view wrong, const std::vector<std::string>& known);
+
+/** Returns the choices as a message lists them: ".a, .b or .c". */
+std::string alternatives(const std::vector<std::string_view>& choices);
+
+/** Returns the endings of those formats of a table that are `listed`, as a message lists them. */
+template <class Format, size_t count, class Listed = decltype([](const Format&) { return true; })>
+std::string alternativeEndings(const Format (&formats)[count], Listed listed = {}) {
+    std::vector<std::string_view> endings;
+    for (const Format& format : formats)
+        if (listed(format)) endings.push_back(format.ending);
+    return alternatives(endings);
+}
+
+/** Returns the format of a file by its ending in any case of letters; null: the table has none. */
+template <class Format, size_t count>
+const Format* findFormat(const Format (&formats)[count], const std::filesystem::path& file) {
+    const auto* const found = std::ranges::find(formats, lowered(file.extension().string()), &Format::ending);
+    return found == std::end(formats) ? nullptr : found;
+}
 
 }  // namespace insonify::types

@@ -16,6 +16,7 @@
 #include "components/framework/Properties.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/Scene.hpp"
 
 namespace insonify::command {
 
@@ -135,7 +136,7 @@ int listMaterials(bool json) {
 }
 
 int describe(const std::string& type, bool json) {
-    if (isSceneName(type)) return showScene(type, json);
+    if (scene::findSceneFormat(type)) return showScene(type, json);
     const framework::Registry registry = allTasks();
     if (type.empty()) return listTasks(registry, json);
     if (type == "materials") return listMaterials(json);

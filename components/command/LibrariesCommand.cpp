@@ -10,6 +10,8 @@
 #include "components/deployer/Json.hpp"
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/loader/ComponentLibrary.hpp"
+#include "components/output/PictureFiles.hpp"
+#include "components/scene/Scene.hpp"
 
 namespace insonify::command {
 
@@ -28,10 +30,10 @@ void addNeeded(const YAML::Node& node, std::set<std::string>& names) {
             if (key == "gazebo") names.insert("gazebo");
             addNeeded(entry.second, names);
         }
-    if (node.IsDefined() && node.IsScalar())
-        for (const loader::Component& component : loader::components())
-            for (const std::string_view ending : component.file_endings)
-                if (!ending.empty() && node.Scalar().ends_with(ending)) names.insert(component.name);
+    if (!node.IsDefined() || !node.IsScalar()) return;
+    const scene::SceneFormat* const format = scene::findSceneFormat(node.Scalar());
+    if (format && !format->library.empty()) names.emplace(format->library);
+    if (output::isVideo(node.Scalar())) names.insert("video");
 }
 
 std::set<std::string> neededBy(const framework::DeploymentSpec& spec) {

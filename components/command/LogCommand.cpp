@@ -122,29 +122,6 @@ void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
             to.string(), bins / 1e6, bins * line / 1e9, bins * sizeof(float) / 1e9);
 }
 
-/** Returns the written files. */
-std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const std::string& poses, const fs::path& to,
-                               bool along_ground) {
-    const log::Stream& exported = log.streams()[log.indexOf(name)];
-    const std::string &stream = exported.name, meta = text(meaningOf(log, exported));
-    if (!to.has_extension() || fs::is_directory(to)) {
-        makeFolder(to);
-        return log::exportNpz(log, stream, to / (stream + ".npz"), meta);
-    }
-    if (along_ground && to.extension() != ".png")
-        throw types::ConfigError("", "--ground", "is for pictures: --to FILE.png");
-    makeFolderOf(to);
-    if (to.extension() == ".npz") return log::exportNpz(log, stream, to, meta);
-    if (to.extension() == ".png") return exportPictures(log, stream, to, along_ground);
-    if (to.extension() == ".xtf") return exportXtf(log, stream, poses, to), std::vector{to};
-    if (to.extension() == ".oculus") return exportOculus(log, stream, to), std::vector{to};
-    if (to.extension() != ".csv")
-        throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv, .png, .mcap, .xtf or .oculus");
-    noteSize(log, stream, to);
-    log::exportCsv(log, stream, to);
-    return {to};
-}
-
 struct Options {
     std::string file, deployment, stream, poses, to, samples;
     std::vector<std::string> files, streams;
@@ -153,6 +130,49 @@ struct Options {
     log::McapConfig mcap;
     bool json = false, metadata = false, ground = false;
 };
+
+using Paths = std::vector<fs::path>;  ///< Written files.
+/** A format that a stream is exported to, by the ending of the file, in lower case. */
+struct ExportFormat {
+    std::string_view ending;
+    const char* limit = "";                                  ///< For the help.
+    Paths (*write)(log::Reader&, const Options&) = nullptr;  ///< Null: of whole logs, exportMessages().
+};
+
+Paths writeNpz(log::Reader& log, const Options& options) {
+    const log::Stream& stream = log.streams()[log.indexOf(options.stream)];
+    return log::exportNpz(log, stream.name, options.to, text(meaningOf(log, stream)));
+}
+
+constexpr ExportFormat export_formats[] = {
+    {".npz", "", writeNpz},
+    {".csv", "",
+     [](log::Reader& log, const Options& o) {
+         return noteSize(log, o.stream, o.to), log::exportCsv(log, o.stream, o.to), Paths{o.to};
+     }},
+    {".png", "", [](log::Reader& log, const Options& o) { return exportPictures(log, o.stream, o.to, o.ground); }},
+    {".mcap"},
+    {".xtf", " (side-scan)",
+     [](log::Reader& log, const Options& o) { return exportXtf(log, o.stream, o.poses, o.to), Paths{o.to}; }},
+    {".oculus", "", [](log::Reader& log, const Options& o) { return exportOculus(log, o.stream, o.to), Paths{o.to}; }},
+};
+
+Paths exportTo(log::Reader& log, Options options) {
+    const fs::path to = options.to;
+    options.stream = log.streams()[log.indexOf(options.stream)].name;
+    if (!to.has_extension() || fs::is_directory(to)) {
+        makeFolder(to);
+        options.to = to / (options.stream + ".npz");
+        return writeNpz(log, options);
+    }
+    const ExportFormat* const format = types::findFormat(export_formats, to);
+    if (options.ground && (!format || format->ending != ".png"))
+        throw types::ConfigError("", "--ground", "is for pictures: --to FILE.png");
+    makeFolderOf(to);
+    if (!format)
+        throw types::ConfigError(to, "--to", "may be a folder, or end in " + types::alternativeEndings(export_formats));
+    return format->write(log, options);
+}
 
 void reportLost(const log::Copied& copied) {
     for (const std::string& lost : copied.lost) console::printDiagnostic("lost: {}\n", lost);
@@ -175,8 +195,7 @@ int logExport(const Options& options) {
     const auto log = opened(options.file);
     if (options.stream.empty())
         throw types::ConfigError("", "--stream", "is missing; only an MCAP file takes all streams");
-    for (const fs::path& written : exportTo(*log, options.stream, options.poses, options.to, options.ground))
-        console::printResult("{}\n", written.string());
+    for (const fs::path& written : exportTo(*log, options)) console::printResult("{}\n", written.string());
     return 0;
 }
 
@@ -224,8 +243,7 @@ log::Selection selectionOf(const Options& options) {
 }
 
 void refuseOtherNames(const std::string& to) {
-    if (!log::isMcap(to) && fs::path(to).extension() != ".log")
-        throw types::ConfigError(to, "--to", "must end in .log or .mcap");
+    if (!log::findLogFormat(to)) throw types::ConfigError(to, "--to", "must end in " + log::logEndings());
     if (fs::path(to).filename() == "properties.0.log")
         throw types::ConfigError(to, "--to", "is the name of a log of properties; give another");
 }
@@ -380,10 +398,9 @@ void addLogCommand(CLI::App& app, Action& action) {
             "Writes a stream as numpy arrays, text, pictures, XTF or .oculus, or the log as ROS 2 messages", logExport);
     out->add_option("--stream", options->stream, "task.port, as `log info` lists them; none: all, to an MCAP file");
     out->add_option("--pose", options->poses, "of an XTF file: task.port of the sonar's poses, or its vehicle's");
-    out->add_option("--to", options->to,
-                    "FILE.npz, FILE.csv, FILE.png, FILE.mcap, FILE.xtf (side-scan), FILE.oculus, or a folder for "
-                    "FILE.npz")
-        ->required();
+    std::string files;
+    for (const ExportFormat& format : export_formats) files += fmt::format("FILE{}{}, ", format.ending, format.limit);
+    out->add_option("--to", options->to, files + "or a folder for FILE.npz")->required();
     out->add_flag("--ground", options->ground,
                   "a side-scan's pictures along a flat bottom, each line by the log's altitude at its time");
     addMcapOptions(*out, *options);

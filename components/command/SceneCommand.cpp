@@ -134,8 +134,7 @@ Json warningsOf(const std::string& file, const types::Geometry& geometry, const 
 std::string axesOf(const std::string& file) {
     if (scene::isGltf(file))
         return "glTF, y up in the file; turned to z up: (x, y, z) of the file is (x, -z, y) of the world";
-    return std::string(scene::extensionOf(file) == ".urdf" ? "URDF" : "SDF") +
-           ", z up: x, y, z of the file are those of the world";
+    return std::string(scene::findSceneFormat(file)->name) + ", z up: x, y, z of the file are those of the world";
 }
 
 /** Returns the animations of a scene: [{name, duration_s, channels}]. */
@@ -279,11 +278,6 @@ void printScene(const Json& scene) {
 
 }  // namespace
 
-bool isSceneName(const std::string& name) {
-    const std::string extension = scene::extensionOf(name);
-    return scene::isGltf(name) || extension == ".world" || extension == ".sdf" || extension == ".urdf";
-}
-
 int showScene(const std::string& file, bool json, const scene::OmitRules& rules) {
     const Json scene = sceneReport(file, rules);
     json ? print(scene) : printScene(scene);
@@ -355,7 +349,7 @@ void addSceneCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
         app.add_subcommand("scene", "Prints what a scene contains: its box, axes, materials, objects; or makes one");
-    command->add_option("FILE", options->file, "a .gltf, .glb, .world, .sdf or .urdf file");
+    command->add_option("FILE", options->file, "a " + scene::sceneEndings() + " file");
     command->add_flag("--json", options->json, "for machines");
     command
         ->add_option("--omit", options->rules.names,

@@ -10,7 +10,4 @@ namespace insonify::command {
  *  @param rules what is omitted of it */
 int showScene(const std::string& file, bool json, const scene::OmitRules& rules = {});
 
-/** Whether a name is that of a scene: .gltf, .glb, .world, .sdf or .urdf. */
-bool isSceneName(const std::string& name);
-
 }  // namespace insonify::command

@@ -57,7 +57,7 @@ void takePlaces(log::Reader& log, const log::Stream& pings, CodedLog& coded) {
 }  // namespace
 
 std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
-    if (!log::isMcap(file) && file.extension() != ".log") return std::nullopt;
+    if (!log::findLogFormat(file)) return std::nullopt;
     const auto log = log::openLog(file);
     for (size_t i = 0; i < log->streams().size(); ++i) {
         const log::Stream& stream = log->streams()[i];

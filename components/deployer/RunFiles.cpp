@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "components/framework/StreamNames.hpp"
+#include "components/log/Reader.hpp"
+#include "components/output/PictureFiles.hpp"
 #include "types/Ascii.hpp"
 #include "types/Sonar.hpp"
 
@@ -23,17 +25,13 @@ std::string kindOf(const fs::path& file) {
     return (file.parent_path() / (stem + file.extension().string())).string();
 }
 
-bool hasExtension(const fs::path& file, std::initializer_list<const char*> extensions) {
-    return std::ranges::count(extensions, file.extension().string()) > 0;
-}
-
 /** Returns the last picture of the first series, or else a video: scanning sonars and waterfalls fill their pictures.
  */
 fs::path firstPicture(const std::map<std::string, Files>& kinds) {
     for (const auto& [kind, files] : kinds)
-        if (hasExtension(files.back(), {".png"})) return files.back();
+        if (types::lowered(files.back().extension().string()) == ".png") return files.back();
     for (const auto& [kind, files] : kinds)
-        if (hasExtension(files.back(), {".avi", ".mp4"})) return files.back();
+        if (output::isVideo(files.back())) return files.back();
     return {};
 }
 
@@ -52,9 +50,8 @@ std::string loggedPings(const framework::Deployment& deployment) {
 /** Returns the command that draws the pings of the run's log; empty: it has none. */
 std::string drawingCommand(const fs::path& folder, const Files& files, const framework::Deployment& deployment) {
     const std::string pings = loggedPings(deployment);
-    const auto log = std::ranges::find_if(files, [](const fs::path& file) {
-        return hasExtension(file, {".log", ".mcap"}) && file.filename() != "properties.0.log";
-    });
+    const auto log = std::ranges::find_if(
+        files, [](const fs::path& file) { return log::findLogFormat(file) && file.filename() != "properties.0.log"; });
     if (pings.empty() || log == files.end()) return {};
     return fmt::format("insonify log export {} --stream {} --to {}", (folder / *log).string(), pings,
                        (folder / "ping.png").string());

@@ -28,10 +28,10 @@ constexpr Component all_components[] = {
     {"gazebo", "poses and worlds of Gazebo"},
     {"mavlink", "poses of autopilots"},
     {"nav", "a DVL, an inertial unit and a pressure gauge"},
-    {"sdf", "scenes in SDF, .world and .sdf, with meshes as .dae, .obj and .stl", {".sdf", ".world"}},
+    {"sdf", "scenes in SDF and robots in URDF, with meshes as .dae, .obj and .stl"},
     {"study", "studies of the simulator itself"},
     {"survey", "surveys of the sea floor"},
-    {"video", "videos", {".avi", ".mp4"}},
+    {"video", "videos"},
     {"viewer", "the live view"},
     {"worlds", "scenes by recipe"},
 };

@@ -1,10 +1,8 @@
 #pragma once
 // Component libraries: the parts beyond the core, loaded when a deployment, a scene's file or a command names them.
-#include <array>
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace insonify::loader {
@@ -13,8 +11,7 @@ namespace insonify::loader {
  *  tasks. */
 struct Component {
     const char* name;
-    const char* gives;                                  ///< For users: "ROS 2 messages".
-    std::array<std::string_view, 2> file_endings = {};  ///< Files that need it: ".sdf".
+    const char* gives;  ///< For users: "ROS 2 messages".
 };
 std::span<const Component> components();
 /** Null if Insonify has no component of that name. */

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "components/log/Reader.hpp"
 #include "components/log/pocolog/Index.hpp"
 #include "types/ConfigError.hpp"
 
@@ -60,7 +61,7 @@ InputFile::InputFile(const std::filesystem::path& path) {
         ::close(file_);
         throw types::ConfigError(
             path, "",
-            S_ISDIR(status.st_mode) ? "is a folder; give a log in it: a .log or .mcap file" : "is not a file");
+            S_ISDIR(status.st_mode) ? "is a folder; give a log in it: a " + logEndings() + " file" : "is not a file");
     }
     size_ = static_cast<uint64_t>(status.st_size);
     identity_ = {status.st_dev, status.st_ino};

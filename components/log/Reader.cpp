@@ -6,6 +6,7 @@
 #include "components/log/TypeNames.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
+#include "types/DidYouMean.hpp"
 #include "types/Elapsed.hpp"
 
 namespace insonify::log {
@@ -100,7 +101,20 @@ const char* diagnosticOf(types::SampleView sample) {
     return std::visit([](const auto* held) { return types::diagnosticOf(*held); }, sample);
 }
 
-bool isMcap(const std::filesystem::path& path) { return path.extension() == ".mcap"; }
+namespace {
+
+constexpr LogFormat all_formats[] = {{".log"}, {".mcap", true}};
+
+}  // namespace
+
+const LogFormat* findLogFormat(const std::filesystem::path& path) { return types::findFormat(all_formats, path); }
+
+std::string logEndings() { return types::alternativeEndings(all_formats); }
+
+bool isMcap(const std::filesystem::path& path) {
+    const LogFormat* const format = findLogFormat(path);
+    return format && format->is_mcap;
+}
 
 std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage) {
     if (isMcap(path)) return std::make_unique<mcap::Reader>(path, at_damage);

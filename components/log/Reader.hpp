@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -96,10 +97,20 @@ types::SampleRoom roomFor(size_t sample, types::SampleTypes& samples);
 /** Returns how a sample contradicts itself, to follow "a sample"; null: it does not. */
 const char* diagnosticOf(types::SampleView sample);
 
-/** Whether a file is in MCAP format, by its name, *.mcap. */
+/** A format of logs. Its files are recognised by their ending, in any case of letters. */
+struct LogFormat {
+    std::string_view ending;  ///< In lower case: ".mcap".
+    bool is_mcap = false;     ///< Else pocolog.
+};
+/** Returns the format of a log by its name; null: it has no ending of a log. Does not look at the file. */
+const LogFormat* findLogFormat(const std::filesystem::path& path);
+/** Returns the endings of all formats for a message: ".log or .mcap". */
+std::string logEndings();
+/** Whether a file is in MCAP format, by its name. */
 bool isMcap(const std::filesystem::path& path);
 
-/** Opens a log of either format, see pocolog::Reader and mcap::Reader. Throws ConfigError for other files. */
+/** Opens a log of either format, see pocolog::Reader and mcap::Reader; a file with another ending is read as pocolog.
+ *  Throws ConfigError for other files. */
 std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop);
 
 /** Returns the property log of a log: properties.0.log next to it, if it is from the same run; none: there is none. */

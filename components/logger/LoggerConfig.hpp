@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "components/log/Reader.hpp"
 #include "components/log/Writer.hpp"
 #include "types/Describe.hpp"
 
@@ -65,17 +66,14 @@ struct LoggerConfig {
         visit({"mcap", "", "how samples become ROS 2 messages, for a log that ends in .mcap"}, self.mcap);
     }
     void check(types::Diagnostics& diagnostics) const {
-        const auto isLog = [](const std::filesystem::path& path) {
-            return path.extension() == ".log" && !path.stem().empty();
-        };
-        const std::filesystem::path path = file;
-        if (!isLog(path) && (path.extension() != ".mcap" || path.stem().empty()))
-            diagnostics.push_back(
-                {"file", "is '" + file + "'; it must be a file name that ends in .log or .mcap, as in harbour.0.log"});
+        if (!log::findLogFormat(file))
+            diagnostics.push_back({"file", "is '" + file + "'; it must be a file name that ends in " +
+                                               log::logEndings() + ", as in harbour.0.log"});
         else if ((max_file_size || max_file_duration) && !sequenceNumber(file))
             diagnostics.push_back(
                 {"file", "is '" + file + "'; a log of several files must have a number, as in x.0.log"});
-        if (!property_file.empty() && (!isLog(property_file) || property_file.find('/') != std::string::npos))
+        if (!property_file.empty() && (!log::findLogFormat(property_file) || log::isMcap(property_file) ||
+                                       property_file.find('/') != std::string::npos))
             diagnostics.push_back({"property_file", "is '" + property_file +
                                                         "'; it must be a file name that ends in .log, as in "
                                                         "properties.0.log, or empty"});

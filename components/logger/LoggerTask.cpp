@@ -199,7 +199,7 @@ bool LoggerTask::configureHook() {
     log_ = log::createLog(path, mcap);
     rotation_.emplace(*config, *log_);
     frame_notices_.clear();
-    if (path.extension() == ".mcap" && config->mcap.transforms) frame_notices_ = sharedFrames();
+    if (log::isMcap(path) && config->mcap.transforms) frame_notices_ = sharedFrames();
     if (logsProperties())
         properties_.emplace(log_->path().parent_path() / config->property_file, environment().deployment_text);
     configured_ = fixedValues();

@@ -9,6 +9,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "types/Ascii.hpp"
+
 namespace insonify::output {
 
 std::optional<FilePattern> FilePattern::parse(const std::string& pattern) {
@@ -16,7 +18,9 @@ std::optional<FilePattern> FilePattern::parse(const std::string& pattern) {
     if (percent == pattern.npos || pattern.find('%', percent + 1) != pattern.npos) return {};
     const size_t letter = pattern.find_first_not_of("0123456789", percent + 1);
     const std::string flags = pattern.substr(percent + 1, letter - percent - 1);
-    if (letter == pattern.npos || pattern[letter] != 'd' || flags.size() > 3 || !pattern.ends_with(".png")) return {};
+    if (letter == pattern.npos || pattern[letter] != 'd' || flags.size() > 3 ||
+        !types::lowered(pattern).ends_with(".png"))
+        return {};
     FilePattern parsed;
     parsed.before_ = pattern.substr(0, percent);
     parsed.after_ = pattern.substr(letter + 1);
@@ -51,12 +55,12 @@ png_uint_32 pngFormat(const std::filesystem::path& file, const types::Image& pic
     return grey ? PNG_FORMAT_GRAY : rgb ? PNG_FORMAT_RGB : PNG_FORMAT_BGR;
 }
 
-bool isKnownVideo(const std::string& name) {
-    const std::string extension = std::filesystem::path(name).extension().string();
+}  // namespace
+
+bool isVideo(const std::filesystem::path& file) {
+    const std::string extension = types::lowered(file.extension().string());
     return extension == ".avi" || extension == ".mp4";
 }
-
-}  // namespace
 
 void DisplayConfig::check(types::Diagnostics& diagnostics) const {
     if (scale == BinScale::Code && reference_db)
@@ -68,8 +72,7 @@ void RecordingConfig::check(types::Diagnostics& diagnostics) const {
     if (file && !FilePattern::parse(*file))
         diagnostics.push_back(
             {"file", "is '" + *file + "'; it must have one number and end in .png, as in fan_%06d.png"});
-    if (video && !isKnownVideo(*video))
-        diagnostics.push_back({"video", "is '" + *video + "'; it must end in .avi or .mp4"});
+    if (video && !isVideo(*video)) diagnostics.push_back({"video", "is '" + *video + "'; it must end in .avi or .mp4"});
 }
 
 void writePng(const std::filesystem::path& file, const types::Image& picture) {

@@ -10,6 +10,9 @@
 
 namespace insonify::output {
 
+/** Whether the name of a file is that of a video: it ends in .avi or .mp4, in any case of letters. */
+bool isVideo(const std::filesystem::path& file);
+
 /** A file name with a number, in printf's notation: "fan_%06d.png". */
 class FilePattern {
 public:

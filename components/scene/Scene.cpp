@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -36,14 +35,17 @@ glm::dmat3 withoutRotation(const glm::dmat3& matrix, glm::dvec3 scale) {
     return glm::transpose(rotation) * matrix;
 }
 
+constexpr SceneFormat all_formats[] = {
+    {".gltf", "glTF", readGltf},     {".glb", "glTF", readGltf},        {".world", "SDF", nullptr, "sdf"},
+    {".sdf", "SDF", nullptr, "sdf"}, {".urdf", "URDF", nullptr, "sdf"},
+};
+
 /** Returns the names of scenes in a folder. */
 std::vector<std::string> scenesIn(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     std::error_code unreadable;
     for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
-        const std::string extension = extensionOf(entry.path());
-        if (std::ranges::count(std::array{".gltf", ".glb", ".world", ".sdf", ".urdf"}, extension) > 0)
-            names.push_back(entry.path().filename().string());
+        if (findSceneFormat(entry.path())) names.push_back(entry.path().filename().string());
     }
     std::ranges::sort(names);
     return names;
@@ -54,28 +56,27 @@ void refuseMissing(const std::filesystem::path& file) {
     if (std::filesystem::exists(file, error)) return;
     const std::filesystem::path place = std::filesystem::absolute(file, error).lexically_normal();
     const std::string near = types::didYouMean(file.filename().string(), scenesIn(place.parent_path()));
-    throw types::ConfigError(
-        file.string(), "",
-        fmt::format(
-            "does not exist; {}looked for at {}; must be a scene, which may be .gltf, .glb, .world, .sdf or .urdf",
-            near, place.string()));
+    throw types::ConfigError(file.string(), "",
+                             fmt::format("does not exist; {}looked for at {}; must be a scene, which may be {}", near,
+                                         place.string(), sceneEndings()));
 }
 
-struct Formats {
+/** Readers that this program is linked with, in addition to those of the table, by extension. */
+struct AddedReaders {
     std::mutex mutex;
-    std::map<std::string, SceneReader> readers{{".gltf", readGltf}, {".glb", readGltf}};
+    std::map<std::string, SceneReader> readers;
 };
 
-Formats& formats() {
-    static Formats formats;
-    return formats;
+AddedReaders& added() {
+    static AddedReaders added;
+    return added;
 }
 
-/** Returns the reader of an extension; null for a format that was not added. */
-SceneReader readerOf(const std::string& extension) {
-    const std::lock_guard alone(formats().mutex);
-    const auto found = formats().readers.find(extension);
-    return found == formats().readers.end() ? nullptr : found->second;
+/** Returns the added reader of an extension; null: none was added. */
+SceneReader addedReader(const std::string& extension) {
+    const std::lock_guard alone(added().mutex);
+    const auto found = added().readers.find(extension);
+    return found == added().readers.end() ? nullptr : found->second;
 }
 
 /** Returns the transform from a node to a node at or above it; -1 is the world. */
@@ -86,9 +87,9 @@ glm::dmat4 aboveFromNode(const Scene& scene, int above, int node) {
     return above_from_node;
 }
 
-/** Returns the reader of the component library sdf. */
-auto* sdfReader(const std::filesystem::path& file) try {
-    return loader::load("sdf").entry<void(const std::filesystem::path&, Scene&)>("insonify_read_scene");
+/** Returns the reader of a component library. */
+auto* libraryReader(std::string_view library, const std::filesystem::path& file) try {
+    return loader::load(std::string(library)).entry<void(const std::filesystem::path&, Scene&)>("insonify_read_scene");
 } catch (const types::ConfigError& error) {
     throw types::ConfigError(file.string(), "", error.diagnostics().front().text());
 }
@@ -96,26 +97,42 @@ auto* sdfReader(const std::filesystem::path& file) try {
 /** Reads a file that exists by the reader of its extension. */
 Scene readByExtension(const std::filesystem::path& file) {
     const std::string extension = extensionOf(file);
-    if (const SceneReader read = readerOf(extension)) return read(file);
-    if (extension == ".world" || extension == ".sdf" || extension == ".urdf") {
-        Scene scene;
-        sdfReader(file)(file, scene);
-        return scene;
-    }
-    throw types::ConfigError(file.string(), "",
-                             fmt::format("has extension \"{}\"; may be .gltf, .glb, .world, .sdf or .urdf", extension));
+    if (const SceneReader read = addedReader(extension)) return read(file);
+    const SceneFormat* const format = findSceneFormat(file);
+    if (!format)
+        throw types::ConfigError(file.string(), "",
+                                 fmt::format("has extension \"{}\"; may be {}", extension, sceneEndings()));
+    if (format->read) return format->read(file);
+    Scene scene;
+    libraryReader(format->library, file)(file, scene);
+    return scene;
 }
 
 }  // namespace
 
+std::span<const SceneFormat> sceneFormats() { return all_formats; }
+
+const SceneFormat* findSceneFormat(const std::filesystem::path& file) { return types::findFormat(all_formats, file); }
+
+std::string sceneEndings(std::optional<std::string_view> library) {
+    return types::alternativeEndings(all_formats,
+                                     [&](const SceneFormat& format) { return !library || format.library == *library; });
+}
+
+const char* sceneFileMeaning() {
+    static const std::string text =
+        "scene: " + sceneEndings() + ", relative to the deployment; may be absent with gazebo or bathymetry";
+    return text.c_str();
+}
+
 void addFormat(const std::string& extension, SceneReader reader) {
-    const std::lock_guard alone(formats().mutex);
-    formats().readers[extension] = reader;
+    const std::lock_guard alone(added().mutex);
+    added().readers[extension] = reader;
 }
 
 bool isGltf(const std::filesystem::path& file) {
-    const std::string extension = extensionOf(file);
-    return extension == ".gltf" || extension == ".glb";
+    const SceneFormat* const format = findSceneFormat(file);
+    return format && format->read == readGltf;
 }
 
 std::string extensionOf(const std::filesystem::path& file) { return types::lowered(file.extension().string()); }

@@ -1,7 +1,10 @@
 #pragma once
 #include <filesystem>
 #include <glm/mat4x4.hpp>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "components/scene/Animation.hpp"
@@ -45,13 +48,29 @@ struct Part {
     glm::dmat4 body_from_object{1};  ///< Body: the node without its rotation, axes turned like the world's, scale kept.
 };
 
+using SceneReader = Scene (*)(const std::filesystem::path& file);
+
+/** A format of scenes. Its files are recognised by their ending, in any case of letters. */
+struct SceneFormat {
+    std::string_view ending;        ///< In lower case: ".glb".
+    const char* name = "";          ///< For users: "glTF".
+    SceneReader read = nullptr;     ///< Null: `library` reads it.
+    std::string_view library = {};  ///< The component library that reads it; empty: the core.
+};
+std::span<const SceneFormat> sceneFormats();
+/** Returns the format of a file by its name; null: it has no ending of a scene. Does not look at the file. */
+const SceneFormat* findSceneFormat(const std::filesystem::path& file);
+/** Returns the endings of all formats, or of those that a component library reads: ".world, .sdf or .urdf". */
+std::string sceneEndings(std::optional<std::string_view> library = {});
+/** Returns the meaning of the property that names the file of a scene. It stays valid until the program ends. */
+const char* sceneFileMeaning();
+
 /** Reads a scene. .gltf or .glb is y-up and is turned to z-up: (x, y, z) of the file is (x, -z, y) of the world.
  *  .world, .sdf or .urdf is z-up and is read by the component library sdf.
  *  Throws types::ConfigError for any error in the file. Geometry::notices lists what was omitted. */
 Scene readScene(const std::filesystem::path& file);
 
-using SceneReader = Scene (*)(const std::filesystem::path& file);
-/** Adds a format by its extension, such as ".sdf", to readScene(): for programs that are linked with a reader. */
+/** Adds a reader by its extension, such as ".sdf", to readScene(): for programs that are linked with a reader. */
 void addFormat(const std::string& extension, SceneReader reader);
 
 /** Reads a scene like readScene(). All holders of a file's scene share one, unless the file has changed in between. */

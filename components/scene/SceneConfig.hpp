@@ -8,6 +8,7 @@
 #include "components/scene/Animator.hpp"
 #include "components/scene/GazeboWorld.hpp"
 #include "components/scene/Placement.hpp"
+#include "components/scene/Scene.hpp"
 #include "components/scene/SurfaceMaps.hpp"
 #include "types/Mount.hpp"
 
@@ -94,10 +95,7 @@ struct SceneConfig {
     AnimationConfigs animations;
 
     static void describe(auto& self, auto& visit) {
-        visit({"file", "",
-               "scene: .gltf, .glb, .world, .sdf or .urdf, relative to the deployment; may be absent with gazebo "
-               "or bathymetry"},
-              self.file);
+        visit({"file", "", sceneFileMeaning()}, self.file);
         visit({"gazebo", "",
                "a world that Gazebo runs, whose models are the scene, in the place of file; absent: what file has"},
               self.gazebo);

@@ -91,7 +91,7 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     if (config->file.empty() && !config->gazebo && !has_survey)
         throw types::ConfigError(
             "", name() + ".file",
-            "is missing; give the path of a .gltf, .glb, .world, .sdf or .urdf file, or gazebo, or bathymetry");
+            "is missing; give the path of a " + sceneEndings() + " file, or gazebo, or bathymetry");
     scene_ = loadModels();
     if (has_survey) {
         Scene scene;

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "components/scene/Scene.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Reason.hpp"
 
@@ -315,7 +316,8 @@ std::string CerrCapture::take() {
 ::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
                         std::vector<std::string>& notices, const std::string& text) {
     if (!std::filesystem::is_regular_file(file))
-        throw types::ConfigError(file.string(), "", "is not a file; give the path of a .world, .sdf or .urdf file");
+        throw types::ConfigError(file.string(), "",
+                                 "is not a file; give the path of a " + scene::sceneEndings("sdf") + " file");
     checkIncludes(file, paths);
     std::set<std::string> unreadable;
     std::string renamed = text;

@@ -278,5 +278,15 @@ TEST_F(ComponentLibraryTest, ListsTheMissingLibrariesOfADeployment) {
     EXPECT_EQ(call({"libraries", "a.yml"}).out, "dds\ngazebo\nsdf\nsurvey\nvideo\n");
 }
 
+TEST_F(ComponentLibraryTest, ASceneOrVideoNeedsTheLibraryOfItsEnding) {
+    const std::map<std::string, std::string> needed{
+        {"a.world", "sdf\n"}, {"a.sdf", "sdf\n"}, {"a.urdf", "sdf\n"},  {"a.URDF", "sdf\n"},  {"a.Sdf", "sdf\n"},
+        {"a.glb", ""},        {"a.GLTF", ""},     {"a.avi", "video\n"}, {"a.MP4", "video\n"}, {"a.sdf.txt", ""}};
+    for (const auto& [file, library] : needed) {
+        writeFile(folder_ / "a.yml", "tasks:\n  a: {type: scene::SceneTask, properties: {file: " + file + "}}\n");
+        EXPECT_EQ(call({"libraries", "a.yml"}).out, library) << file;
+    }
+}
+
 }  // namespace
 }  // namespace insonify::deployer

@@ -3,9 +3,12 @@
 
 #include <random>
 
+#include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/SampleMetadata.hpp"
 #include "components/log/Writer.hpp"
+#include "components/log/mcap/Reader.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "tests/support/Folder.hpp"
 
@@ -46,6 +49,25 @@ void expectSame(const std::filesystem::path& path, const Written& made) {
     };
     log->forEach<types::Sonar>("sonar.ping", [&](const auto& ping, const auto&) { check(ping, made.ping); });
     log->forEach<types::SonarTruth>("sonar.truth", [&](const auto& truth, const auto&) { check(truth, made.truth); });
+}
+
+TEST(ExactRangesTest, EndingsInAnyCaseOfLettersAreTheSameFormat) {
+    const Folder folder;
+    const Written made = bins(0.013, 1500);
+    for (const std::string ending : {"log", "LOG", "Log", "mcap", "MCAP", "mCaP"}) {
+        const std::filesystem::path inside = folder / ending;  // a bag has a folder of its own
+        std::filesystem::create_directory(inside);
+        write(made, inside / ("x.0." + ending));
+        const auto log = openLog(inside / ("x.0." + ending));
+        const bool is_mcap = ending.size() == 4;
+        EXPECT_EQ(dynamic_cast<mcap::Reader*>(log.get()) != nullptr, is_mcap) << ending;
+        EXPECT_EQ(dynamic_cast<pocolog::Reader*>(log.get()) != nullptr, !is_mcap) << ending;
+        EXPECT_EQ(isMcap("a." + ending), is_mcap);
+        expectSame(inside / ("x.0." + ending), made);
+        EXPECT_FALSE(check(inside / ("x.0." + ending)).diagnostic) << ending;
+    }
+    for (const char* other : {"x", "x.log.gz", "x.mcap2", ".log", "x."}) EXPECT_EQ(findLogFormat(other), nullptr);
+    EXPECT_EQ(logEndings(), ".log or .mcap");
 }
 
 TEST(ExactRangesTest, LogsOfEitherFormatKeepWidthAndSpeedOfSound) {

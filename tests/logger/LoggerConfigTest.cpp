@@ -13,7 +13,7 @@ size_t refusalsOf(const std::string& file) {
 }
 
 TEST(LoggerConfigTest, AcceptsOnlyNamesThatEndInLog) {
-    for (const char* good : {"harbour.0.log", "harbour.log", "day/harbour.1.log"})
+    for (const char* good : {"harbour.0.log", "harbour.log", "day/harbour.1.log", "x.LOG", "x.0.Mcap"})
         EXPECT_EQ(refusalsOf(good), 0u) << good;
     for (const char* bad : {"", ".log", "harbour", "harbour.log.gz", "harbour.log/"})
         EXPECT_EQ(refusalsOf(bad), 1u) << bad;

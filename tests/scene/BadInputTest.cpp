@@ -1,7 +1,10 @@
 // Invalid files: a ConfigError that names the file, or a scene; never a crash.
+#include <gmock/gmock.h>
+
 #include <random>
 
 #include "tests/scene/SceneFiles.hpp"
+#include "types/Ascii.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -36,11 +39,41 @@ std::string glb(const std::string& json, const std::string& binary) {
 
 TEST_F(BadInputTest, ReportsMissingEmptyAndForeignFilesAndFolders) {
     std::filesystem::create_directory(folder_ / "folder.glb");
-    expectDiagnostic(folder_ / "missing.glb", "must be a scene, which may be .gltf, .glb, .world, .sdf or .urdf");
+    expectDiagnostic(folder_ / "missing.glb", "must be a scene, which may be " + sceneEndings());
     expectDiagnostic(folder_ / "folder.glb", "is not a file");
     expectDiagnostic(write("empty.glb", ""), "is empty");
-    expectDiagnostic(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be .gltf, .glb, .world, .sdf or .urdf");
+    expectDiagnostic(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be " + sceneEndings());
     expectDiagnostic(write("noise.glb", "this is no model at all"), "cannot be read as glTF 2.0");
+}
+
+TEST_F(BadInputTest, EndingsInAnyCaseOfLettersBelongToTheSameReader) {
+    std::mt19937 random(7);
+    const auto respelled = [&](std::string text) {
+        for (char& c : text)
+            if (random() % 2) c = types::raised(c);
+        return text;
+    };
+    for (const SceneFormat& format : sceneFormats()) {
+        const std::string ending(format.ending), lower = "x" + ending;
+        const std::string expected = diagnosticOf(write(lower, "neither JSON nor XML"));
+        EXPECT_THAT(expected, testing::Not(testing::HasSubstr("has extension"))) << ending;
+        EXPECT_THAT(sceneEndings(), testing::HasSubstr(ending));
+        for (int i = 0; i < 10; ++i) {
+            const std::string name = "x" + respelled(ending);
+            SCOPED_TRACE(name);
+            ASSERT_EQ(findSceneFormat(name), &format);
+            EXPECT_EQ(isGltf(name), isGltf(lower));
+            std::string diagnostic = diagnosticOf(write(name, "neither JSON nor XML"));
+            for (size_t at; name != lower && (at = diagnostic.find(name)) != std::string::npos;)
+                diagnostic.replace(at, name.size(), lower);
+            EXPECT_EQ(diagnostic, expected);
+            EXPECT_THAT(diagnosticOf(folder_ / ("y" + respelled(ending))), testing::HasSubstr("did you mean "));
+        }
+    }
+    for (const char* other : {"x", "x.", "x.glb2", "x.gl", ".glb", "x.sdf.bak", "glb"}) {
+        EXPECT_EQ(findSceneFormat(other), nullptr) << other;
+        expectDiagnostic(write(other, "x"), "may be " + sceneEndings());
+    }
 }
 
 TEST_F(BadInputTest, DoesNotReadImagesThatExhaustMemory) {

@@ -4,7 +4,8 @@
 namespace {
 
 [[maybe_unused]] const bool linked = [] {
-    for (const char* extension : {".sdf", ".world", ".urdf"}) insonify::scene::addFormat(extension, insonify::sdf::readSdf);
+    for (const insonify::scene::SceneFormat& format : insonify::scene::sceneFormats())
+        if (format.library == "sdf") insonify::scene::addFormat(std::string(format.ending), insonify::sdf::readSdf);
     return true;
 }();
 
