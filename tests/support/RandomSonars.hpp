@@ -122,6 +122,7 @@ public:
         }
         return pings;
     }
+    const sonar::Counts& counts() const { return dynamic_cast<const sonar::PingTask&>(*task_).counted().counts; }
     types::SonarTruthPtr truth;  ///< Of the last ping.
 
 private:
