@@ -67,6 +67,8 @@ void RunOptions::addTo(CLI::App& command) {
     auto* silent = command.add_flag("--quiet", quiet, "no progress, no notices, no summary");
     command.add_flag("--verbose", verbose, "also the times of all tasks and stages, and what is omitted")
         ->excludes(silent);
+    command.add_flag("--stats", stats, "also what the stages of each sonar's pings count: rays, cells, paths, ...")
+        ->excludes(silent);
 }
 
 framework::DeploymentSpec loadSpec(const RunOptions& options) {
@@ -208,6 +210,7 @@ void printNew(const framework::Deployment& deployment, const Notices& reported) 
 void report(const framework::Deployment& deployment, const RunOptions& options, const Summary& summary,
             const std::filesystem::path& folder, const FolderListing& before) {
     if (options.verbose) console::addResult(summary.details());
+    if (options.stats) console::addResult(summary.stats());
     console::addResult(summary.text());
     if (const uint64_t dropped = console::droppedDiagnostics(); dropped > 0)
         console::printResult("{} lines of notices and warnings could not be printed\n", dropped);

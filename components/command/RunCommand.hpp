@@ -23,7 +23,7 @@ struct RunOptions {
     std::vector<std::string> calls;     ///< "task.operation=argument,...", called in this order after configuring.
     framework::RunLimits limits;
     std::optional<uint64_t> seed;  ///< None or 0: tasks keep the seeds of the file.
-    bool quiet = false, verbose = false;
+    bool quiet = false, verbose = false, stats = false;
     std::optional<console::Shard> shard;  ///< The part of the run to make; none: the whole run.
     /** Called after each instant of a lockstep run. */
     std::function<void(framework::Deployment&, const framework::Progress&)> progress;

@@ -3,8 +3,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include "components/framework/Offers.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 
 namespace insonify::command {
 
@@ -17,7 +20,8 @@ Summary::Times timesOf(const framework::Statistics& seconds) {
 }
 
 Summary::Task taskSummary(const framework::TaskContext& task) {
-    Summary::Task summary{task.name(), framework::toString(task.state()), timesOf(task.cycles()), {}, {}, {}};
+    Summary::Task summary{task.name(), framework::toString(task.state()), timesOf(task.cycles()), {}, {}, {}, {}};
+    if (const auto* one = dynamic_cast<const sonar::PingTask*>(&task)) summary.counted = one->counted();
     const framework::Timing& timing = task.timing();
     summary.jitter = timesOf(timing.jitter);
     summary.latency = timesOf(timing.latency);
@@ -41,12 +45,62 @@ Json timesJson(const Summary::Times& times) {
         {"count", times.cycles}, {"median_ms", times.median_ms}, {"p99_ms", times.p99_ms}, {"max_ms", times.max_ms}};
 }
 
+/** A count of a sonar's pings, where it is not 0. */
+struct CountRow {
+    const sonar::CounterMeaning& of;
+    uint64_t total;
+    double per_ping, per_second;  ///< Of the time in its stage; 0: that is too short to measure.
+};
+
+std::vector<CountRow> countRows(const sonar::CountedPings& counted) {
+    std::vector<CountRow> rows;
+    for (size_t i = 0; i < sonar::counter_count; ++i) {
+        const sonar::CounterMeaning& meaning = sonar::counter_meanings[i];
+        const auto stage = std::ranges::find(sonar::empty_stages, std::string_view(meaning.stage), &sonar::Stage::name);
+        const double seconds = counted.seconds[static_cast<size_t>(stage - sonar::empty_stages.begin())];
+        const auto total = static_cast<double>(counted.counts[i]);
+        if (total > 0)
+            rows.push_back({meaning, counted.counts[i], total / static_cast<double>(counted.pings),
+                            seconds > 0 ? total / seconds : 0});
+    }
+    return rows;
+}
+
+Json countsJson(const sonar::CountedPings& counted) {
+    Json counts = {{"pings", counted.pings}};
+    for (const CountRow& row : countRows(counted))
+        counts[row.of.name] = {
+            {"stage", row.of.stage}, {"total", row.total}, {"per_ping", row.per_ping}, {"per_second", row.per_second}};
+    return counts;
+}
+
+std::string statsText(const Summary::Task& task) {
+    std::string text =
+        fmt::format("{}, {} pings\n  {:10} {:>10} {:>10}   {:16} {:>12} {:>12}\n", task.name, task.counted.pings,
+                    "stage", "median ms", "p99 ms", "count", "per ping", "per second");
+    const std::vector<CountRow> rows = countRows(task.counted);
+    for (const auto& [stage, seconds] : sonar::empty_stages) {
+        const auto times = task.stages.find(stage);
+        if (times == task.stages.end()) continue;
+        std::string begin =
+            fmt::format("  {:10} {:>10.3f} {:>10.3f}", stage, times->second.median_ms, times->second.p99_ms);
+        for (const CountRow& row : rows) {
+            if (std::string_view(row.of.stage) != stage) continue;
+            text += fmt::format("{:34}   {:16} {:>12.1f} {:>12.4g}\n", std::exchange(begin, ""), row.of.name,
+                                row.per_ping, row.per_second);
+        }
+        if (!begin.empty()) text += begin + "\n";
+    }
+    return text;
+}
+
 Json taskJson(const Summary::Task& task, bool realtime) {
     Json stages = Json::object();
     for (const auto& [name, times] : task.stages)
         stages[name] = {{"median_ms", times.median_ms}, {"p99_ms", times.p99_ms}};
     Json json = {{"state", task.state},          {"cycles", task.update.cycles}, {"median_ms", task.update.median_ms},
                  {"p99_ms", task.update.p99_ms}, {"max_ms", task.update.max_ms}, {"stages", stages}};
+    if (task.counted.pings > 0) json["counts"] = countsJson(task.counted);
     if (!realtime) return json;
     json["jitter"] = timesJson(task.jitter);
     json["latency"] = timesJson(task.latency);
@@ -129,6 +183,13 @@ std::string Summary::text() const {
     }
     if (const std::string lost = countsText(losses); !lost.empty()) text += "lost samples\n" + lost;
     return text;
+}
+
+std::string Summary::stats() const {
+    std::string text;
+    for (const Task& task : tasks)
+        if (task.counted.pings > 0) text += statsText(task);
+    return text.empty() ? "no sonar has made a ping\n" : text;
 }
 
 std::string Summary::details() const {

@@ -5,6 +5,7 @@
 
 #include "components/deployer/Json.hpp"
 #include "components/framework/Deployment.hpp"
+#include "components/sonar/base/Counters.hpp"
 
 namespace insonify::command {
 
@@ -18,6 +19,7 @@ struct Summary {
         std::string name, state;
         Times update;                         ///< Times of updateHook.
         std::map<std::string, Times> stages;  ///< Stages of updateHook, by name.
+        sonar::CountedPings counted;          ///< What a sonar's pings have counted; of other tasks 0 pings.
         Times jitter;                         ///< In realtime: delay of the begin of periodic cycles.
         Times latency;                        ///< In realtime: from a sample's stamp to its writing.
         uint64_t overruns = 0, late = 0, errors = 0, hangs = 0;  ///< As in framework::Timing.
@@ -38,6 +40,8 @@ struct Summary {
     std::string text() const;
     /** Returns the times of all tasks and stages, the quality, and what is omitted. */
     std::string details() const;
+    /** Returns a table for each sonar: times of its stages, and what they count per ping and per second. */
+    std::string stats() const;
 
 private:
     std::string realtimeText() const;

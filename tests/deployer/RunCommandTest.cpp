@@ -38,6 +38,24 @@ TEST(RunCommandTest, TheSummaryHasPingsTimesLossesAndOmissions) {
     EXPECT_NE(summary["omitted"][0]["reason"], "");
 }
 
+TEST(RunCommandTest, StatsPrintsWhatTheStagesOfASonarCount) {
+    const WallFolder folder;
+    const Outcome plain = folder.run({"--pings", "3"});
+    const Outcome counted = folder.run({"--pings", "3", "--stats", "--summary", "summary.json"});
+    EXPECT_THAT(counted, prints(HasSubstr("sonar, 3 pings\n")));
+    EXPECT_THAT(counted.out, HasSubstr("rays                   1024.0"));  // 32 rows, 2 columns in each of 16 beams
+    EXPECT_THAT(plain, prints(testing::Not(HasSubstr("rays"))));
+    EXPECT_THAT(plain.out, testing::Not(HasSubstr("stage")));
+    const json counts = json::parse(readFile(folder / "summary.json"))["tasks"]["sonar"]["counts"];
+    EXPECT_EQ(counts["pings"], 3);
+    EXPECT_EQ(counts["rays"]["total"], 3 * 1024);
+    EXPECT_EQ(counts["rays"]["per_ping"], 1024);
+    EXPECT_EQ(counts["rays"]["stage"], "draw");
+    EXPECT_GT(counts["rays"]["per_second"], 0);
+    EXPECT_EQ(counts["bins"]["per_ping"], 16 * 50);
+    EXPECT_THAT(folder.run({"--quiet", "--stats"}), isRefused(HasSubstr("--stats")));
+}
+
 TEST(RunCommandTest, QuietPrintsNothing) {
     const WallFolder folder;
     const Outcome outcome = folder.run({"--pings", "2", "--quiet"});

@@ -17,7 +17,7 @@ constexpr size_t max_files = 8;
 const std::map<std::string, size_t> known{
     {"absorption", 23},  {"backscatter", 20}, {"beamPatterns", 14}, {"pulse", 19},
     {"speckle", 15},     {"multipath", 10},   {"motionInPing", 12}, {"normalMaps", 33},
-    {"pointTargets", 9}, {"surfaceMaps", 20}, {"truth", 70},
+    {"pointTargets", 10}, {"surfaceMaps", 20}, {"truth", 70},
 };
 
 /** Folders and files in which the word has another meaning. */

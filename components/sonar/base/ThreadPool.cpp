@@ -7,6 +7,8 @@
 
 namespace insonify::sonar {
 
+constinit thread_local Counts thread_counts{};
+
 ThreadPool::ThreadPool(int threads) {
     const int cores = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 16);
     const int count = threads > 0 ? threads : cores;
@@ -51,6 +53,7 @@ void ThreadPool::dismiss() {
 std::exception_ptr ThreadPool::wait() {
     std::unique_lock lock(mutex_);
     done_.wait(lock, [this] { return busy_ == 0; });
+    for (size_t i = 0; i < counter_count; ++i) thread_counts[i] += std::exchange(counted_[i], 0);
     return std::exchange(thrown_, {});
 }
 
@@ -63,9 +66,11 @@ void ThreadPool::work(int part) {
         if (waking_ == 0) continue;
         --waking_;
         lock.unlock();
+        const Counts before = thread_counts;
         const std::exception_ptr thrown = caught([&] { call_(context_, part, size()); });
         lock.lock();
         if (thrown) thrown_ = thrown;
+        for (size_t i = 0; i < counter_count; ++i) counted_[i] += thread_counts[i] - before[i];
         if (--busy_ == 0) done_.notify_one();
     }
 }

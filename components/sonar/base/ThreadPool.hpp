@@ -5,12 +5,14 @@
 #include <thread>
 #include <vector>
 
+#include "components/sonar/base/Counters.hpp"
 #include "types/OwnProcess.hpp"
 
 namespace insonify::sonar {
 
-/** A few threads that share the parts of one job. Running a job allocates nothing. In a forked child, where the threads
- *  are missing, it throws std::runtime_error. */
+/** A few threads that share the parts of one job. Running a job allocates nothing, and what its threads count
+ *  (Counters.hpp) is counted by the caller. In a forked child, where the threads are missing, it throws
+ *  std::runtime_error. */
 class ThreadPool {
 public:
     /** `threads` counts the caller; 0: the number of the machine's cores, at most 16. Throws std::runtime_error if the
@@ -69,6 +71,7 @@ private:
     uint64_t round_ = 0;
     int busy_ = 0, waking_ = 0;  ///< Workers that are not done, and the part of these that has not begun.
     std::exception_ptr thrown_;
+    Counts counted_{};  ///< What the workers have counted in this job.
     bool quit_ = false;
 };
 

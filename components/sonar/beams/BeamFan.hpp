@@ -29,6 +29,7 @@ struct ViewFrustum {
 
     double du() const { return 2 * extent_u / columns; }
     double dv() const { return 2 * extent_v / rows; }
+    uint64_t pixels() const { return static_cast<uint64_t>(columns) * static_cast<uint64_t>(rows); }
     double u(double column) const { return column * du() - extent_u; }
     double v(double row) const { return row * dv() - extent_v; }
 };

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
+#include "components/sonar/base/Counters.hpp"
 #include "components/sonar/bins/Limb.hpp"
 #include "components/sonar/plan/Effect.hpp"
 
@@ -168,6 +169,7 @@ void CellDeposit::finish() {
     for (size_t i = 0; i < rules_.own.size() && !to_.behind_walls; ++i)
         rules_.own[i]->addCells(
             {rules_, water_, cells, covered, to_.first_beam, to_.sums + rules_.ownOffset(i), rules_.sumCount()});
+    count(Counter::Cells, static_cast<uint64_t>(cells.count));
     cells.clear();
 }
 

@@ -1,3 +1,4 @@
+#include "components/sonar/base/Counters.hpp"
 #include "components/sonar/multipath/EdgeEchoes.hpp"
 #include "components/sonar/plan/Effect.hpp"
 #include "types/Angle.hpp"
@@ -28,6 +29,7 @@ public:
     void takeScene(const types::Geometry& geometry) override { edges_ = std::make_unique<EdgeEchoes>(plan_, geometry); }
     void addEchoes(PingInMaking& ping) override {
         received_ = edges_->add(ping);
+        count(Counter::Edges, received_);
         pinged_ = true;
     }
     size_t received() const override { return received_; }

@@ -1,3 +1,4 @@
+#include "components/sonar/base/Counters.hpp"
 #include "components/sonar/multipath/PointTargets.hpp"
 #include "components/sonar/plan/Effect.hpp"
 
@@ -29,6 +30,7 @@ public:
         if (all_ == 0) return;
         if (!targets_) targets_.emplace(plan_, *geometry_);
         received_ = targets_->add(ping);
+        count(Counter::PointTargets, received_);
     }
     size_t received() const override { return received_; }
     std::optional<Omitted> omissions() const override {

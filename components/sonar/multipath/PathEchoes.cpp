@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
+#include "components/sonar/base/Counters.hpp"
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/bins/Truth.hpp"
-#include "components/sonar/multipath/MirrorChain.hpp"
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/multipath/PathCells.hpp"
 #include "components/sonar/multipath/SharedBins.hpp"
@@ -340,6 +340,7 @@ bool PathEchoes::Tracer::passBack(Back& back, const TileHits& hits, int i, const
     const double cosine = std::abs(glm::dot(planeMet(scene_, hits, i).normal, way)) / glm::length(way);
     back.share *=
         back.train.passOnce(wallOf(hits.command[i]), std::sqrt(std::max(1 - cosine * cosine, 0.0)), water_.resolution);
+    count(Counter::WallsPassed, back.share > 0);
     return back.share > 0;
 }
 
@@ -421,6 +422,7 @@ void PathEchoes::Tracer::deposit(const CellAngles& at, int i, const Back& back, 
     if (!(cosine > edge_on && plane.distance * glm::dot(plane.normal, at.middle) > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     recordWay(i, true, at.middle, cosine);
+    count(Counter::MirrorPaths);
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
     const double passed = hasWalls() ? walled_[static_cast<size_t>(i)].power : 1;
     const double strength =
@@ -498,6 +500,7 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
     const bool is_direct =
         chain.begins_lobed && reflected(hits_.command[i]) > 0 && !patterns.inOneBeam(by_mirror, by_itself);
     recordWay(i, false, at.middle, std::abs(glm::dot(plane.normal, at.middle)));
+    count(Counter::MirrorPaths, static_cast<uint64_t>(returned > 0) + static_cast<uint64_t>(sent > 0));
     const EchoTrain echoes = echoesOnce(i, back);
     for (size_t k = 0; k < echoes.size(); ++k) {
         const double late = echoes[k].late;

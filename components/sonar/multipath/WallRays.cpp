@@ -4,6 +4,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "components/sonar/base/Counters.hpp"
+
 namespace insonify::sonar {
 
 namespace {
@@ -98,7 +100,9 @@ void WallRays::pass(int i, PathRays& on) {
     const WallRay::Surface surface = surfaceOf(i);
     ray.is_there = false;
     ray.is_in_paths &= !reverberation_.isInPaths(surface.run.material);
-    if (ray.pass(surface, water_)) send(i, on);
+    if (!ray.pass(surface, water_)) return;
+    count(Counter::WallsPassed);
+    send(i, on);
 }
 
 void WallRays::send(int i, PathRays& on) const {

@@ -23,6 +23,7 @@ struct Stage {
     double seconds;
 };
 using Stages = std::array<Stage, 5>;
+inline constexpr Stages empty_stages{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
 enum StageOf { CullStage, DrawStage, ReadStage, DepositStage, BeamStage };
 
 /** Fills the bins of pings by a plan, rasterised by OpenGL or ray-traced on the processor. Plan and effects outlive it.

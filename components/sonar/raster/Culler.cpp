@@ -6,6 +6,8 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "components/sonar/base/Counters.hpp"
+
 namespace insonify::sonar {
 namespace {
 
@@ -54,7 +56,10 @@ void Culler::visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges)
     ranges.clear();
     const View view = viewOf(frustum);
     for (size_t i = 0; i < records().size(); ++i)
-        if (const uint32_t in_view = inView(view, i); in_view != NOT_IN_VIEW) addObject({i, view, in_view}, ranges);
+        if (const uint32_t in_view = inView(view, i); in_view != NOT_IN_VIEW)
+            addObject({i, view, in_view}, ranges);
+        else
+            count(Counter::ObjectsCulled);
 }
 
 uint32_t Culler::inView(const View& view, size_t object) const {

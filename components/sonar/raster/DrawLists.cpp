@@ -5,6 +5,7 @@
 
 #include "components/gpu/Program.hpp"
 #include "components/gpu/ReadBack.hpp"
+#include "components/sonar/base/Counters.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -228,6 +229,7 @@ void DeviceLists::list(size_t frustum, const ViewFrustum& frustum_view) {
     for (size_t i = 0; i < setup_.geometry.objects.size(); ++i) {
         const uint32_t in_view = setup_.culler.inView(planes, i);
         view.any = view.any || in_view != NOT_IN_VIEW;
+        count(Counter::ObjectsCulled, in_view == NOT_IN_VIEW);
         view.objects.push_back(viewedObject(i, frustum_view, in_view));
     }
 }

@@ -210,6 +210,7 @@ void RasterEchoes::fillBins(types::Sonar& ping) {
 void RasterEchoes::fill(size_t cell, const uint64_t* sums, size_t thread, std::span<float> bins) {
     const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
     if (truth_ && water_) water_->take(rules_, sums, cell, pixel, thread);
+    count(Counter::Bins, bins.size());
     levels_.fill(rules_, sums, pixel, bins);
     addOwnSums(rules_, sums, cell, pixel, bins);
 }
@@ -223,6 +224,8 @@ void RasterEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, S
     lap(stages[CullStage]);
     surface_.draw();
     lap(stages[DrawStage]);
+    for (size_t i = 0; i < plan_.frusta.size(); ++i)
+        if (surface_.draws(i)) count(Counter::Pixels, plan_.frusta[i].pixels());
     take(waterViewOf(snapshot));
     context_.check();
     lap(stages[ReadStage]);

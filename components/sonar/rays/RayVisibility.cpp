@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "components/sonar/base/Counters.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
 #include "components/sonar/surfaces/MeshFacts.hpp"
@@ -407,6 +408,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::trace(std::s
     for (size_t i = 0; i < rays.size(); ++i) {
         extend(rays[i], static_cast<float>(nearest), all[i]);
         direct(world, place_, rays[i], all[i]);
+        count(Counter::Rays, std::popcount(rays[i].active));
     }
     intersect(here_->trees->scene(), std::span(all).first(rays.size()));
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -430,7 +432,10 @@ void RayVisibility::traceToMovers(const TileRays& rays, RTCRayHit16& all, TileHi
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
     for (const Mover& mover : here_->movers) {
-        if (!mover.mayMeet(cone)) continue;
+        if (!mover.mayMeet(cone)) {
+            count(Counter::ObjectsCulled);
+            continue;
+        }
         direct(Rows(mover.from_sonar), mover.place, rays, all);
         intersect(mover.tree, valid, all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
@@ -439,6 +444,7 @@ void RayVisibility::traceToMovers(const TileRays& rays, RTCRayHit16& all, TileHi
 
 void RayVisibility::traceAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const {
     const std::span<const double> corners = paths.corners();
+    count(Counter::Rays, std::popcount(rays.active));
     std::fill_n(hits.command, tile_samples, TileHits::nothing);
     TileRays left = rays;
     Piece piece{};
@@ -494,6 +500,7 @@ void RayVisibility::tracePieceAtDeforming(const RayPaths& paths, const TileRays&
 void RayVisibility::trace(const PathRays& rays, TileHits& hits) const {
     std::fill_n(hits.command, tile_samples, TileHits::nothing);
     RTCRayHit16 all;
+    count(Counter::OnwardRays, std::popcount(rays.towards.active));
     const Valid valid(rays.towards.active);
     bound(rays, all.ray);
     direct(Rows(world_from_sonar_), place_, rays, all.ray);
@@ -517,6 +524,7 @@ void RayVisibility::trace(const PathRays& rays, TileHits& hits) const {
 
 uint32_t RayVisibility::blocked(const PathRays& rays) const {
     RTCRay16 all;
+    count(Counter::OcclusionRays, std::popcount(rays.towards.active));
     const Valid valid(rays.towards.active);
     bound(rays, all);
     direct(Rows(world_from_sonar_), place_, rays, all);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <glm/geometric.hpp>
 
+#include "components/sonar/base/Counters.hpp"
 #include "components/sonar/rays/MappedCells.hpp"
 #include "types/VectorMath.hpp"
 
@@ -35,6 +36,7 @@ public:
                 addCell(tile, i, merged);
             else if (echoes_from_misses_)
                 addMiss(tile, i);
+            merged_ += static_cast<uint64_t>(merged - 1);
             i += merged;
         }
     }
@@ -43,6 +45,7 @@ public:
         if (mapped_ && !scene_.paths) in_map_.setCosines(scene_, 0, cells_.count, cells_);
         deposit_.flush();
     }
+    uint64_t merged() const { return merged_; }  ///< Samples in the cell of another [1].
 
 private:
     /** Returns the samples, as bits, that have hit the same triangle as the next sample. */
@@ -145,6 +148,7 @@ private:
     Cells& cells_;
     int max_merged_;  ///< Max samples of one cell [1].
     MappedCells in_map_;
+    uint64_t merged_ = 0;
 };
 
 }  // namespace
@@ -159,6 +163,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositTiles(const EchoRule
         cells.add(tiles[i]);
     }
     cells.finish();
+    count(Counter::SamplesMerged, cells.merged());
 }
 
 }  // namespace insonify::sonar

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -409,6 +410,7 @@ bool RayEchoes::traceThrough(TracedTile& tile) const {
         on.farthest[i] = end;
         on.towards.active |= 1u << i;
     }
+    count(Counter::WallsPassed, std::popcount(on.towards.active));
     if (on.towards.active) visibility_.trace(on, *tile.hits);
     return on.towards.active;
 }
@@ -487,6 +489,7 @@ void RayEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
 bool RayEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping) {
     if (truth_ && truth_grid_->water())
         truth_grid_->water()->take(rules_, sums, cell, view_.cells.cell(), worker.number);
+    count(Counter::Bins, static_cast<uint64_t>(rules_.bins.bin_count));
     if (field_) return field_->fill(cell, rules_, sums, view_.cells.cell(), worker.number);
     const std::span<float> bins = grid_->cell(cell, ping);
     const bool received = levels_.fill(rules_, sums, view_.cells.cell(), bins);

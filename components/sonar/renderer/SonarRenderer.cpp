@@ -16,8 +16,6 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr Stages no_time{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
-
 /** Returns the objects whose meshes can deform, ascending. */
 std::vector<uint32_t> deformable(const types::Geometry& geometry) {
     std::vector<uint32_t> objects;
@@ -48,7 +46,7 @@ struct SonarRenderer::Parts {
     RenderPlan plan;
     PingEffects effects;
     types::Plan reported;
-    Stages stages = no_time;
+    Stages stages = empty_stages;
     std::unique_ptr<EchoRenderer> echoes;
     const types::Sonar* reported_ping = nullptr;
     types::SonarTruth* truth = nullptr;  ///< Filled with `reported_ping`; null: no truth.
@@ -168,7 +166,7 @@ SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geome
 SonarRenderer::~SonarRenderer() = default;
 
 void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) {
-    parts_->stages = no_time;
+    parts_->stages = empty_stages;
     if (!snapshot.deformed.empty() || parts_->deformed) {
         const auto start = std::chrono::steady_clock::now();
         parts_->takeShapes(snapshot);

@@ -303,11 +303,13 @@ void PingTask::render() {
     const auto reported = takeTruth();
     const auto signals = elements.connected() ? signals_.take() : nullptr;
     renderer_->setElements(*sample, signals.get());
+    const Counts before = thread_counts;
     const auto start = std::chrono::steady_clock::now();
     const bool received = renderPing(*renderer_, takenScene(), *sample, reported.get());
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     render_seconds_ = took.count() / 1e3;
     for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
+    counted_.add(before, renderStages(*renderer_));
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
         for (const Omitted& what : renderer_->omissions()) {
             plan_->omitted.push_back(describe(what, grid()));

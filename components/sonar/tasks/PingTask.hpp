@@ -7,6 +7,7 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/SamplePool.hpp"
+#include "components/sonar/base/Counters.hpp"
 #include "components/sonar/bins/Detection.hpp"
 #include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/renderer/PingDiagnostics.hpp"
@@ -78,6 +79,8 @@ public:
     std::string indivisible() const override;
     types::ReturnRules returnRules() const override { return returnRulesOf(sonarConfig()); }
 
+    /** Returns what all pings have counted; those that only measure the quality do not count. Read when stopped. */
+    const CountedPings& counted() const { return counted_; }
     /** Sets the number of threads of the next renderer; 0: the number of cores. */
     void useThreads(int threads) { threads_ = threads; }
     /** Cleans up and configures a stopped task, which then pings as if it had just been made. Keeps the renderer's data
@@ -175,7 +178,8 @@ private:
     OthersReceived others_received_;
     std::optional<Taken> listening_;  ///< The ping that waits for pulses of others.
     double render_seconds_ = 0;       ///< Time that the last ping took [s].
-    uint64_t cut_off_ = 0;            ///< Pings that still waited for pulses at the stop [1].
+    CountedPings counted_;
+    uint64_t cut_off_ = 0;  ///< Pings that still waited for pulses at the stop [1].
     framework::SamplePool<types::Sonar> pool_;
     framework::SamplePool<types::SonarTruth> truths_;
     framework::SamplePool<types::SonarReturns> all_returns_;
