@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes the shards of a run, or of a data set, on workers of Dask. After -- follows the command without its --shard:
 
-    scripts/dataset_dask.py --shards 16 --workers 2 -- insonify run deploy/x.yml --pings 1600 --out DIR
-    scripts/dataset_dask.py --shards 16 --scheduler tcp://HOST:8786 -- insonify dataset ...
+    scripts/research/dataset_dask.py --shards 16 --workers 2 -- insonify run deploy/x.yml --pings 1600 --out DIR
+    scripts/research/dataset_dask.py --shards 16 --scheduler tcp://HOST:8786 -- insonify dataset ...
 
 All workers must see the same DIR. If a worker dies, another worker makes its shard. Called again, the script makes the missing shards.
 It prints a line for each finished shard; the exit code is 1 if a shard has failed. Needs PyPI's distributed."""

@@ -1,4 +1,4 @@
-"""Classifiers for scripts/sim_to_real: a small CNN (torch) and HOG with a linear SVM (scikit-image, scikit-learn)."""
+"""Classifiers for scripts/research/sim_to_real: a small CNN (torch) and HOG with a linear SVM (scikit-image, scikit-learn)."""
 import numpy as np
 from PIL import Image
 

@@ -1,4 +1,4 @@
-"""The report of scripts/sim_to_real: tables, a picture of confusions, and of crops side by side."""
+"""The report of scripts/research/sim_to_real: tables, a picture of confusions, and of crops side by side."""
 import numpy as np
 from PIL import Image, ImageDraw
 

@@ -1,4 +1,4 @@
-"""Pictures for scripts/sim_to_real: crops of real folders, their halves, and simulated sets, which `insonify dataset` makes."""
+"""Pictures for scripts/research/sim_to_real: crops of real folders, their halves, and simulated sets, which `insonify dataset` makes."""
 import hashlib
 import io
 import json

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "components" / "worlds"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "components" / "worlds"))
 from insonify_worlds.glb import FLOAT, USHORT, Glb, png, quaternion, rotation, unit, y_up  # noqa: E402, F401: for the scripts
 from insonify_worlds.rings import circle, skin  # noqa: E402
 

@@ -24,7 +24,7 @@ for _ in range(9):
     middle, size = (rng.uniform(150, 380), rng.uniform(20, 380)), rng.uniform(6, 12)
     floor -= 1.6 * np.exp(-((north - middle[0]) ** 2 + (east - middle[1]) ** 2) / (2 * size**2))
 
-target = Path(__file__).resolve().parent.parent / "deploy" / "scenes" / "bay.flt"
+target = Path(__file__).resolve().parents[2] / "deploy" / "scenes" / "bay.flt"
 floor[::-1].astype("<f4").tofile(target)    # rows from north to south
 target.with_suffix(".hdr").write_text(
     f"ncols {POSTS}\nnrows {POSTS}\nxllcenter {EASTING}\nyllcenter {NORTHING}\ncellsize {SPACING}\nbyteorder LSBFIRST\n"

@@ -2,8 +2,8 @@
 """Adds swimming fish to a scene: a skin of 2,000 triangles about a spine of six joints, one mesh for all. Each fish has two
 animations, `swim_NNN`, a wave from head to tail, and `path_NNN`, a circle in the water.
 
-scripts/make_fish.py OUT.glb [--scene deploy/scenes/harbour.glb] [--count 100] [--box 5 -6 -8 40 6 -3] [--seed 1]
-scripts/make_fish.py deploy/scenes/fish.glb --count 12 --box 3 -2 -7.5 8 2 -6.5 --seed 4
+scripts/scenes/make_fish.py OUT.glb [--scene deploy/scenes/harbour.glb] [--count 100] [--box 5 -6 -8 40 6 -3] [--seed 1]
+scripts/scenes/make_fish.py deploy/scenes/fish.glb --count 12 --box 3 -2 -7.5 8 2 -6.5 --seed 4
 
 The box has the middles of the circles: north, west, up of one corner and of the other [m]. Without a scene there is a level floor of
 sand, 1.5 m below the box. Needs numpy."""

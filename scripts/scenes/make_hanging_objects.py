@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes scenes of objects that hang in open water, and sweeps to train on them: scripts/make_hanging_objects.py FOLDER
+"""Makes scenes of objects that hang in open water, and sweeps to train on them: scripts/scenes/make_hanging_objects.py FOLDER
 Five classes of random shape and material: big and small propellers, cylinders, fishing nets, soft pipelines. Each hangs on a line.
-FOLDER gets scenes of several objects of each class, deployment.yml, sweeps of each scene and set.yml, which scripts/sim_to_real
+FOLDER gets scenes of several objects of each class, deployment.yml, sweeps of each scene and set.yml, which scripts/research/sim_to_real
 reads. Needs numpy."""
 import argparse
 from pathlib import Path
@@ -115,7 +115,7 @@ CLASSES = {each.__name__: each for each in (big_propeller, small_propeller, cyli
 MOORED = {"big_propeller": 0.9, "small_propeller": 0.9, "cylinder": 0.9, "soft_pipeline": 0.3}  # probability
 
 DEPLOYMENT = """\
-# A part of the fan of an Oculus M750d, at either of its frequencies: scripts/sim_to_real draws range, noise and objects.
+# A part of the fan of an Oculus M750d, at either of its frequencies: scripts/research/sim_to_real draws range, noise and objects.
 schedule: lockstep
 tasks:
   vehicle:
@@ -173,7 +173,7 @@ annotations: {min_level: 70, min_pixels: 15}
 """
 
 SET = """\
-# The sets of scripts/sim_to_real, and the effects that --ablate omits: by name, values that replace the deployment's.
+# The sets of scripts/research/sim_to_real, and the effects that --ablate omits: by name, values that replace the deployment's.
 deployment: deployment.yml
 sweeps: ["near_*.yml", "far_*.yml"]
 ablated: ["near_[0-4].yml", "far_[0-4].yml"] # of these, to compare with and without an effect; absent: all

@@ -16,7 +16,7 @@ import numpy as np
 
 from glb import Glb, Mesh, box, icosphere, loft, merged, quaternion, rotation, tube, unit
 
-SCENES = Path(__file__).resolve().parent.parent / "deploy" / "scenes"
+SCENES = Path(__file__).resolve().parents[2] / "deploy" / "scenes"
 SPECTRAL_SLOPE = -2.7
 SPACING = 0.32          # grid of the floor [m]
 TILE = 800              # grid points on a side of the whole fractal surface: 256 m

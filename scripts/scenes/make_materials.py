@@ -7,7 +7,7 @@ import numpy as np
 
 from glb import Glb, Mesh, box, circle, icosphere, loft
 
-SCENES = Path(__file__).resolve().parent.parent / "deploy" / "scenes"
+SCENES = Path(__file__).resolve().parents[2] / "deploy" / "scenes"
 SIDES = 128
 MATERIALS = [("Steel.001", (0.5, 0.5, 0.55)), ("Material_PVC", (0.8, 0.8, 0.8)), ("rubber-02", (0.1, 0.1, 0.1)),
              ("Concrete", (0.6, 0.6, 0.58)), ("RockMoss", (0.4, 0.38, 0.35))]  # from port to starboard

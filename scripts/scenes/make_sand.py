@@ -48,7 +48,7 @@ def add_wreck(glb, rng, centre=(7.0, -7.6), axes=(9.5, 3.9), height=1.4):
         glb.node(f"timber_{i}", timber, (centre[0] + at[0], centre[1] + at[1], -DEPTH))
 
 
-scenes = Path(__file__).resolve().parent.parent / "deploy" / "scenes"
+scenes = Path(__file__).resolve().parents[2] / "deploy" / "scenes"
 floor().write(scenes / "sand.glb")
 wrecked = floor()
 add_wreck(wrecked, np.random.default_rng(3))

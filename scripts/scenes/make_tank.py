@@ -7,7 +7,7 @@ import numpy as np
 
 from glb import Glb, box, quaternion, rotation, tube
 
-SCENES = Path(__file__).resolve().parent.parent / "deploy" / "scenes"
+SCENES = Path(__file__).resolve().parents[2] / "deploy" / "scenes"
 NORTH, WEST = 13.2, 9.0    # faces of the walls; the others are at the negative values [m]
 HEIGHT, THICK = 2.4, 0.5   # walls [m]
 PILLARS = [(7.0, -4.5), (-8.0, 5.0)]  # [m]

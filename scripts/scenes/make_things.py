@@ -2,7 +2,7 @@
 """Makes deploy/pictures/things.png: the things of `insonify scene make`, each on clay as a forward-looking sonar of 1.2 MHz
 records it from 2.2 of its lengths away. The range is up, port is left. Needs matplotlib and insonify in the path.
 
-    scripts/make_things.py [--out FILE] [THING...]
+    scripts/scenes/make_things.py [--out FILE] [THING...]
 """
 import argparse
 import io
@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib import pyplot
 from PIL import Image
 
-PICTURES = Path(__file__).resolve().parent.parent / "deploy" / "pictures"
+PICTURES = Path(__file__).resolve().parents[2] / "deploy" / "pictures"
 OMITTED = ("quay", "jetty", "tank", "pile", "ball")  # larger than a tile of the picture, or without detail
 DEPTH = 30.0
 SETTINGS = {  # by thing: settings for the picture

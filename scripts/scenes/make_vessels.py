@@ -7,7 +7,7 @@ import numpy as np
 
 from glb import Glb, Mesh, box, circle, loft
 
-SCENES = Path(__file__).resolve().parent.parent / "deploy" / "scenes"
+SCENES = Path(__file__).resolve().parents[2] / "deploy" / "scenes"
 SIDES = 96
 ROUGH = {"roughness_slope": 0.05}
 

@@ -7,4 +7,4 @@ from glb import Glb, box
 glb = Glb()
 concrete = glb.material("concrete", {"material": "concrete"}, (0.6, 0.6, 0.58))
 glb.node("wall", glb.mesh("wall", [box((1.0, 40.0, 6.0))], concrete), (10.5, 0, 0))
-glb.write(Path(__file__).resolve().parent.parent / "deploy" / "scenes" / "wall.glb")
+glb.write(Path(__file__).resolve().parents[2] / "deploy" / "scenes" / "wall.glb")

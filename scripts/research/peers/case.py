@@ -1,4 +1,4 @@
-"""What every simulator of scripts/peers is asked for: one sonar, and one scene for each row of the sheet.
+"""What every simulator of scripts/research/peers is asked for: one sonar, and one scene for each row of the sheet.
 
 The sonar has one transmitter without directivity and a straight array of elements half a wavelength apart. Lengths are in metres."""
 import numpy as np

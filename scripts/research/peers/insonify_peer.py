@@ -12,8 +12,8 @@ import case
 import insonify
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "scripts/scenes"))
 from glb import Glb, Mesh, icosphere  # noqa: E402
 
 BIN = case.RESOLUTION / 5                 # 5 mm; bins of the ranges that are shown

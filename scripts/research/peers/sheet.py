@@ -1,4 +1,4 @@
-"""The sheet of scripts/peers: the figures of each simulator next to the closed form, as a table in Markdown."""
+"""The sheet of scripts/research/peers: the figures of each simulator next to the closed form, as a table in Markdown."""
 import json
 from pathlib import Path
 
