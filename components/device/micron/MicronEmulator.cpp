@@ -1,4 +1,4 @@
-#include "components/device/MicronEmulator.hpp"
+#include "components/device/micron/MicronEmulator.hpp"
 
 #include <fmt/format.h>
 

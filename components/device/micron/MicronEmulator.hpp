@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "components/device/AskedPings.hpp"
-#include "components/device/Network.hpp"
-#include "components/device/SeaNet.hpp"
+#include "components/device/micron/SeaNet.hpp"
+#include "components/device/wire/Network.hpp"
 #include "types/Elapsed.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "components/device/DeviceTask.hpp"
-#include "components/device/MicronEmulator.hpp"
+#include "components/device/micron/MicronEmulator.hpp"
 #include "components/framework/Properties.hpp"
 
 namespace insonify::device {

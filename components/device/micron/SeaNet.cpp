@@ -1,4 +1,4 @@
-#include "components/device/SeaNet.hpp"
+#include "components/device/micron/SeaNet.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "components/device/Framer.hpp"
+#include "components/device/wire/Framer.hpp"
 
 namespace insonify::device {
 

@@ -1,4 +1,4 @@
-#include "components/device/OculusEmulator.hpp"
+#include "components/device/oculus/OculusEmulator.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "components/device/AskedPings.hpp"
-#include "components/device/OculusMessages.hpp"
 #include "components/device/OculusPing.hpp"
+#include "components/device/oculus/OculusMessages.hpp"
 #include "types/Describe.hpp"
 #include "types/Elapsed.hpp"
 #include "types/Sonar.hpp"

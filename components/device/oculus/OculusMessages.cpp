@@ -1,4 +1,4 @@
-#include "components/device/OculusMessages.hpp"
+#include "components/device/oculus/OculusMessages.hpp"
 
 #include <fmt/format.h>
 

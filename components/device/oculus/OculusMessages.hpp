@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "components/device/Framer.hpp"
+#include "components/device/wire/Framer.hpp"
 
 namespace insonify::device {
 

@@ -1,4 +1,4 @@
-#include "components/device/OculusTask.hpp"
+#include "components/device/oculus/OculusTask.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "components/device/DeviceTask.hpp"
-#include "components/device/OculusEmulator.hpp"
 #include "components/device/OculusRecording.hpp"
+#include "components/device/oculus/OculusEmulator.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/output/ByteFile.hpp"
 #include "types/RecurringDiagnostic.hpp"

@@ -1,4 +1,4 @@
-#include "components/device/Ping1dEmulator.hpp"
+#include "components/device/ping/Ping1dEmulator.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "components/device/Ping1dMessages.hpp"
-#include "components/device/PingDevice.hpp"
+#include "components/device/ping/Ping1dMessages.hpp"
+#include "components/device/ping/PingDevice.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::device {

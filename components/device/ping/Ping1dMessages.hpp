@@ -1,6 +1,6 @@
 #pragma once
 // Messages of the Ping1D, an echo sounder. Distances are whole millimetres.
-#include "components/device/PingProtocol.hpp"
+#include "components/device/ping/PingProtocol.hpp"
 
 namespace insonify::device {
 

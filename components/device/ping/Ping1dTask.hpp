@@ -1,6 +1,6 @@
 #pragma once
-#include "components/device/Ping1dEmulator.hpp"
-#include "components/device/PingDeviceTask.hpp"
+#include "components/device/ping/Ping1dEmulator.hpp"
+#include "components/device/ping/PingDeviceTask.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Upstream.hpp"
 

@@ -1,4 +1,4 @@
-#include "components/device/Ping360Emulator.hpp"
+#include "components/device/ping/Ping360Emulator.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

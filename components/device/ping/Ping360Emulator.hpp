@@ -1,8 +1,8 @@
 #pragma once
 #include <deque>
 
-#include "components/device/Ping360Messages.hpp"
-#include "components/device/PingDevice.hpp"
+#include "components/device/ping/Ping360Messages.hpp"
+#include "components/device/ping/PingDevice.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Describe.hpp"
 

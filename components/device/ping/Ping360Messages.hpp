@@ -1,6 +1,6 @@
 #pragma once
 // Messages of the Ping360, a scanning sonar. Angles of the head are whole gradians, 400 to a turn.
-#include "components/device/PingProtocol.hpp"
+#include "components/device/ping/PingProtocol.hpp"
 
 namespace insonify::device {
 

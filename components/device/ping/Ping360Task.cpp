@@ -1,4 +1,4 @@
-#include "components/device/Ping360Task.hpp"
+#include "components/device/ping/Ping360Task.hpp"
 
 #include <algorithm>
 #include <array>

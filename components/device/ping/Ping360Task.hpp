@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "components/device/Ping360Emulator.hpp"
-#include "components/device/PingDeviceTask.hpp"
+#include "components/device/ping/Ping360Emulator.hpp"
+#include "components/device/ping/PingDeviceTask.hpp"
 #include "components/framework/Properties.hpp"
 
 namespace insonify::device {

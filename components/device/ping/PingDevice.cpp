@@ -1,4 +1,4 @@
-#include "components/device/PingDevice.hpp"
+#include "components/device/ping/PingDevice.hpp"
 
 #include <fmt/format.h>
 

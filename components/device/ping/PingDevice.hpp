@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/device/AskedPings.hpp"
-#include "components/device/PingProtocol.hpp"
+#include "components/device/ping/PingProtocol.hpp"
 #include "types/Elapsed.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"

@@ -1,4 +1,4 @@
-#include "components/device/PingDeviceTask.hpp"
+#include "components/device/ping/PingDeviceTask.hpp"
 
 namespace insonify::device {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "components/device/DeviceTask.hpp"
-#include "components/device/PingDevice.hpp"
+#include "components/device/ping/PingDevice.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::device {

@@ -1,4 +1,4 @@
-#include "components/device/PingProtocol.hpp"
+#include "components/device/ping/PingProtocol.hpp"
 
 #include <numeric>
 

@@ -1,4 +1,4 @@
-#include "components/device/Protobuf.hpp"
+#include "components/device/sonar3d/Protobuf.hpp"
 
 #include <bit>
 

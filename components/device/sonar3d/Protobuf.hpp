@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/wire/Bytes.hpp"
 
 namespace insonify::device {
 

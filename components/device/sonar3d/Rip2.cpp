@@ -1,4 +1,4 @@
-#include "components/device/Rip2.hpp"
+#include "components/device/sonar3d/Rip2.hpp"
 
 #include <fmt/format.h>
 #include <snappy.h>
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "components/device/Protobuf.hpp"
+#include "components/device/sonar3d/Protobuf.hpp"
 
 namespace insonify::device {
 namespace {

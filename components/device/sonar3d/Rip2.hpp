@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/wire/Bytes.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::device {

@@ -1,4 +1,4 @@
-#include "components/device/Sonar3dEmulator.hpp"
+#include "components/device/sonar3d/Sonar3dEmulator.hpp"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "components/device/AskedPings.hpp"
-#include "components/device/Http.hpp"
-#include "components/device/Rip2.hpp"
+#include "components/device/sonar3d/Rip2.hpp"
+#include "components/device/wire/Http.hpp"
 #include "types/DepthMap.hpp"
 #include "types/Elapsed.hpp"
 #include "types/SonarSettings.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "components/device/DeviceTask.hpp"
-#include "components/device/Sonar3dEmulator.hpp"
+#include "components/device/sonar3d/Sonar3dEmulator.hpp"
 #include "components/framework/Properties.hpp"
 
 namespace insonify::device {

@@ -2,7 +2,7 @@
 #include <optional>
 #include <utility>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/wire/Bytes.hpp"
 
 namespace insonify::device {
 

@@ -1,4 +1,4 @@
-#include "components/device/Http.hpp"
+#include "components/device/wire/Http.hpp"
 
 #include <fmt/format.h>
 
@@ -92,8 +92,7 @@ Bytes httpBytes(const HttpRequest& request, const std::string& host) {
 }
 
 HttpReply httpError(int status, const std::string& text) {
-    using Json = nlohmann::json;
-    return {status, Json{{"error", text}}.dump(-1, ' ', false, Json::error_handler_t::replace)};
+    return {status, nlohmann::json{{"error", text}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
 }
 
 struct HttpReader::Parser {

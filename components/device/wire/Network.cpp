@@ -1,4 +1,4 @@
-#include "components/device/Network.hpp"
+#include "components/device/wire/Network.hpp"
 
 #include <fcntl.h>
 #include <netinet/tcp.h>

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/wire/Bytes.hpp"
 
 namespace insonify::device {
 

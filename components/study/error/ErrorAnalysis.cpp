@@ -1,4 +1,4 @@
-#include "components/study/ErrorAnalysis.hpp"
+#include "components/study/error/ErrorAnalysis.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include <optional>
 #include <string>
 
-#include "components/study/ErrorStudy.hpp"
+#include "components/study/error/ErrorStudy.hpp"
 
 namespace insonify::study {
 

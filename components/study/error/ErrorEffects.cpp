@@ -1,4 +1,4 @@
-#include "components/study/ErrorEffects.hpp"
+#include "components/study/error/ErrorEffects.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "components/study/ErrorReport.hpp"
+#include "components/study/error/ErrorReport.hpp"
 
 #include <fmt/format.h>
 

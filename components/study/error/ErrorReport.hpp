@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "components/study/ErrorAnalysis.hpp"
+#include "components/study/error/ErrorAnalysis.hpp"
 
 namespace insonify::study {
 

@@ -1,4 +1,4 @@
-#include "components/study/ErrorStudy.hpp"
+#include "components/study/error/ErrorStudy.hpp"
 
 #include <fmt/format.h>
 

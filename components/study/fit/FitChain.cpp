@@ -1,4 +1,4 @@
-#include "components/study/FitChain.hpp"
+#include "components/study/fit/FitChain.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "components/study/FitLevels.hpp"
+#include "components/study/fit/FitLevels.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 #include <functional>
 #include <optional>
 
-#include "components/study/FitChain.hpp"
-#include "components/study/LevelBlocks.hpp"
+#include "components/study/fit/FitChain.hpp"
+#include "components/study/fit/LevelBlocks.hpp"
 
 namespace insonify::study {
 

@@ -1,4 +1,4 @@
-#include "components/study/FitLooks.hpp"
+#include "components/study/fit/FitLooks.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "components/study/RecordingFit.hpp"
+#include "components/study/fit/RecordingFit.hpp"
 
 namespace insonify::study {
 

@@ -1,4 +1,4 @@
-#include "components/study/FitReport.hpp"
+#include "components/study/fit/FitReport.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "components/output/PictureFiles.hpp"
-#include "components/study/LikenessReport.hpp"
+#include "components/study/likeness/LikenessReport.hpp"
 #include "types/Angle.hpp"
 #include "types/Describe.hpp"
 #include "types/Quaternion.hpp"

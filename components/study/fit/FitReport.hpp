@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "components/study/RecordingFit.hpp"
+#include "components/study/fit/RecordingFit.hpp"
 #include "types/Mount.hpp"
 
 namespace insonify::study {

@@ -1,4 +1,4 @@
-#include "components/study/FitSpeckle.hpp"
+#include "components/study/fit/FitSpeckle.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "components/study/FitLevels.hpp"
 #include "components/study/SpeckleStatistics.hpp"
+#include "components/study/fit/FitLevels.hpp"
 
 namespace insonify::study {
 

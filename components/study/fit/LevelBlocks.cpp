@@ -1,4 +1,4 @@
-#include "components/study/LevelBlocks.hpp"
+#include "components/study/fit/LevelBlocks.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "components/study/RecordingFit.hpp"
+#include "components/study/fit/RecordingFit.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "components/receiver/Receiver.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "components/study/FitLooks.hpp"
+#include "components/study/fit/FitLooks.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "components/study/FitChain.hpp"
-#include "components/study/FitLevels.hpp"
-#include "components/study/FitSpeckle.hpp"
+#include "components/study/fit/FitChain.hpp"
+#include "components/study/fit/FitLevels.hpp"
+#include "components/study/fit/FitSpeckle.hpp"
 
 namespace insonify::study {
 

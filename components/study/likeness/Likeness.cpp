@@ -1,4 +1,4 @@
-#include "components/study/Likeness.hpp"
+#include "components/study/likeness/Likeness.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/study/CodedPing.hpp"
-#include "components/study/ErrorAnalysis.hpp"
+#include "components/study/error/ErrorAnalysis.hpp"
 
 namespace insonify::study {
 

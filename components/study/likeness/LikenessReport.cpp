@@ -1,4 +1,4 @@
-#include "components/study/LikenessReport.hpp"
+#include "components/study/likeness/LikenessReport.hpp"
 
 #include <fmt/format.h>
 

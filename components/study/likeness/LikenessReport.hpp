@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "components/study/Likeness.hpp"
+#include "components/study/likeness/Likeness.hpp"
 #include "types/Image.hpp"
 
 namespace insonify::study {

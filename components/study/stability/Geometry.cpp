@@ -6,7 +6,7 @@
 
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
-#include "components/study/StabilityStudy.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {

@@ -11,7 +11,7 @@
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
-#include "components/study/StabilityStudy.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 
 namespace insonify::study {
 namespace {

@@ -1,11 +1,12 @@
 // Seeds and extreme shapes of noise.
+#include "components/noise/Noise.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "components/noise/Noise.hpp"
-#include "components/study/StabilityStudy.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 
 namespace insonify::study {
 namespace {

@@ -8,7 +8,7 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
-#include "components/study/StabilityStudy.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {

@@ -1,4 +1,4 @@
-#include "components/study/StabilityStudy.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
-#include "components/study/StabilityStudy.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 
 namespace insonify::study {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "components/study/Probe.hpp"
-#include "components/study/StabilityStudy.hpp"
 #include "components/study/TargetShapes.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {
