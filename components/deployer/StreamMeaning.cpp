@@ -1,6 +1,5 @@
 #include "components/deployer/StreamMeaning.hpp"
 
-#include <set>
 
 #include "components/deployer/ReplaySpec.hpp"
 #include "components/framework/DeploymentSpec.hpp"
@@ -16,12 +15,13 @@ using framework::TaskSpec;
 
 constexpr const char* quaternion_order = "w, x, y, z";
 
-/** Returns the nearest task of these types upstream of a task, or the task itself; null when there is none. */
-const TaskSpec* upstream(const DeploymentSpec& spec, const std::string& from, const std::set<std::string>& types) {
+/** Returns the nearest task whose type starts with `type` upstream of a task, or the task itself; null when there is
+ * none. */
+const TaskSpec* upstream(const DeploymentSpec& spec, const std::string& from, const std::string& type) {
     std::vector<std::string> waiting{from};
     for (size_t i = 0; i < waiting.size(); ++i) {
         const TaskSpec* task = spec.task(waiting[i]);
-        if (task && types.contains(task->type)) return task;
+        if (task && task->type.starts_with(type)) return task;
         for (const framework::ConnectionSpec& connection : spec.connections) {
             const std::string writer = framework::splitPort(connection.from).first;
             if (framework::splitPort(connection.to).first == waiting[i] && std::ranges::count(waiting, writer) == 0)
@@ -60,12 +60,10 @@ Json frequencyOf(const TaskSpec* sonar) {
 }
 
 Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
-    const TaskSpec* sonar = upstream(spec, task,
-                                     {"sonar::SonarTask", "sonar::ScanningSonarTask", "sonar::ProfilerTask",
-                                      "sonar::SideScanTask", "sonar::AltimeterTask", "sonar::Sonar3dTask"});
-    const TaskSpec* receiver = upstream(spec, task, {"receiver::ReceiverTask"});
-    const TaskSpec* noise = upstream(spec, task, {"noise::NoiseTask"});
-    const TaskSpec* scene = upstream(spec, task, {"scene::SceneTask"});
+    const TaskSpec* sonar = upstream(spec, task, "sonar::");
+    const TaskSpec* receiver = upstream(spec, task, "receiver::ReceiverTask");
+    const TaskSpec* noise = upstream(spec, task, "noise::NoiseTask");
+    const TaskSpec* scene = upstream(spec, task, "scene::SceneTask");
     const std::string model = orElse(property(sonar, {"model"}), "physical"),
                       output = orElse(property(receiver, {"output"}), "intensity");
     return {{"bins", binsOf(model, output, receiver != nullptr)},

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <chrono>
 
-#include "components/device/MicronTask.hpp"
-#include "components/device/OculusTask.hpp"
-#include "components/device/Ping1dTask.hpp"
-#include "components/device/Ping360Task.hpp"
-#include "components/device/Sonar3dTask.hpp"
+#include "components/device/micron/MicronTask.hpp"
+#include "components/device/oculus/OculusTask.hpp"
+#include "components/device/ping/Ping1dTask.hpp"
+#include "components/device/ping/Ping360Task.hpp"
+#include "components/device/sonar3d/Sonar3dTask.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {

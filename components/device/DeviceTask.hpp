@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/device/Network.hpp"
+#include "components/device/wire/Network.hpp"
 #include "components/framework/Event.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/wire/Bytes.hpp"
 
 namespace insonify::device {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/device/OculusMessages.hpp"
+#include "components/device/oculus/OculusMessages.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::device {

@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "components/device/OculusMessages.hpp"
+#include "components/device/oculus/OculusMessages.hpp"
 
 namespace insonify::device {
 

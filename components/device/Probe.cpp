@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include "components/device/DriverLine.hpp"
-#include "components/device/OculusEmulator.hpp"
-#include "components/device/PingProtocol.hpp"
-#include "components/device/SeaNet.hpp"
+#include "components/device/micron/SeaNet.hpp"
+#include "components/device/oculus/OculusEmulator.hpp"
+#include "components/device/ping/PingProtocol.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/wire/Bytes.hpp"
 
 namespace insonify::mavlink {
 

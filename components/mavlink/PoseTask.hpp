@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "components/device/Network.hpp"
+#include "components/device/wire/Network.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/mavlink/Body.hpp"
 #include "components/pose/ListenerTask.hpp"

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "components/study/ErrorAnalysis.hpp"
+#include "components/study/error/ErrorAnalysis.hpp"
 
 namespace insonify::study {
 

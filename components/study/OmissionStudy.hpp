@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "components/sonar/config/SonarConfig.hpp"
-#include "components/study/StabilityStudy.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::study {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "components/sonar/config/SonarConfig.hpp"
-#include "components/study/StabilityStudy.hpp"
 #include "components/study/oracles/Truth.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 #include "types/Plan.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "components/sonar/config/SonarConfig.hpp"
-#include "components/study/ErrorAnalysis.hpp"
 #include "components/study/SpeckleStatistics.hpp"
+#include "components/study/error/ErrorAnalysis.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::study {

@@ -1,4 +1,4 @@
-"""Fans and a scanning beam before the scenes of scripts/make_bench_scene.py."""
+"""Fans and a scanning beam before the scenes of scripts/scenes/make_bench_scene.py."""
 import subprocess
 
 from benchmarks.common import BENCH, ROOT
@@ -20,7 +20,7 @@ GROWTH = {"10 k": "71", "100 k": "224", "1 M": "707", "10 M": "2236"}
 def scene(options):
     file = BENCH / ("bench" + "".join(options).replace("--", "_") + ".glb")
     if not file.exists():
-        subprocess.run(["/usr/bin/python3", ROOT / "scripts/make_bench_scene.py", file, *options], check=True)
+        subprocess.run(["/usr/bin/python3", ROOT / "scripts/scenes/make_bench_scene.py", file, *options], check=True)
     return file
 
 

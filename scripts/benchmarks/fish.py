@@ -14,7 +14,7 @@ def school():
     scene = BENCH / "harbour_fish.glb"
     if not scene.exists():
         python = ROOT / "build/venv/bin/python3"
-        subprocess.run([python if python.exists() else sys.executable, ROOT / "scripts/make_fish.py", scene, "--scene",
+        subprocess.run([python if python.exists() else sys.executable, ROOT / "scripts/scenes/make_fish.py", scene, "--scene",
                         ROOT / "deploy/scenes/harbour.glb"], check=True)
     return scene
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "components/device/DeviceTask.hpp"
-#include "components/device/OculusTask.hpp"
+#include "components/device/oculus/OculusTask.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"

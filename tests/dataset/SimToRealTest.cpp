@@ -1,4 +1,4 @@
-// Runs the Python tests of scripts/sim_to_real.
+// Runs the Python tests of scripts/research/sim_to_real.
 #include <gmock/gmock.h>
 
 #include "tests/support/Paths.hpp"
@@ -21,6 +21,6 @@ TEST(SimToRealTest, HalvesNeverShareAFilmAndWrongInputIsOneError) {
 
 TEST(SimToRealTest, TrainingVariesCropsAndUsesSizes) {
     if (!insonify::pythonHas("torch, skimage, sklearn"))
-        GTEST_SKIP() << "python lacks torch, scikit-image or scikit-learn; scripts/sim_to_real_requirements.txt has it";
+        GTEST_SKIP() << "python lacks torch, scikit-image or scikit-learn; scripts/research/sim_to_real_requirements.txt has it";
     expectPasses("check_sim_to_real_training.py");
 }

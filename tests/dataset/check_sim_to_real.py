@@ -1,4 +1,4 @@
-"""Tests scripts/sim_to_real: halves never share a film, windows show the visible pixels, wrong input is one error and exit 2.
+"""Tests scripts/research/sim_to_real: halves never share a film, windows show the visible pixels, wrong input is one error and exit 2.
 A stand-in for insonify makes the sets, and writes the files of a data set."""
 import random
 import subprocess
@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts/research"))
 import sim_real_learn as learn  # noqa: E402
 import sim_real_sets as sets  # noqa: E402
 
@@ -130,7 +130,7 @@ class Wrong(unittest.TestCase):
         command.chmod(0o755)
 
     def refuses(self, said, *more):
-        done = subprocess.run([sys.executable, ROOT / "scripts/sim_to_real", self.folder / "real", self.folder / "set", "--out",
+        done = subprocess.run([sys.executable, ROOT / "scripts/research/sim_to_real", self.folder / "real", self.folder / "set", "--out",
                                self.folder / "out", "--insonify", self.folder / "insonify", *more], capture_output=True, text=True)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn(said, done.stderr)

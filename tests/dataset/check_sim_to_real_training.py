@@ -1,4 +1,4 @@
-"""Tests what the training of scripts/sim_to_real adds to crops. Needs the packages of scripts/sim_to_real_requirements.txt."""
+"""Tests what the training of scripts/research/sim_to_real adds to crops. Needs the packages of scripts/research/sim_to_real_requirements.txt."""
 import sys
 import unittest
 from importlib.machinery import SourceFileLoader
@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import torch
 
-SCRIPTS = Path(__file__).resolve().parent.parent.parent / "scripts"
+SCRIPTS = Path(__file__).resolve().parent.parent.parent / "scripts/research"
 sys.path.insert(0, str(SCRIPTS))
 import sim_real_learn as learn  # noqa: E402
 import sim_real_sets as sets  # noqa: E402

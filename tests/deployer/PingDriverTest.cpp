@@ -79,7 +79,7 @@ double rangeOf(const json& reported) {
 /** Returns the distance from the sonar to the quay's wall along a bearing, by the scene's script and the deployment
  *  [m]. */
 double wallAt(double angle) {
-    const double wall = numbersIn(readFile(checkout / "scripts/make_harbour.py"), "QUAY = ([\\d.]+)").at(0);
+    const double wall = numbersIn(readFile(checkout / "scripts/scenes/make_harbour.py"), "QUAY = ([\\d.]+)").at(0);
     const double vehicle = numbersIn(readFile(ping_360), "position: \\[([-\\d.]+), ([-\\d.]+), ([-\\d.]+)\\]").at(1);
     const double to_port = (200 - angle) * std::numbers::pi / 200;
     return (wall - vehicle) / std::sin(to_port);
@@ -89,7 +89,7 @@ double wallAt(double angle) {
 double bottomBelow() {
     const TestFolder folder;
     const std::string program = "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '" +
-                                (checkout / "scripts").string() +
+                                (checkout / "scripts/scenes").string() +
                                 "'); import numpy; from make_harbour import *; "
                                 "print(-5.8 - Floor(fractal_surface(numpy.random.default_rng(2017))).z(17, -1))";
     return std::stod(python(folder, program).out);

@@ -1,7 +1,7 @@
 // A Sonar 3D-15 with its maker's own client, PyPI's wlsonar: HTTP, unicast and multicast, and the received voxels.
 #include <gmock/gmock.h>
 
-#include "components/device/Http.hpp"
+#include "components/device/wire/Http.hpp"
 #include "tests/deployer/HilRun.hpp"
 #include "tests/support/Needs.hpp"
 #include "tests/support/Paths.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/wire/Bytes.hpp"
 
 namespace insonify::device {
 

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/device/MicronEmulator.hpp"
-#include "components/device/OculusEmulator.hpp"
-#include "components/device/Ping1dEmulator.hpp"
-#include "components/device/Ping360Emulator.hpp"
-#include "components/device/Sonar3dEmulator.hpp"
+#include "components/device/micron/MicronEmulator.hpp"
+#include "components/device/oculus/OculusEmulator.hpp"
+#include "components/device/ping/Ping1dEmulator.hpp"
+#include "components/device/ping/Ping360Emulator.hpp"
+#include "components/device/sonar3d/Sonar3dEmulator.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/tasks/Sonar3dTask.hpp"
 #include "tests/device/PingBench.hpp"

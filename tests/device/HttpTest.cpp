@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/device/Http.hpp"
+#include "components/device/wire/Http.hpp"
 #include "tests/device/ByteStrings.hpp"
 #include "tests/support/CommaLocale.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "components/device/MicronEmulator.hpp"
+#include "components/device/micron/MicronEmulator.hpp"
 #include "tests/support/MicronDriver.hpp"
 
 namespace insonify::device {

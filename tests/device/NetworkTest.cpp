@@ -15,7 +15,7 @@
 #include <memory>
 #include <thread>
 
-#include "components/device/Network.hpp"
+#include "components/device/wire/Network.hpp"
 #include "tests/support/Folder.hpp"
 
 namespace insonify::device {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "components/device/OculusEmulator.hpp"
 #include "components/device/OculusPing.hpp"
+#include "components/device/oculus/OculusEmulator.hpp"
 
 namespace insonify::device {
 namespace {

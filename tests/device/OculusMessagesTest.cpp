@@ -1,7 +1,7 @@
 // Messages of an Oculus by their bytes, and read from damaged streams.
 #include <gmock/gmock.h>
 
-#include "components/device/OculusMessages.hpp"
+#include "components/device/oculus/OculusMessages.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/OculusMessage.hpp"
 #include "tests/support/Paths.hpp"

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "components/device/DeviceTask.hpp"
-#include "components/device/OculusTask.hpp"
+#include "components/device/oculus/OculusTask.hpp"
 #include "components/framework/Deployment.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/OculusDriver.hpp"

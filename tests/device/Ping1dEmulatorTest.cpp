@@ -1,4 +1,4 @@
-#include "components/device/Ping1dEmulator.hpp"
+#include "components/device/ping/Ping1dEmulator.hpp"
 #include "tests/device/PingBench.hpp"
 #include "tests/support/Draw.hpp"
 

@@ -1,4 +1,4 @@
-#include "components/device/Ping360Emulator.hpp"
+#include "components/device/ping/Ping360Emulator.hpp"
 #include "tests/device/PingBench.hpp"
 #include "tests/support/Refused.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "components/device/PingDevice.hpp"
+#include "components/device/ping/PingDevice.hpp"
 
 namespace insonify::device {
 

@@ -2,9 +2,9 @@
 
 #include <random>
 
-#include "components/device/Ping1dMessages.hpp"
-#include "components/device/Ping360Messages.hpp"
-#include "components/device/PingProtocol.hpp"
+#include "components/device/ping/Ping1dMessages.hpp"
+#include "components/device/ping/Ping360Messages.hpp"
+#include "components/device/ping/PingProtocol.hpp"
 #include "tests/device/ByteStrings.hpp"
 
 namespace insonify::device {

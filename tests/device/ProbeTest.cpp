@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "components/device/DriverLine.hpp"
-#include "components/device/Network.hpp"
-#include "components/device/OculusMessages.hpp"
-#include "components/device/PingProtocol.hpp"
 #include "components/device/Probe.hpp"
-#include "components/device/SeaNet.hpp"
+#include "components/device/micron/SeaNet.hpp"
+#include "components/device/oculus/OculusMessages.hpp"
+#include "components/device/ping/PingProtocol.hpp"
+#include "components/device/wire/Network.hpp"
 #include "tests/device/ByteStrings.hpp"
 #include "tests/support/OculusDriver.hpp"
 #include "tests/support/Refused.hpp"

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "components/device/Protobuf.hpp"
-#include "components/device/Rip2.hpp"
+#include "components/device/sonar3d/Protobuf.hpp"
+#include "components/device/sonar3d/Rip2.hpp"
 
 namespace insonify::device {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "components/device/SeaNet.hpp"
+#include "components/device/micron/SeaNet.hpp"
 
 namespace insonify::device {
 namespace {

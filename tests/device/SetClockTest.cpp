@@ -5,12 +5,12 @@
 #include <deque>
 #include <functional>
 
-#include "components/device/MicronEmulator.hpp"
-#include "components/device/OculusEmulator.hpp"
 #include "components/device/OculusPing.hpp"
-#include "components/device/Ping1dEmulator.hpp"
-#include "components/device/Ping360Emulator.hpp"
-#include "components/device/Sonar3dEmulator.hpp"
+#include "components/device/micron/MicronEmulator.hpp"
+#include "components/device/oculus/OculusEmulator.hpp"
+#include "components/device/ping/Ping1dEmulator.hpp"
+#include "components/device/ping/Ping360Emulator.hpp"
+#include "components/device/sonar3d/Sonar3dEmulator.hpp"
 #include "tests/support/MicronDriver.hpp"
 
 namespace insonify::device {

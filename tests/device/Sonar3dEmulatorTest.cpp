@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "components/device/Sonar3dEmulator.hpp"
+#include "components/device/sonar3d/Sonar3dEmulator.hpp"
 
 namespace insonify::device {
 namespace {

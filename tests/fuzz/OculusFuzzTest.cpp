@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/device/OculusEmulator.hpp"
 #include "components/device/OculusPing.hpp"
 #include "components/device/OculusRecording.hpp"
+#include "components/device/oculus/OculusEmulator.hpp"
 #include "tests/support/Fuzz.hpp"
 #include "types/ConfigError.hpp"
 

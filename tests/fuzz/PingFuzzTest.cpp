@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "components/device/Ping1dEmulator.hpp"
-#include "components/device/Ping360Emulator.hpp"
+#include "components/device/ping/Ping1dEmulator.hpp"
+#include "components/device/ping/Ping360Emulator.hpp"
 #include "tests/support/Fuzz.hpp"
 
 namespace insonify::fuzz {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "components/device/Rip2.hpp"
+#include "components/device/sonar3d/Rip2.hpp"
 #include "tests/support/Fuzz.hpp"
 
 namespace insonify::fuzz {

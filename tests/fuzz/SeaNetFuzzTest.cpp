@@ -1,7 +1,7 @@
 // Messages of a driver of a Micron, and the Micron's answers.
 #include <gtest/gtest.h>
 
-#include "components/device/MicronEmulator.hpp"
+#include "components/device/micron/MicronEmulator.hpp"
 #include "tests/support/Fuzz.hpp"
 
 namespace insonify::fuzz {

@@ -1,7 +1,7 @@
 // Requests of clients to the HTTP API of a Sonar 3D-15.
 #include <gtest/gtest.h>
 
-#include "components/device/Sonar3dEmulator.hpp"
+#include "components/device/sonar3d/Sonar3dEmulator.hpp"
 #include "tests/support/Fuzz.hpp"
 
 namespace insonify::fuzz {

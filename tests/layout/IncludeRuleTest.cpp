@@ -150,12 +150,12 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/gpu/Context.hpp", "types/Sonar.hpp"));
     EXPECT_TRUE(allowed("components/gpu/Context.cpp", "types/Thread.hpp"));
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/log/Reader.hpp"));
-    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/tasks/SonarTask.hpp"));
-    EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/renderer/SonarRenderer.hpp"));
+    EXPECT_FALSE(allowed("components/study/error/ErrorStudy.cpp", "components/sonar/tasks/SonarTask.hpp"));
+    EXPECT_TRUE(allowed("components/study/error/ErrorStudy.cpp", "components/sonar/renderer/SonarRenderer.hpp"));
     EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/console/Json.hpp"));
-    EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/study/ErrorStudy.hpp"));
-    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/console/Json.hpp"));
-    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/study/commands/StudyCommand.hpp"));
+    EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/study/error/ErrorStudy.hpp"));
+    EXPECT_FALSE(allowed("components/study/error/ErrorStudy.cpp", "components/console/Json.hpp"));
+    EXPECT_FALSE(allowed("components/study/error/ErrorStudy.cpp", "components/study/commands/StudyCommand.hpp"));
     EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/deployer/Pipeline.hpp"));
     EXPECT_FALSE(allowed("components/console/Json.cpp", "components/framework/Port.hpp"));
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/console/Json.hpp"));

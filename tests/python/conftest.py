@@ -11,3 +11,7 @@ INSONIFY = pathlib.Path(os.environ.get("INSONIFY_BUILD", ROOT / "build")) / "bin
 def deploy():
     """The folder with the deployments."""
     return ROOT / "deploy"
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: tests of many seconds, which scripts/test --quick omits")

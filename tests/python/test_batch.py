@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
+pytestmark = pytest.mark.slow
+
 QUICK = {"sonar.beam_count": 48, "sonar.bin_count": 100, "sonar.quality": {"rows": 32, "columns_per_beam": 1}}
 
 

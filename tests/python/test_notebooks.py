@@ -10,6 +10,8 @@ import sys
 import pytest
 from conftest import ROOT
 
+pytestmark = pytest.mark.slow
+
 for package in ("nbclient", "ipykernel", "matplotlib", "sklearn"):
     pytest.importorskip(package, reason=f"{package} is not installed; scripts/setup installs it")
 

@@ -7,6 +7,8 @@ import sys
 import pytest
 from conftest import INSONIFY, ROOT
 
+pytestmark = pytest.mark.slow
+
 BLOCKS = {
     page: re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     for page in ("README.md", "components/python/README.md")

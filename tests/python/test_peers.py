@@ -1,4 +1,4 @@
-"""The figures of scripts/peers on synthetic arrays with known answers, and Insonify's own adapter in a short form."""
+"""The figures of scripts/research/peers on synthetic arrays with known answers, and Insonify's own adapter in a short form."""
 
 import os
 import subprocess
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-PEERS = ROOT / "scripts/peers"
+PEERS = ROOT / "scripts/research/peers"
 sys.path.insert(0, str(PEERS))
 
 import case  # noqa: E402

@@ -12,6 +12,8 @@ import pytest
 from conftest import INSONIFY, ROOT
 from made_scenes import answer, insonify, make
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("manifold3d")
 
 PACKAGE = ROOT / "components/worlds/insonify_worlds"

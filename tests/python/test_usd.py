@@ -20,7 +20,7 @@ def converted(folder, body, metres=1, up="Z", name="scene.usda"):
 
 
 def run(folder, name):
-    done = subprocess.run([sys.executable, ROOT / "scripts/usd_to_glb", name, "out.glb"], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, ROOT / "scripts/scenes/usd_to_glb", name, "out.glb"], cwd=folder, capture_output=True, text=True)
     if done.returncode:
         return done, None
     done_scene = subprocess.run([INSONIFY, "scene", folder / "out.glb", "--json"], capture_output=True, text=True, check=True)

@@ -9,6 +9,8 @@ import pytest
 from conftest import ROOT
 from made_scenes import FloorGrid, Glb, answer, insonify, make, unbalanced_edges, volume
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("manifold3d")
 
 THINGS = {each["thing"]: each for each in json.loads(answer("scene", "make", "--list", "--json"))}

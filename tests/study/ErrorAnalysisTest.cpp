@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/study/ErrorAnalysis.hpp"
+#include "components/study/error/ErrorAnalysis.hpp"
 
 namespace insonify::study {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "components/study/ErrorAnalysis.hpp"
-#include "components/study/ErrorEffects.hpp"
-#include "components/study/ErrorReport.hpp"
-#include "components/study/ErrorStudy.hpp"
 #include "components/study/Probe.hpp"
+#include "components/study/error/ErrorAnalysis.hpp"
+#include "components/study/error/ErrorEffects.hpp"
+#include "components/study/error/ErrorReport.hpp"
+#include "components/study/error/ErrorStudy.hpp"
 
 namespace insonify::study {
 namespace {

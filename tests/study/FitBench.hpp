@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "components/study/FitReport.hpp"
-#include "components/study/RecordingFit.hpp"
 #include "components/study/Shapes.hpp"
+#include "components/study/fit/FitReport.hpp"
+#include "components/study/fit/RecordingFit.hpp"
 
 namespace insonify::study {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "components/study/LikenessReport.hpp"
 #include "components/study/Probe.hpp"
+#include "components/study/likeness/LikenessReport.hpp"
 #include "tests/study/FitBench.hpp"
 #include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"

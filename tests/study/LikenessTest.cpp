@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "components/study/Likeness.hpp"
-#include "components/study/LikenessReport.hpp"
+#include "components/study/likeness/Likeness.hpp"
+#include "components/study/likeness/LikenessReport.hpp"
 #include "tests/support/Paths.hpp"
 #include "types/Hash.hpp"
 

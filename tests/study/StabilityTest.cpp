@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "components/study/StabilityStudy.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Paths.hpp"
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "components/device/OculusMessages.hpp"
+#include "components/device/oculus/OculusMessages.hpp"
 #include "tests/support/Waiting.hpp"
 
 namespace insonify::test {

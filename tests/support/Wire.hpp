@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/wire/Bytes.hpp"
 #include "tests/support/Waiting.hpp"
 
 namespace insonify::device {

@@ -12,9 +12,9 @@
 #include "components/console/ProgressLine.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
-#include "components/study/ErrorEffects.hpp"
-#include "components/study/ErrorReport.hpp"
 #include "components/study/commands/StudyCommand.hpp"
+#include "components/study/error/ErrorEffects.hpp"
+#include "components/study/error/ErrorReport.hpp"
 #include "types/Ascii.hpp"
 #include "types/ConfigError.hpp"
 

@@ -8,9 +8,9 @@
 #include "components/console/Console.hpp"
 #include "components/console/ProgressLine.hpp"
 #include "components/deployer/FittedDeployment.hpp"
-#include "components/study/FitReport.hpp"
-#include "components/study/RecordingFit.hpp"
 #include "components/study/commands/StudyCommand.hpp"
+#include "components/study/fit/FitReport.hpp"
+#include "components/study/fit/RecordingFit.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {

@@ -9,8 +9,8 @@
 #include "components/console/OutputFolder.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/study/CodedPing.hpp"
-#include "components/study/LikenessReport.hpp"
 #include "components/study/commands/StudyCommand.hpp"
+#include "components/study/likeness/LikenessReport.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {

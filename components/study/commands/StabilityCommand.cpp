@@ -7,8 +7,8 @@
 
 #include "components/console/Console.hpp"
 #include "components/console/ProgressLine.hpp"
-#include "components/study/StabilityStudy.hpp"
 #include "components/study/commands/StudyCommand.hpp"
+#include "components/study/stability/StabilityStudy.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {

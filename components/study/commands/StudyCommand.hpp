@@ -6,9 +6,9 @@
 
 #include "components/console/Action.hpp"
 #include "components/console/Json.hpp"
-#include "components/study/ErrorAnalysis.hpp"
-#include "components/study/FitChain.hpp"
-#include "components/study/FitReport.hpp"
+#include "components/study/error/ErrorAnalysis.hpp"
+#include "components/study/fit/FitChain.hpp"
+#include "components/study/fit/FitReport.hpp"
 
 namespace insonify::study {
 
