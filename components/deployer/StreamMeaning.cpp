@@ -1,6 +1,5 @@
 #include "components/deployer/StreamMeaning.hpp"
 
-
 #include "components/deployer/ReplaySpec.hpp"
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/log/Reader.hpp"

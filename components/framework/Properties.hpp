@@ -32,7 +32,8 @@ public:
      *  property or resets it to its default. For the task's thread. Throws types::ConfigError when the value does not
      *  fit. Throws std::runtime_error when the task refuses the value. After a throw the old value stays. */
     void set(const std::string& name, const std::string& yaml) { setAll({{name, yaml}}); }
-    /** Sets several properties: all, or none. Dotted names reach into blocks. Returns a function that sets them back. */
+    /** Sets several properties: all, or none. Dotted names reach into blocks. Returns a function that sets them back.
+     */
     std::function<void()> setAll(const std::map<std::string, std::string>& values);
     /** Sets several properties to numbers, as setAll() does; none: removes a property or resets it to its default. */
     void change(const std::map<std::string, std::optional<double>>& values);

@@ -19,8 +19,7 @@ bool ReceiverTask::configureHook() {
 void ReceiverTask::takeSettings() {
     types::SonarSettings asked;
     if (settings.readNewest(asked, false) != framework::FlowStatus::NewData) return;
-    if (std::isfinite(asked.gain_db) && asked.gain_db != config->gain_db)
-        config.change({{"gain_db", asked.gain_db}});
+    if (std::isfinite(asked.gain_db) && asked.gain_db != config->gain_db) config.change({{"gain_db", asked.gain_db}});
 }
 
 void ReceiverTask::updateHook() {

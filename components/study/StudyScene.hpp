@@ -36,8 +36,8 @@ const std::vector<SceneMaker>& computedScenes();
  *  it, 8 deg down: 128 beams over 90 x 20 deg, 400 bins to 40 m. */
 StudyScene roughFloor(int points = 512);
 
-/** Returns the scene of scripts/scenes/make_bench_scene.py: a rolling floor with 20 objects, seen at grazing angles, of 80,000
- *  triangles at 200 cells. Objects have the same places, with slightly different numbers of triangles. */
+/** Returns the scene of scripts/scenes/make_bench_scene.py: a rolling floor with 20 objects, seen at grazing angles, of
+ * 80,000 triangles at 200 cells. Objects have the same places, with slightly different numbers of triangles. */
 StudyScene benchFloor(int cells = 200);
 
 /** Returns the energies of all bins, [beam][bin], by the scene's truth. */

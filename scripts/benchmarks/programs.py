@@ -4,6 +4,7 @@ import subprocess
 import tempfile
 
 from benchmarks.common import BENCH, ROOT, fail
+from benchmarks.fans import GROWTH, scene
 
 
 def measure_ports(_options):
@@ -41,17 +42,21 @@ def show_logger(logger):
 
 def measure_oculus(options):
     """Results of oculus_bench for a driver that requests 512 x 1000 at 40 Hz from deploy/hil_oculus.yml
-    over TCP."""
-    command = [ROOT / "build/bin/oculus_bench", str(options.log_seconds)]
-    done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
-    if done.returncode != 0:
-        fail("oculus_bench", done.returncode)
-    return json.loads(done.stdout)
+    over TCP, and for one that changes settings."""
+    def measured(*arguments):
+        done = subprocess.run([ROOT / "build/bin/oculus_bench", str(options.log_seconds), *arguments], stdout=subprocess.PIPE, text=True)
+        if done.returncode != 0:
+            fail("oculus_bench", done.returncode)
+        return json.loads(done.stdout)
+    return measured() | {"changes": measured(scene(["--cells", GROWTH["1 M"]]))}
 
 
 def show_oculus(oculus):
     print(f"Oculus, 512 x 1000 codes of 16 bits at 40 Hz over TCP: {oculus['received']} pings received of "
           f"{oculus['asked']:.0f} requested in {oculus['seconds']:.0f} s, {oculus['mb_per_s']:.1f} MB/s")
+    for row in oculus["changes"]:
+        print(f"  {row['changed'] + ' changed each second':32} median {row['median_ms']:7.1f} ms, after a change at most "
+              f"{row['after_change_ms']:7.1f}: {row['after_change_ms'] / row['median_ms']:.2f} times")
 
 
 def measure_ways(options):

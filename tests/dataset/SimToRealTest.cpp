@@ -21,6 +21,7 @@ TEST(SimToRealTest, HalvesNeverShareAFilmAndWrongInputIsOneError) {
 
 TEST(SimToRealTest, TrainingVariesCropsAndUsesSizes) {
     if (!insonify::pythonHas("torch, skimage, sklearn"))
-        GTEST_SKIP() << "python lacks torch, scikit-image or scikit-learn; scripts/research/sim_to_real_requirements.txt has it";
+        GTEST_SKIP()
+            << "python lacks torch, scikit-image or scikit-learn; scripts/research/sim_to_real_requirements.txt has it";
     expectPasses("check_sim_to_real_training.py");
 }

@@ -67,19 +67,20 @@ struct WorkersTest : EngineTest, testing::WithParamInterface<Engine> {
     std::vector<std::string> byWorkers(const std::string& program, int workers,
                                        const std::vector<std::string>& command) const {
         // Engines give up if a slow machine takes long to start them, and Ray leaves its session and a token behind.
-        std::vector<std::string> words = {"env",
-                                          "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT=600s",
-                                          "RAY_raylet_start_wait_time_s=600",
-                                          "RAY_TMPDIR=" + folder_.path().string(),
-                                          "RAY_AUTH_MODE=disabled",
-                                          insonify::python(),
-                                          sourceFile(std::string("scripts/dataset_") + GetParam().name + ".py"),
-                                          "--shards",
-                                          std::to_string(shard_count),
-                                          "--workers",
-                                          std::to_string(workers),
-                                          "--",
-                                          program};
+        std::vector<std::string> words = {
+            "env",
+            "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT=600s",
+            "RAY_raylet_start_wait_time_s=600",
+            "RAY_TMPDIR=" + folder_.path().string(),
+            "RAY_AUTH_MODE=disabled",
+            insonify::python(),
+            sourceFile(std::string("scripts/research/dataset_") + GetParam().name + ".py"),
+            "--shards",
+            std::to_string(shard_count),
+            "--workers",
+            std::to_string(workers),
+            "--",
+            program};
         words.insert(words.end(), command.begin(), command.end());
         return words;
     }

@@ -131,7 +131,8 @@ TEST(PropertiesTest, NumbersChangeTogetherOrNotAtAllAndDottedNamesReachIntoBlock
         }
         return "";
     };
-    EXPECT_THAT(refusal({{"bins", 8}, {"rang", 5}}), testing::HasSubstr("rang: is not a key here; did you mean range?"));
+    EXPECT_THAT(refusal({{"bins", 8}, {"rang", 5}}),
+                testing::HasSubstr("rang: is not a key here; did you mean range?"));
     EXPECT_THAT(refusal({{"range", std::nan("")}}), testing::HasSubstr("must be a finite number"));
     EXPECT_THAT(refusal({{"always", 1}, {"always.mean", 2}}), testing::HasSubstr("is given as a block and as a value"));
     EXPECT_THAT(refusal({{"always.mean", 2}, {"bins", 1.5}}), testing::HasSubstr("must be a whole number"));

@@ -77,7 +77,8 @@ TEST(RandomKindTest, TheMirrorImageOfASceneHasTheMirrorImageOfItsPings) {
 /** The renderer keeps its data of the scene when properties change. */
 TEST(RandomKindTest, ASonarWhosePropertiesChangePingsAsOneMadeWithThem) {
     forEachSonar(2 * few, [](const RandomSonar& drawn, Draw& draw) {
-        RandomSonar from = drawn, to = test::randomSonar(static_cast<uint64_t>(drawn.kind) + 6000 + static_cast<uint64_t>(draw.upTo(100) * test::kinds));
+        RandomSonar from = drawn, to = test::randomSonar(static_cast<uint64_t>(drawn.kind) + 6000 +
+                                                         static_cast<uint64_t>(draw.upTo(100) * test::kinds));
         if (draw.once(2)) from = withPaths(from, draw);
         if (draw.once(2)) to = withPaths(to, draw);
         if (drawn.kind == Kind::Scanning) to.properties["head"] = from.properties["head"];  // stays where it is

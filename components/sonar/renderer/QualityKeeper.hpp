@@ -129,8 +129,8 @@ private:
     double per_change_ = 0;        ///< Predicted error per difference to a coarser ping [1].
     std::optional<Quality> next_;  ///< Quality of the next ping, where it is another.
     bool chosen_ = false, missed_ = false, late_reported_ = false;
-    bool steady_ = false;       ///< Whether settings have changed: the quality only moves in steps.
-    bool approaching_ = false;  ///< Whether each ping is evaluated, since the last change of settings.
+    bool steady_ = false;          ///< Whether settings have changed: the quality only moves in steps.
+    bool approaching_ = false;     ///< Whether each ping is evaluated, since the last change of settings.
     int64_t pings_ = 0;            ///< Pings with an echo [1].
     double received_samples_ = 0;  ///< Samples per beam of all pings with an echo [1].
     double choosing_ = 0;          ///< Samples per beam of all choices [1].

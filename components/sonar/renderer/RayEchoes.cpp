@@ -240,8 +240,7 @@ void RayEchoes::takeLaws() {
     places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
     std::vector<MeshFacts::Facets> facets;
     for (size_t i = 0; i < geometry_->meshes.size(); ++i)
-        facets.push_back(
-            MeshFacts::of(geometry_->meshes.shared(i))->facets(worldFromMesh(*geometry_, i), plan_.laws));
+        facets.push_back(MeshFacts::of(geometry_->meshes.shared(i))->facets(worldFromMesh(*geometry_, i), plan_.laws));
     facets_ = std::move(facets);
     reverberation_ = Reverberation(plan_, *geometry_, facets_);
     surface_maps_.reset();

@@ -26,13 +26,13 @@ namespace insonify::sonar {
  *
  *  The renderer is made at the first ping, when the geometry is known. When the geometry changes, the renderer keeps
  *  its threads, its quality and its data of meshes that are still in use. When a property changes, such as the range
- *  that a driver requests, it keeps its threads, its quality and its data of the scene. A scene that cannot be rendered leads to
- *  RunTimeError, from which the next good ping recovers. In realtime a ping is written once the last echo of its range
- *  has arrived. That is 2 range / c after its snapshot's time on the deployment's clock, or after the task took it,
- *  whichever is later. Pings thus never overlap. A ping that is still waiting for echoes at the stop is not written.
- *  Pings closer in time than the travel time to the range and back are rendered independently, and a notice reports
- *  them. The quality is given, or a QualityKeeper chooses and keeps it. In realtime its default budget is the period of
- *  the pings, from their time stamps.
+ *  that a driver requests, it keeps its threads, its quality and its data of the scene. A scene that cannot be rendered
+ * leads to RunTimeError, from which the next good ping recovers. In realtime a ping is written once the last echo of
+ * its range has arrived. That is 2 range / c after its snapshot's time on the deployment's clock, or after the task
+ * took it, whichever is later. Pings thus never overlap. A ping that is still waiting for echoes at the stop is not
+ * written. Pings closer in time than the travel time to the range and back are rendered independently, and a notice
+ * reports them. The quality is given, or a QualityKeeper chooses and keeps it. In realtime its default budget is the
+ * period of the pings, from their time stamps.
  *
  *  `truth` and `returns` describe what the bins of each ping show, while one of them is connected. Otherwise nothing is
  *  computed for them; the bins are the same either way. `elements` contains the signal of each element of a straight
