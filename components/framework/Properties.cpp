@@ -25,7 +25,7 @@ bool insert(YAML::Node block, const std::string& name, const YAML::Node& value) 
     const std::string key = name.substr(0, dot);
     const YAML::Node known = child(block, key);
     if (dot == std::string::npos) {
-        if (known.IsDefined()) return false;
+        if (known.IsDefined()) block.remove(key);
         block.force_insert(key, value);
         return true;
     }

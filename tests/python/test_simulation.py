@@ -407,7 +407,7 @@ time.sleep(0.01)
 def test_settings_between_steps_give_the_pings_of_overrides(deploy):
     fixed = {"sonar.quality": {"rows": 64, "columns_per_beam": 2}, "sonar.visibility": "cpu"}
     changed = insonify.Simulation(deploy / "minimal.yml", overrides=fixed)
-    first = changed.step(insonify.Pose())
+    first = changed.step(HERE)
     draw = np.random.default_rng(5)
     for _ in range(6):
         values = {"sonar.range": float(draw.uniform(5, 30)), "sonar.bin_count": int(draw.integers(50, 300)),
@@ -415,24 +415,25 @@ def test_settings_between_steps_give_the_pings_of_overrides(deploy):
                   "sonar.absorption": {"db_per_m": float(draw.uniform(0, 0.3))},
                   "sonar.quality.rows": int(draw.integers(16, 128))}
         changed.set(values)
-        ping = changed.step(insonify.Pose())
-        made = insonify.Simulation(deploy / "minimal.yml", overrides=fixed | values).step(insonify.Pose())
+        ping = changed.step(HERE)
+        made = insonify.Simulation(deploy / "minimal.yml", overrides=fixed | values).step(HERE)
         assert np.array_equal(ping.bins, made.bins) and np.array_equal(ping.ranges, made.ranges)
     changed.reset()
-    assert np.array_equal(changed.step(insonify.Pose()).bins, made.bins), "they stay after a reset"
-    changed.set(dict.fromkeys(values) | {"sonar.quality": fixed["sonar.quality"]})
-    assert np.array_equal(changed.step(insonify.Pose()).bins, first.bins), "None: the default again"
+    assert np.array_equal(changed.step(HERE).bins, made.bins), "they stay after a reset"
+    del values["sonar.quality.rows"]
+    changed.set(dict.fromkeys(values) | {"sonar.quality": {"rows": 9}, "sonar.quality.rows": 64})  # the inner name prevails
+    assert np.array_equal(changed.step(HERE).bins, first.bins), "None: the default again"
 
 
 def test_wrong_settings_change_nothing_and_are_reported_as_overrides(deploy):
     sim = insonify.Simulation(deploy / "minimal.yml", overrides={"sonar.quality": {"rows": 64, "columns_per_beam": 2}})
-    before = sim.step(insonify.Pose()).bins
+    before = sim.step(HERE).bins
     for values in ({"sonar.range": -3}, {"sonar.rang": 3}, {"sona.range": 3}, {"sonar": 3}, {"sonar.activity.period": 1},
                    {"sonar.range": 9, "sonar.beam_count": 0}, {"sonar.range": 9, "sonar.quality": {"rws": 3}},
                    {"sonar.range": "far"}, {"sonar.bin_count": 2.5}, {"sonar.range": [1, 2]}):
         with pytest.raises(insonify.ConfigError) as live:
             sim.set(values)
-        assert np.array_equal(sim.step(insonify.Pose()).bins, before), values
+        assert np.array_equal(sim.step(HERE).bins, before), values
         with pytest.raises(insonify.ConfigError) as given:
             insonify.Simulation(deploy / "minimal.yml", overrides=values)
         if len(values) == 1 and "sonar" not in values:  # which also says that it could be a namespace
@@ -442,7 +443,7 @@ def test_wrong_settings_change_nothing_and_are_reported_as_overrides(deploy):
         sim.set({"scene.file": "other.glb"})
     with pytest.raises(TypeError, match="values: is a list"):
         sim.set([1])
-    assert np.array_equal(sim.step(insonify.Pose()).bins, before)
+    assert np.array_equal(sim.step(HERE).bins, before)
 
 
 def test_settings_of_a_batch_are_those_of_each(deploy):
@@ -451,7 +452,7 @@ def test_settings_of_a_batch_are_those_of_each(deploy):
     single = insonify.Simulation(deploy / "minimal.yml", overrides=fixed)
     for stepped in (batch, single):
         stepped.set({"sonar.range": 7.5})
-    bins = batch.step([insonify.Pose()] * 3).bins
-    assert all(np.array_equal(each, single.step(insonify.Pose()).bins) for each in bins[:1])
+    bins = batch.step([HERE] * 3).bins
+    assert all(np.array_equal(each, single.step(HERE).bins) for each in bins[:1])
     with pytest.raises(insonify.ConfigError):
         batch.set({"sonar.range": -1})
