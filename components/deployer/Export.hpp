@@ -23,9 +23,9 @@ output::DisplayConfig displayFor(const log::Reader& log, const log::Stream& stre
 std::vector<std::filesystem::path> exportPictures(log::Reader& log, const std::string& stream,
                                                   const std::filesystem::path& path, bool along_ground = false);
 
-/** Writes the lines of a side-scan as an XTF file (recordings/Xtf.hpp): 16-bit whole numbers where the log records the bins
- *  as codes, else the bins unchanged. Each line has the pose at its time, or the last pose before it. A vehicle's pose
- *  is transformed to the sonar by the mount in the log.
+/** Writes the lines of a side-scan as an XTF file (recordings/Xtf.hpp): 16-bit whole numbers where the log records the
+ * bins as codes, else the bins unchanged. Each line has the pose at its time, or the last pose before it. A vehicle's
+ * pose is transformed to the sonar by the mount in the log.
  *  @param poses stream of the poses of the sonar or its vehicle; empty: the only stream of poses, or the only one that
  *  a sonar writes. Without poses the file has no positions, which is reported on stderr. Altitudes are those of the
  *  only stream of ranges.

@@ -8,9 +8,9 @@
 #include "components/deployer/FanImport.hpp"
 #include "components/deployer/RecordedLog.hpp"
 #include "components/loader/ComponentLibrary.hpp"
+#include "components/pose/TrajectoryTask.hpp"
 #include "components/recordings/FanFile.hpp"
 #include "components/recordings/SideScanFile.hpp"
-#include "components/pose/TrajectoryTask.hpp"
 #include "components/sonar/tasks/SideScanTask.hpp"
 #include "types/Range.hpp"
 
@@ -137,7 +137,7 @@ Imported importRecording(const fs::path& recording, std::optional<DeploymentSpec
         throw types::ConfigError(to.string(), "--to", "is the recording itself; the log must be another file");
     const auto import = recordings::openSideScan(recording) ? importSideScan
                         : recordings::openFan(recording)    ? importFan
-                                                        : importOculus;
+                                                            : importOculus;
     return import(recording, std::move(spec), to);
 }
 

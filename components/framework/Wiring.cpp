@@ -135,8 +135,8 @@ void Wiring::makeTasks() {
     }
 }
 
-/** Returns "; receiver::ReceiverTask has it" for a key that one or two other types have, because it was probably written
- *  into the wrong task; otherwise "". */
+/** Returns "; receiver::ReceiverTask has it" for a key that one or two other types have, because it was probably
+ * written into the wrong task; otherwise "". */
 std::string Wiring::otherOwners(const std::string& key) const {
     constexpr size_t few = 2;
     std::vector<std::string> owners;

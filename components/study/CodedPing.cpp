@@ -239,10 +239,10 @@ std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, cons
     std::vector<CodedPing> pings;
     for (const fs::path& file : filesOf(names)) {
         const std::optional<LoggedPings> logged = readLog ? readLog(file) : std::nullopt;
-        for (CodedPing& coded : logged                       ? pingsOfLog(*logged, assumed)
+        for (CodedPing& coded : logged                           ? pingsOfLog(*logged, assumed)
                                 : recordings::openSideScan(file) ? pingsOfSideScan(file, assumed)
                                 : recordings::openFan(file)      ? pingsOfFan(file, assumed)
-                                                             : pingsOfOculus(file)) {
+                                                                 : pingsOfOculus(file)) {
             coded.file = file.string();
             const auto isSame = [&](const CodedPing& other) {
                 return other.name == coded.name && other.codes == coded.codes;

@@ -56,8 +56,8 @@ struct DeviceExportTest : testing::Test {
         return callInsonify(folder_, words);
     }
     json readXtf(const std::string& name) const {
-        return json::parse(
-            pythonSays(test::sourceFile("tests/recordings/read_xtf.py ") + (folder_ / name).string(), folder_ / "answer"));
+        return json::parse(pythonSays(test::sourceFile("tests/recordings/read_xtf.py ") + (folder_ / name).string(),
+                                      folder_ / "answer"));
     }
     void expectRefused(const std::string& stream, const std::string& to, std::vector<std::string> more,
                        const std::string& why, const std::string& log = "out/lines.0.log") const {

@@ -15,9 +15,7 @@ struct PictureBench : ::testing::Test {
         second_.port.connectTo(task_.*second, framework::ConnPolicy::buffer(100));
         task_.image.connectTo(out_.port, framework::ConnPolicy::buffer(100));
     }
-    void start() {
-        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
-    }
+    void start() { ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError(); }
     void give(const types::Sonar& ping) {
         pings_.port.write(std::make_shared<const types::Sonar>(ping));
         task_.update();

@@ -70,8 +70,8 @@ struct XtfTest : ::testing::Test {
     }
     /** Returns what PyPI's pyxtf reads from the file. */
     json readBack() {
-        return json::parse(pythonSays(test::sourceFile("tests/recordings/read_xtf.py ") + (folder_ / "line.xtf").string(),
-                                      folder_ / "answer"));
+        return json::parse(pythonSays(
+            test::sourceFile("tests/recordings/read_xtf.py ") + (folder_ / "line.xtf").string(), folder_ / "answer"));
     }
 
     Folder folder_;

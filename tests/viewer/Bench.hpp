@@ -50,9 +50,7 @@ struct Bench {
         viewer.config.set(std::move(config));
         viewer.environment().now = [] { return types::Time{3'500'000}; };
     }
-    void start() {
-        ASSERT_TRUE(viewer.configure() && viewer.start()) << viewer.lastError();
-    }
+    void start() { ASSERT_TRUE(viewer.configure() && viewer.start()) << viewer.lastError(); }
     void show(const types::SonarPtr& ping) {
         sonar.write(ping);
         viewer.update();

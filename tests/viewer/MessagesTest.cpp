@@ -49,7 +49,7 @@ TEST(MessagesTest, TheSonarInASnapshotIsInTheSameAxes) {
     EXPECT_NEAR(poseAs(ros::WorldFrame::Ned, sample).pose.position.z, 1, 1e-12);
 }
 
-// -- messages that Foxglove's panels draw ------------------------------------------------------------------------------
+// -- messages that Foxglove's panels draw --------------------------------------------------------------------------
 
 template <class Message>
 Message decoded(const Bytes& bytes) {

@@ -1,5 +1,5 @@
-#include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/multipath/ForeignEchoes.hpp"
+#include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
