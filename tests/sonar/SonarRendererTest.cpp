@@ -72,20 +72,19 @@ TEST(SonarRendererTest, ARasterisingSonarThatIsChangedRendersAsOneMadeSo) {
     all[5].bin_count = 123;
     all[6].deposit = Deposit::Gpu;
     all[7].visibility = Visibility::Cpu;
+    std::vector<std::vector<float>> made;  // first: one renderer on a thread at a time
+    for (const SonarConfig& config : all) made.push_back(test::pingOf(config, snapshot).bins);
     SonarRenderer changed(all[0], snapshot.geometry);
     types::Sonar ping;
-    std::set<std::vector<float>> seen;
     for (size_t i = 0; i < all.size(); ++i) {
         SCOPED_TRACE(i);
-        const std::vector<float> made = test::pingOf(all[i], snapshot).bins;
         changed.setConfig(all[i]);
         for (int again = 0; again < 2; ++again) {
             changed.render(snapshot, ping);
-            EXPECT_EQ(ping.bins, made);
+            EXPECT_TRUE(ping.bins == made[i]);
         }
-        seen.insert(made);
     }
-    EXPECT_GE(seen.size(), 6u) << "the settings matter";
+    EXPECT_GE(std::set(made.begin(), made.end()).size(), 6u) << "the settings matter";
 }
 
 TEST(SonarRendererTest, RejectsAnotherThread) {
