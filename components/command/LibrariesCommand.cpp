@@ -32,7 +32,7 @@ void addNeeded(const YAML::Node& node, std::set<std::string>& names) {
         }
     if (!node.IsDefined() || !node.IsScalar()) return;
     const scene::SceneFormat* const format = scene::findSceneFormat(node.Scalar());
-    if (format && !format->library.empty()) names.emplace(format->library);
+    if (format && !format->component.empty()) names.emplace(format->component);
     if (output::isVideo(node.Scalar())) names.insert("video");
 }
 

@@ -104,7 +104,7 @@ Scene readByExtension(const std::filesystem::path& file) {
                                  fmt::format("has extension \"{}\"; may be {}", extension, sceneEndings()));
     if (format->read) return format->read(file);
     Scene scene;
-    libraryReader(format->library, file)(file, scene);
+    libraryReader(format->component, file)(file, scene);
     return scene;
 }
 
@@ -116,7 +116,7 @@ const SceneFormat* findSceneFormat(const std::filesystem::path& file) { return t
 
 std::string sceneEndings(std::optional<std::string_view> library) {
     return types::alternativeEndings(all_formats,
-                                     [&](const SceneFormat& format) { return !library || format.library == *library; });
+                                     [&](const SceneFormat& format) { return !library || format.component == *library; });
 }
 
 const char* sceneFileMeaning() {

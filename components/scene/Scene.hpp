@@ -54,8 +54,8 @@ using SceneReader = Scene (*)(const std::filesystem::path& file);
 struct SceneFormat {
     std::string_view ending;        ///< In lower case: ".glb".
     const char* name = "";          ///< For users: "glTF".
-    SceneReader read = nullptr;     ///< Null: `library` reads it.
-    std::string_view library = {};  ///< The component library that reads it; empty: the core.
+    SceneReader read = nullptr;     ///< Null: `component` reads it.
+    std::string_view component = {};  ///< The component library that reads it; empty: the core.
 };
 std::span<const SceneFormat> sceneFormats();
 /** Returns the format of a file by its name; null: it has no ending of a scene. Does not look at the file. */

@@ -425,6 +425,21 @@ def test_settings_between_steps_give_the_pings_of_overrides(deploy):
     assert np.array_equal(changed.step(HERE).bins, first.bins), "None: the default again"
 
 
+def test_settings_of_noise_and_receiver_too(deploy):
+    fixed = {"sonar.quality": {"rows": 64, "columns_per_beam": 2}, "sonar.beam_count": 64, "sonar.bin_count": 200}
+    values = {"sonar.range": 17, "noise.speckle": {"law": "rayleigh"}, "noise.seed": 99, "receiver.gain_db": 6}
+    changed = insonify.Simulation(deploy / "harbour_fls.yml", overrides=fixed)
+    made = insonify.Simulation(deploy / "harbour_fls.yml", overrides=fixed | values)
+    changed.step(HERE), made.step(HERE)
+    changed.set(values)
+    for _ in range(3):
+        ping, other = changed.step(HERE), made.step(HERE)
+        assert np.array_equal(ping.bins, other.bins) and ping.bins.max() > 0
+    for simulation in (changed, made):
+        simulation.reset(seed=7)
+    assert np.array_equal(changed.step(HERE).bins, made.step(HERE).bins), "a seed that is given stays"
+
+
 def test_wrong_settings_change_nothing_and_are_reported_as_overrides(deploy):
     sim = insonify.Simulation(deploy / "minimal.yml", overrides={"sonar.quality": {"rows": 64, "columns_per_beam": 2}})
     before = sim.step(HERE).bins

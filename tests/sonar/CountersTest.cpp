@@ -101,7 +101,7 @@ TEST(CountersTest, CountsDoNotDependOnTheNumberOfThreads) {
         }
     });
     for (const Counter what : {Counter::Rays, Counter::OnwardRays, Counter::OcclusionRays, Counter::Cells,
-                               Counter::WallsPassed, Counter::MirrorPaths, Counter::Bins, Counter::PointTargets})
+                               Counter::WallsPassed, Counter::MirrorPaths, Counter::Bins, Counter::Targets})
         EXPECT_GT(in(all, what), 0u) << counter_meanings[static_cast<size_t>(what)].name;
 }
 

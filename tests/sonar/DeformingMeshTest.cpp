@@ -232,6 +232,30 @@ TEST_F(DeformingMeshTest, APingDoesNotDependOnThoseBeforeIt) {
     EXPECT_EQ(ping.bins, pingOf(eelFan(), plain).bins);
 }
 
+/** Also in a snapshot of the same shape, whose meshes would not be posed again. */
+TEST_F(DeformingMeshTest, OtherSettingsOfTheSonarKeepItsShape) {
+    types::Material smooth;
+    smooth.reflection = 0.7f;
+    smooth.roughness_slope = 0.1f;
+    const types::Snapshot bent = at(of(read(eelText(tube_)), smooth), 0.4);
+    for (const SonarConfig& config : {eelFan(), rasterisedFan(Deposit::Cpu), rasterisedFan(Deposit::Gpu)}) {
+        std::vector<SonarConfig> all(3, config);
+        for (SonarConfig& each : all) each.frequency_khz = 500;
+        all[1].frequency_khz = 120;
+        all[2].range *= 0.8;
+        std::vector<std::vector<float>> made;
+        for (const SonarConfig& each : all) made.push_back(pingOf(each, bent).bins);
+        EXPECT_NE(made[0], made[1]);
+        SonarRenderer renderer(all[0], bent.geometry);
+        types::Sonar ping;
+        for (const size_t i : {0, 1, 2, 0}) {
+            renderer.setConfig(all[i]);
+            renderer.render(bent, ping);
+            EXPECT_TRUE(ping.bins == made[i]) << i;
+        }
+    }
+}
+
 TEST_F(DeformingMeshTest, AnObjectThatIsScaledToNothingIsNotThere) {
     types::Snapshot snapshot = at(read(eelText(tube_)), 0.3);
     snapshot.targets = {{{1, 0, 0}, 0}};

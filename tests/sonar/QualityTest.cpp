@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "components/sonar/base/Counters.hpp"
+#include "components/sonar/renderer/Metrics.hpp"
 #include "components/sonar/renderer/Quality.hpp"
 #include "components/sonar/renderer/QualityKeeper.hpp"
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
@@ -227,30 +229,69 @@ TEST(QualityTaskTest, AStillSceneKeepsItsBitsAndItsPrediction) {
     }
 }
 
-/** From then on no ping is rendered many times: its cost is that of its own samples, and of one coarser ping. */
+/** What this thread has rendered: samples of pings, and of pings that they are compared with. */
+double renderedSamples() {
+    return static_cast<double>(thread_counts[static_cast<size_t>(Counter::Rays)] +
+                               thread_counts[static_cast<size_t>(Counter::Pixels)]);
+}
+
+/** Returns the error of a ping, by one of a sonar with many samples, as the quality predicts it. */
+double trueError(const types::Sonar& ping, SonarConfig config, const types::Snapshot& snapshot) {
+    config.quality = {};
+    config.quality.rows = 1500;
+    config.quality.columns_per_beam = 96;
+    types::Sonar fine;
+    SonarRenderer(config, snapshot.geometry).render(snapshot, fine);
+    const std::vector<double> reference(fine.bins.begin(), fine.bins.end());
+    return compare(ping.bins, reference, {config.beam_count, config.bin_count, ping.binWidth(), 0}).rel_l2_tvg;
+}
+
+/** A ping may cost half more than the one before, and a comparison with a coarser one, 0.3 of it. */
 TEST(QualityTaskTest, ChangedSettingsKeepTheQualityAndMoveItInSmallSteps) {
     const auto scene = floorAndWall();
-    Fed<SonarTask> sonar(small());
+    SonarConfig config = small();
+    config.visibility = Visibility::Cpu;
+    Fed<SonarTask> sonar(config);
     for (int i = 0; i < 5; ++i) sonar.ping(outwards(scene));
     double before = sonar.quality().samples();
     EXPECT_GT(before, 4 * Quality().samples());
+    const auto ping = [&](const types::Snapshot& snapshot) {
+        const double rendered = renderedSamples();
+        const types::SonarPtr made = sonar.ping(snapshot);
+        EXPECT_TRUE(made) << sonar.task.lastError();
+        const double samples = sonar.quality().samples();
+        EXPECT_LE(samples, 1.5 * before);
+        EXPECT_LE(renderedSamples() - rendered, 1.35 * 16 * samples) << "it was searched for";
+        before = samples;
+        return made;
+    };
     const char* ranges[] = {"12", "45", "20", "30"};
-    size_t off = 0, pings = 0;
     for (int second = 0; second < 20; ++second) {
         sonar.task.config.set("range", ranges[second % 4]);
         if (second % 3 == 0) sonar.task.config.change({{"speed_of_sound", 1450 + second}, {"frequency_khz", 300}});
         for (int i = 0; i < 10; ++i) {
-            const types::Snapshot snapshot = outwards(scene);
-            const types::SonarPtr ping = sonar.ping(snapshot);
-            ASSERT_TRUE(ping) << sonar.task.lastError();
-            const double samples = sonar.quality().samples();
-            EXPECT_LE(samples, 1.5 * before) << second << ", " << i;
-            before = samples;
-            ++pings;
-            off += i > 5 && sonar.quality().error > 1.2 * 0.05;
+            const types::SonarPtr made = ping(outwards(scene));
+            EXPECT_LE(sonar.quality().error, i > 5 ? 1.2 * 0.05 : 1) << "within five pings";
+            if (i < 9) continue;
+            EXPECT_LE(trueError(*made, sonar.task.sonarConfig(), outwards(scene)), 1.2 * 0.05) << second;
         }
     }
-    EXPECT_EQ(off, 0u) << "of " << pings << ": within five pings the prediction is at the target";
+    const double outside = before;
+    for (int i = 0; i < 400; ++i) ping(toTheWall(scene));
+    const double inside = before;
+    EXPECT_LT(inside, 0.5 * outside) << "it falls where fewer samples will do";
+    for (int i = 0; i < 40; ++i) ping(outwards(scene));
+    EXPECT_LE(sonar.quality().error, 1.2 * 0.05);
+    EXPECT_GT(before, 2 * inside) << "and rises again";
+}
+
+TEST(ErrorModelTest, AnErrorMayBeSetAlsoWhereThereWasNone) {
+    const ErrorModel model{{64, 4, 0.7}, 0.03, 0.04};
+    EXPECT_NEAR(model.withError(0.1).error(64, 4), 0.1, 1e-15);
+    EXPECT_NEAR(model.withError(0.1).error(128, 4), std::hypot(0.03, 0.08), 1e-15) << "in the same proportion";
+    EXPECT_EQ(model.withError(0.1).at.error, 0.1);
+    EXPECT_NEAR((ErrorModel{{64, 4, 0}}.withError(0.1).error(128, 8)), 0.05, 1e-15);
+    EXPECT_EQ(model.withError(0).withError(0.2).error(64, 4), (ErrorModel{{64, 4, 0}}.withError(0.2).error(64, 4)));
 }
 
 TEST(QualityTaskTest, OtherChoicesOfQualityAreMadeAnew) {

@@ -87,15 +87,17 @@ TEST(RandomKindTest, ASonarWhosePropertiesChangePingsAsOneMadeWithThem) {
         nearer.properties["speed_of_sound"] = fmt::format("{:.2f}", draw.between(1400, 1560));
         nearer.properties["frequency_khz"] = fmt::format("{:.1f}", draw.between(100, 900));
         const types::Snapshot scene = from.scene();
-        test::SonarBench changed(from);
+        const bool with_truth = draw.once(2);
+        test::SonarBench changed(from, 2, with_truth);
         changed.pingsOf(scene);
         int turns = 1;  // of a head, which goes on where it is
         const RandomSonar* before = &from;
         for (const RandomSonar* now : {&to, &nearer, &from}) {
-            test::SonarBench made(*now);
+            test::SonarBench made(*now, 2, with_truth);
             for (int turn = 0; turn < turns; ++turn) made.pingsOf(scene);
             changed.change(*before, *now);
             expectAlike(binsOf(changed.pingsOf(scene)), binsOf(made.pingsOf(scene)), 0);
+            EXPECT_TRUE(!with_truth || test::bitsOf(*changed.truth) == test::bitsOf(*made.truth)) << "truth";
             before = now;
             ++turns;
         }

@@ -8,6 +8,7 @@
 
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/tasks/SonarTask.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -55,20 +56,9 @@ constexpr Way ways[] = {{"Rays", Visibility::Cpu, Deposit::Auto},
                         {"Drawn", Visibility::Gl, Deposit::Cpu},
                         {"DrawnAndDepositedOnTheDevice", Visibility::Gl, Deposit::Gpu}};
 
-class SonarTruthTest : public testing::TestWithParam<Way> {};
+using test::bitsOf;
 
-/** Returns all numbers of a truth, as bits: NaN equals NaN. */
-std::vector<uint32_t> bitsOf(const types::SonarTruth& truth) {
-    std::vector<uint32_t> all;
-    types::SonarTruth::forEachArray(truth, [&](const char*, const auto& numbers, auto) {
-        for (const auto number : numbers)
-            if constexpr (std::is_same_v<decltype(number), const float>)
-                all.push_back(std::bit_cast<uint32_t>(number));
-            else
-                all.push_back(static_cast<uint32_t>(number));
-    });
-    return all;
-}
+class SonarTruthTest : public testing::TestWithParam<Way> {};
 
 /** A bottom 3 m below a level sonar: at slant range r it is at the depression asin(3 / r), which is also its grazing
  *  angle. With bins of 0.1 m and samples of 0.1 deg the mean is within 3 mrad. */

@@ -1,5 +1,6 @@
 #pragma once
 // Pings built in code, and numbers that compare pings.
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -7,6 +8,7 @@
 
 #include "types/Angle.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarTruth.hpp"
 
 namespace insonify::test {
 
@@ -56,5 +58,18 @@ inline double relativeL2(const types::Sonar& got, const types::Sonar& expected) 
 }
 
 inline double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
+
+/** Returns all numbers of a truth, as bits: NaN equals NaN. */
+inline std::vector<uint32_t> bitsOf(const types::SonarTruth& truth) {
+    std::vector<uint32_t> all;
+    types::SonarTruth::forEachArray(truth, [&](const char*, const auto& numbers, auto) {
+        for (const auto number : numbers)
+            if constexpr (std::is_same_v<decltype(number), const float>)
+                all.push_back(std::bit_cast<uint32_t>(number));
+            else
+                all.push_back(static_cast<uint32_t>(number));
+    });
+    return all;
+}
 
 }  // namespace insonify::test

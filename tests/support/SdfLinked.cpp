@@ -5,7 +5,7 @@ namespace {
 
 [[maybe_unused]] const bool linked = [] {
     for (const insonify::scene::SceneFormat& format : insonify::scene::sceneFormats())
-        if (format.library == "sdf") insonify::scene::addFormat(std::string(format.ending), insonify::sdf::readSdf);
+        if (format.component == "sdf") insonify::scene::addFormat(std::string(format.ending), insonify::sdf::readSdf);
     return true;
 }();
 

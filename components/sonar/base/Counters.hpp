@@ -17,7 +17,7 @@ enum class Counter : size_t {
     WallsPassed,
     MirrorPaths,
     Bins,
-    PointTargets,
+    Targets,
     Edges
 };
 inline constexpr size_t counter_count = 12;
@@ -37,7 +37,7 @@ inline constexpr std::array<CounterMeaning, counter_count> counter_meanings{{
     {"walls_passed", "deposit", "walls that rays have passed"},
     {"mirror_paths", "deposit", "paths by mirrors with an echo, each way counted"},
     {"bins", "beams", "bins that are filled, of azimuth cells where beams are formed of them"},
-    {"point_targets", "beams", "point targets with an echo"},
+    {"targets", "beams", "targets without extent that have an echo"},
     {"edges", "beams", "straight edges with an echo"},
 }};
 

@@ -30,7 +30,7 @@ public:
         if (all_ == 0) return;
         if (!targets_) targets_.emplace(plan_, *geometry_);
         received_ = targets_->add(ping);
-        count(Counter::PointTargets, received_);
+        count(Counter::Targets, received_);
     }
     size_t received() const override { return received_; }
     std::optional<Omitted> omissions() const override {

@@ -92,6 +92,7 @@ gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_
 
 SurfaceScene::SurfaceScene(const types::Geometry& geometry, const MaterialLaws& laws, bool with_normal_maps)
     : with_normal_maps_(with_normal_maps),
+      laws_{laws.records, laws.wavelength, laws.sharp_turn},
       plane_list_(planesOf(geometry)),
       facet_list_(facetLobes(geometry, laws)),
       materials_(uploaded(laws.records)) {
@@ -130,6 +131,9 @@ void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {
 }
 
 void SurfaceScene::takeLaws(const types::Geometry& geometry, const MaterialLaws& laws) {
+    UsedLaws used{laws.records, laws.wavelength, laws.sharp_turn};
+    if (used == laws_) return;
+    laws_ = std::move(used);
     facet_list_ = facetLobes(geometry, laws);
     materials_ = uploaded(laws.records);
     triangles_ = {};

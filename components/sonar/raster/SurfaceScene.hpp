@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "components/gpu/Objects.hpp"
@@ -25,7 +27,7 @@ public:
     const std::vector<PlaneRecord>& planes() const { return plane_list_; }
     /** Returns the facet of each triangle; empty where no material has a lobe. */
     const std::vector<FacetRecord>& facets() const { return facet_list_; }
-    /** Switches to other laws of the same materials. */
+    /** Switches to the laws of the same materials in another plan. Uploads only what differs. */
     void takeLaws(const types::Geometry& geometry, const MaterialLaws& laws);
     /** Computes planes and facets of a mesh that has another shape now. Several threads may take different meshes. */
     void takeShape(const types::Geometry& geometry, const MaterialLaws& laws, size_t mesh);
@@ -45,7 +47,21 @@ private:
     /** Returns the number of the first triangle behind a mesh. */
     size_t endOf(size_t mesh) const;
 
+    /** The part of the laws that facets and materials depend on. */
+    struct UsedLaws {
+        std::vector<MaterialRecord> records;
+        std::optional<double> wavelength, sharp_turn;
+
+        bool operator==(const UsedLaws& other) const {
+            return wavelength == other.wavelength && sharp_turn == other.sharp_turn &&
+                   std::ranges::equal(records, other.records, [](const MaterialRecord& a, const MaterialRecord& b) {
+                       return a.values == b.values && a.law == b.law;
+                   });
+        }
+    };
+
     bool with_normal_maps_;
+    UsedLaws laws_;
     std::vector<std::vector<uint32_t>> sources_;  ///< Vertex of the mesh for each rasterised vertex, where it deforms.
     std::vector<MeshPlace> places_;
     std::vector<PlaneRecord> plane_list_;

@@ -60,6 +60,13 @@ ErrorModel ErrorModel::scaled(double factor) const {
     return {{at.rows, at.columns_per_beam, at.error * factor}, of_rows * factor, of_columns * factor};
 }
 
+ErrorModel ErrorModel::withError(double error) const {
+    const double own = std::hypot(of_rows, of_columns);
+    ErrorModel model = own > 0 ? scaled(error / own) : ErrorModel{at, error / std::sqrt(2), error / std::sqrt(2)};
+    model.at.error = error;
+    return model;
+}
+
 QualityLadder::QualityLadder(const SonarConfig& config) {
     const Quality minimum;
     for (int i = 0; rows_.empty() || rows_.back() < max_rows; ++i)

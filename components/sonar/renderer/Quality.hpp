@@ -35,6 +35,8 @@ struct ErrorModel {
     ErrorModel movedTo(const Quality& other) const;
     /** Returns the model with all errors multiplied by `factor`. */
     ErrorModel scaled(double factor) const;
+    /** Returns the model with this error at its quality; in equal parts, where it has none. */
+    ErrorModel withError(double error) const;
 };
 
 /** The available qualities: 64 to 2048 rows, 9 % apart, with 2, 3, 4, 6, 8, 12 ... 256 columns per beam, up to what a

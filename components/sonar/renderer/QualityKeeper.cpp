@@ -166,8 +166,8 @@ double QualityKeeper::errorOf(double change) {
     if (change_ < 0) {  // the first look at a quality that was chosen for its time
         change_ = change;
         const double error = std::max(off_measure * per_change_ * change, min_error);
-        model_ = model_.scaled(error / model_.at.error);
-        measured_ = model_.at.error = error;
+        model_ = model_.withError(error);
+        measured_ = error;
     }
     const double fall = change < change_ ? change / change_ : 1, rise = std::max(0.0, change - change_);
     return measured_ * fall + std::max(per_change_, min_per_change) * rise;
@@ -185,10 +185,18 @@ void QualityKeeper::approach(SonarRenderer& renderer, const types::Snapshot& sce
 }
 
 void QualityKeeper::moveUp(double error) {
-    model_ = model_.scaled(error / model_.at.error);
+    model_ = model_.withError(error);
     const double max_samples = std::min(maxSamples(), max_move * model_.at.samples());
     const Quality next = ladder_.choose(model_, target_share * target_, max_samples, model_.at);
     if (next == model_.at) return;
+    next_ = next;
+    approaching_ = true;
+}
+
+void QualityKeeper::moveDown(double error) {
+    model_ = model_.withError(error);
+    const Quality next = ladder_.choose(model_, target_share * target_, maxSamples());
+    if (!(next.samples() < model_.at.samples())) return;
     next_ = next;
     approaching_ = true;
 }
@@ -211,12 +219,7 @@ void QualityKeeper::settle(SonarRenderer& renderer, const types::Snapshot& scene
     since_change_ = 0;
     model_.at.error = worst;
     const bool is_idle = worst <= well_within * target_ && worst <= has_fallen * measured_;
-    if (is_idle && steady_ && worst > 0) {
-        model_ = model_.scaled(worst / model_.at.error);
-        const Quality lower = ladder_.choose(model_, target_share * target_, maxSamples());
-        if (lower.samples() < model_.at.samples()) next_ = lower, approaching_ = true;
-        return;
-    }
+    if (is_idle && steady_) return moveDown(std::max(worst, min_error));
     if (!is_idle || model_.at == Quality() || !mayChoose()) return;
     const double look = worst > 0 ? std::max(error / worst, min_look) : 1;
     choose(renderer, scene, ping, target_ * look, {});

@@ -106,6 +106,8 @@ private:
     void approach(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping);
     /** Moves the next ping's quality towards an error at the target, from one that is predicted for this ping. */
     void moveUp(double error);
+    /** Sets the next ping's quality to the lowest whose error is within the target, from this ping's error. */
+    void moveDown(double error);
     void settle(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double error);
     /** Chooses the quality of the next ping for its time. */
     void keepBudget(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping, double ms,
