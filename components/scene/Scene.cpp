@@ -115,8 +115,8 @@ std::span<const SceneFormat> sceneFormats() { return all_formats; }
 const SceneFormat* findSceneFormat(const std::filesystem::path& file) { return types::findFormat(all_formats, file); }
 
 std::string sceneEndings(std::optional<std::string_view> library) {
-    return types::alternativeEndings(all_formats,
-                                     [&](const SceneFormat& format) { return !library || format.component == *library; });
+    return types::alternativeEndings(
+        all_formats, [&](const SceneFormat& format) { return !library || format.component == *library; });
 }
 
 const char* sceneFileMeaning() {

@@ -52,9 +52,9 @@ using SceneReader = Scene (*)(const std::filesystem::path& file);
 
 /** A format of scenes. Its files are recognised by their ending, in any case of letters. */
 struct SceneFormat {
-    std::string_view ending;        ///< In lower case: ".glb".
-    const char* name = "";          ///< For users: "glTF".
-    SceneReader read = nullptr;     ///< Null: `component` reads it.
+    std::string_view ending;          ///< In lower case: ".glb".
+    const char* name = "";            ///< For users: "glTF".
+    SceneReader read = nullptr;       ///< Null: `component` reads it.
     std::string_view component = {};  ///< The component library that reads it; empty: the core.
 };
 std::span<const SceneFormat> sceneFormats();
