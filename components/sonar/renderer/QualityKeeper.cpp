@@ -178,25 +178,16 @@ void QualityKeeper::approach(SonarRenderer& renderer, const types::Snapshot& sce
     change_ = -1;
     since_change_ = 0;
     worst_ = errorOf(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
-    if (target_ > 0 && worst_ > off_target * target_) moveUp(worst_);
+    if (target_ > 0 && worst_ > off_target * target_) move(worst_, max_move * model_.at.samples(), model_.at);
     if (!next_ && std::max(model_.at.samples() / reported_.samples(), reported_.samples() / model_.at.samples()) >
                       worth_reporting)
         reportChoice(scene);
 }
 
-void QualityKeeper::moveUp(double error) {
+void QualityKeeper::move(double error, double max_samples, const Quality& minimum) {
     model_ = model_.withError(error);
-    const double max_samples = std::min(maxSamples(), max_move * model_.at.samples());
-    const Quality next = ladder_.choose(model_, target_share * target_, max_samples, model_.at);
+    const Quality next = ladder_.choose(model_, target_share * target_, std::min(maxSamples(), max_samples), minimum);
     if (next == model_.at) return;
-    next_ = next;
-    approaching_ = true;
-}
-
-void QualityKeeper::moveDown(double error) {
-    model_ = model_.withError(error);
-    const Quality next = ladder_.choose(model_, target_share * target_, maxSamples());
-    if (!(next.samples() < model_.at.samples())) return;
     next_ = next;
     approaching_ = true;
 }
@@ -205,7 +196,7 @@ void QualityKeeper::watch(SonarRenderer& renderer, const types::Snapshot& scene,
     const double error = errorOf(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
     worst_ = std::max(worst_, error);
     const bool is_off = error > std::max(off_target * target_, off_prediction * measured_);
-    if (is_off && steady_) return moveUp(error);
+    if (is_off && steady_) return move(error, max_move * model_.at.samples(), model_.at);
     if (is_off && mayChoose()) {
         if (std::exchange(lowered_, false)) turns_ = std::min(more_patience * turns_, max_turns);
         return choose(renderer, scene, ping, target_, turn_ == 1 ? Quality() : model_.at);
@@ -219,7 +210,7 @@ void QualityKeeper::settle(SonarRenderer& renderer, const types::Snapshot& scene
     since_change_ = 0;
     model_.at.error = worst;
     const bool is_idle = worst <= well_within * target_ && worst <= has_fallen * measured_;
-    if (is_idle && steady_) return moveDown(std::max(worst, min_error));
+    if (is_idle && steady_) return move(std::max(worst, min_error), model_.at.samples());
     if (!is_idle || model_.at == Quality() || !mayChoose()) return;
     const double look = worst > 0 ? std::max(error / worst, min_look) : 1;
     choose(renderer, scene, ping, target_ * look, {});

@@ -104,10 +104,8 @@ private:
     bool isDue() const;
     /** Evaluates a ping after a change of settings or of the quality, and moves the quality towards the target. */
     void approach(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping);
-    /** Moves the next ping's quality towards an error at the target, from one that is predicted for this ping. */
-    void moveUp(double error);
-    /** Sets the next ping's quality to the lowest whose error is within the target, from this ping's error. */
-    void moveDown(double error);
+    /** Moves the next ping's quality towards the target, from this ping's error [1], within these samples per beam. */
+    void move(double error, double max_samples, const Quality& minimum = {});
     void settle(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double error);
     /** Chooses the quality of the next ping for its time. */
     void keepBudget(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping, double ms,
