@@ -11,6 +11,43 @@ namespace {
 
 using std::numbers::pi;
 
+double sinc(double u) { return u == 0 ? 1 : std::sin(pi * u) / (pi * u); }
+
+/** Moves u away from places where numerator and denominator are both 0: multiples of 1/2. */
+double betweenPoles(double u) {
+    constexpr double near = 1e-7;
+    const double off = std::remainder(u, 0.5);
+    return std::abs(u) > 0.25 && std::abs(off) < near ? u - off + near : u;
+}
+
+double hann(double u) { return sinc(u) / (1 - u * u); }
+
+double hamming(double u) {
+    constexpr double mean = 0.54, wave = 0.46;
+    return sinc(u) + wave / (2 * mean) * (sinc(u - 1) + sinc(u + 1));
+}
+
+double cosine(double u) { return std::cos(pi * u) / (1 - 4 * u * u); }
+
+double piston(double u) {
+    const double x = pi * std::abs(u);
+    return x < 1e-6 ? 1 : 2 * std::cyl_bessel_j(1.0, x) / x;
+}
+
+/** A Gaussian whose power is half at u = 1/2. */
+double gaussian(double u) { return std::exp2(-2 * u * u); }
+
+/** Chebyshev's polynomial of degree m. */
+double chebyshev(int m, double x) {
+    if (std::abs(x) <= 1) return std::cos(m * std::acos(x));
+    const double size = std::cosh(m * std::acosh(std::abs(x)));
+    return x < 0 && m % 2 ? -size : size;
+}
+
+constexpr long places_per_unit = 16;
+
+using std::numbers::pi;
+
 constexpr double default_sidelobe_db = -30;
 constexpr int default_nbar = 4;
 
@@ -87,6 +124,101 @@ Side sideOf(const std::function<double(double)>& power) {
 }
 
 }  // namespace
+
+Taper::Taper(Weighting weighting, double sidelobe_db, int nbar, int elements)
+    : weighting_(weighting), ratio_(std::pow(10, std::abs(sidelobe_db) / 20)), nbar_(nbar), elements_(elements) {}
+
+double Taper::amplitude(double u) const {
+    if (u == 0) return 1;
+    switch (weighting_) {
+        case Weighting::Uniform: return sinc(u);
+        case Weighting::Cosine: return cosine(betweenPoles(u));
+        case Weighting::Hann: return hann(betweenPoles(u));
+        case Weighting::Hamming: return hamming(u);
+        case Weighting::Taylor: return taylor(betweenPoles(u));
+        case Weighting::Dolph: return dolph(u);
+        case Weighting::Gaussian: return gaussian(u);
+        case Weighting::Piston: return piston(u);
+    }
+    return sinc(u);
+}
+
+/** Taylor 1955: the first nbar - 1 zeros of sinc moved to where Dolph's are. */
+double Taper::taylor(double u) const {
+    const double a = std::acosh(ratio_) / pi;
+    const double dilation = nbar_ / std::sqrt(a * a + (nbar_ - 0.5) * (nbar_ - 0.5));
+    double product = sinc(u);
+    for (int n = 1; n < nbar_; ++n) {
+        const double zero = dilation * std::sqrt(a * a + (n - 0.5) * (n - 0.5));
+        product *= (1 - u * u / (zero * zero)) / (1 - u * u / (n * n));
+    }
+    return product;
+}
+
+/** Dolph 1946, with elements at a spacing of L / elements. */
+double Taper::dolph(double u) const {
+    const int degree = elements_ - 1;
+    return chebyshev(degree, std::cosh(std::acosh(ratio_) / degree) * std::cos(pi * u / elements_)) / ratio_;
+}
+
+double Taper::halfPowerWidth() const {
+    constexpr double step = 0.01;
+    double low = 0, high = step;
+    for (; power(high) > 0.5; high += step) low = high;
+    for (int i = 0; i < 60; ++i) (power((low + high) / 2) > 0.5 ? low : high) = (low + high) / 2;
+    return low + high;
+}
+
+std::vector<double> elementWeights(size_t count, double aperture, const Taper& taper) {
+    std::vector<double> weights;
+    const auto terms = static_cast<size_t>(std::ceil(std::min(0.5 * static_cast<double>(count), aperture)));
+    const auto size = static_cast<double>(count);
+    for (size_t m = 0; m < count; ++m) {
+        const double place = (static_cast<double>(m) + 0.5) / size - 0.5;
+        double weight = 1;
+        for (size_t n = 1; n < terms; ++n)
+            weight += 2 * taper.amplitude(static_cast<double>(n)) *
+                      std::cos(2 * std::numbers::pi * static_cast<double>(n) * place);
+        weights.push_back(weight / size);
+    }
+    return weights;
+}
+
+double elementPlace(size_t element, size_t count) {
+    return (static_cast<double>(element) + 0.5) / static_cast<double>(count) - 0.5;
+}
+
+ElementField::ElementField(std::span<const std::complex<double>> parts)
+    : period_(static_cast<long>(parts.size()) * places_per_unit), sign_(parts.size() % 2 == 0 ? -1 : 1) {
+    table_.resize(static_cast<size_t>(period_));
+    for (size_t m = 0; m < parts.size(); ++m) {
+        if (parts[m] == 0.0) continue;
+        const double turns = elementPlace(m, parts.size()) / places_per_unit;
+        const std::complex<double> step = std::polar(1.0, 2 * std::numbers::pi * turns);
+        std::complex<double> turned = parts[m];
+        for (size_t place = 0; place < table_.size(); ++place) {
+            if (place % 256 == 0)  // so that rounding does not add up
+                turned = parts[m] * std::polar(1.0, 2 * std::numbers::pi * turns * static_cast<double>(place));
+            table_[place] += turned;
+            turned *= step;
+        }
+    }
+}
+
+std::complex<double> ElementField::entry(long place) const {
+    const long rest = place % period_, within = rest < 0 ? rest + period_ : rest;
+    const bool is_negative = sign_ < 0 && (place - within) / period_ % 2 != 0;
+    return is_negative ? -table_[static_cast<size_t>(within)] : table_[static_cast<size_t>(within)];
+}
+
+std::complex<double> ElementField::at(double u) const {
+    if (table_.empty()) return 0;
+    const double place = u * places_per_unit, low = std::floor(place), t = place - low;
+    const long first = static_cast<long>(low);
+    // Lagrange's cubic through the two places to either side.
+    return entry(first - 1) * (-t * (t - 1) * (t - 2) / 6) + entry(first) * ((t + 1) * (t - 1) * (t - 2) / 2) -
+           entry(first + 1) * ((t + 1) * t * (t - 2) / 2) + entry(first + 2) * ((t + 1) * t * (t - 1) / 6);
+}
 
 void BeamLaw::check(types::Diagnostics& diagnostics) const {
     const Weighting chosen = weightingOf(*this);

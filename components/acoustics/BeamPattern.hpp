@@ -1,12 +1,71 @@
 #pragma once
+#include <complex>
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "components/acoustics/Curve.hpp"
-#include "components/acoustics/Taper.hpp"
+#include "types/Describe.hpp"
 
 namespace insonify::acoustics {
+
+/** The weighting of the parts of an aperture, or of a band. */
+enum class Weighting { Uniform, Cosine, Hann, Hamming, Taylor, Dolph, Gaussian, Piston };
+
+/** The far field of a weighted aperture, or the response of the matched filter of a weighted band. It is the Fourier
+ *  transform of the weighting over u, 1 at 0. For a line of length L, u = L / wavelength sin(angle); for a disc L is
+ *  its diameter; for a band B, u is B times the delay. ACOUSTICS.md 5.8. */
+class Taper {
+public:
+    /** @param sidelobe_db depth of the sidelobes of Taylor and Dolph, either sign [dB]
+     *  @param nbar number of Taylor's equal sidelobes
+     *  @param elements number of elements of Dolph's array */
+    explicit Taper(Weighting weighting, double sidelobe_db = -30, int nbar = 4, int elements = 64);
+
+    double amplitude(double u) const;
+    double power(double u) const { return amplitude(u) * amplitude(u); }
+    /** Returns the width of the main lobe at half its power, both sides [u]. */
+    double halfPowerWidth() const;
+
+private:
+    double taylor(double u) const;
+    double dolph(double u) const;
+
+    Weighting weighting_;
+    double ratio_;  ///< Amplitude of the main lobe over that of the sidelobes [1].
+    int nbar_, elements_;
+};
+
+/** Returns the weights of adjacent equal elements whose far field is `taper`. They are its Fourier series with the far
+ *  field at whole u as coefficients (Woodward 1946), up to what the elements resolve and to directions that exist. They
+ *  sum up to 1. `aperture`: length of the array [wavelengths]. */
+std::vector<double> elementWeights(size_t count, double aperture, const Taper& taper);
+
+/** Returns the place of an element's middle, from -1/2 to 1/2 of the array's length [1]. */
+double elementPlace(size_t element, size_t count);
+
+/** The far field of elements, sum over m of part_m exp(2 pi i u place_m), from a table over u. The table has 16 values
+ *  per unit, interpolated by cubics: the error is at most 1e-4 of the sum of the magnitudes of the parts. */
+class ElementField {
+public:
+    /** Makes a field without elements: 0 everywhere. */
+    ElementField() = default;
+    explicit ElementField(std::span<const std::complex<double>> parts);
+
+    bool empty() const { return table_.empty(); }
+    /** Returns the field at u = length / wavelength (sin(angle) - sin(axis)), any number [1]. */
+    std::complex<double> at(double u) const;
+
+private:
+    std::complex<double> entry(long place) const;
+
+    long period_ = 0;  ///< Entries of the table after which the field, or its negative, repeats.
+    double sign_ = 1;  ///< Factor of the field from one period to the next, 1 or -1.
+    std::vector<std::complex<double>> table_;
+};
 
 /** The configuration of an array's pattern across one of its axes: a weighted aperture, or a measured table. */
 struct BeamLaw {
@@ -71,3 +130,9 @@ CutShape shapeOf(const std::function<double(double)>& power);
 double integralOverSine(const std::function<double(double)>& power);
 
 }  // namespace insonify::acoustics
+
+template <>
+struct insonify::types::EnumNames<insonify::acoustics::Weighting> {
+    static constexpr std::string_view names[] = {"uniform", "cosine", "hann",     "hamming",
+                                                 "taylor",  "dolph",  "gaussian", "piston"};
+};

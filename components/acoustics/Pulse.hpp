@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "components/acoustics/Taper.hpp"
+#include "components/acoustics/BeamPattern.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::acoustics {

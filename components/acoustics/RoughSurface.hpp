@@ -1,6 +1,6 @@
 #pragma once
-#include "components/acoustics/HalfSpace.hpp"
 #include "components/acoustics/Matter.hpp"
+#include "components/acoustics/Seabed.hpp"
 
 namespace insonify::acoustics {
 

@@ -1,10 +1,28 @@
 #pragma once
+#include <complex>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace insonify::acoustics {
+
+/** A fluid that fills the space below a plane. The ratios are to the water above [1]. */
+struct HalfSpace {
+    double density_ratio = 1, speed_ratio = 1;
+    double loss = 0;  ///< delta: imaginary over real part of the wave number [1].
+};
+HalfSpace halfSpaceOf(const Seabed& seabed);
+
+/** Returns kappa = (1 + i delta) / nu: the wave number in the half-space over that in the water [1]. */
+std::complex<double> waveNumberRatio(const HalfSpace& half_space);
+/** Returns Rayleigh's reflection coefficient of the sound pressure at a grazing angle [rad], with loss. A fast
+ *  half-space reflects totally below its critical angle arccos(1 / nu). ACOUSTICS.md 3.7. */
+std::complex<double> halfSpaceReflection(const HalfSpace& half_space, double grazing);
+/** Returns Y at a grazing angle [rad]: a slightly rough surface of spectrum W [m^4] scatters
+ *  4 k^4 sin^4 |Y|^2 W(2 k cos) back (Kuo 1964; ACOUSTICS.md 3.5). */
+std::complex<double> roughnessAmplitude(const HalfSpace& half_space, double grazing);
 
 /** The parameters of the seabed model of APL-UW TR 9407 (1994, section IV, table 1). Ratios are to the water above. */
 struct Seabed {
@@ -27,5 +45,43 @@ std::optional<Seabed> seabedNamed(std::string_view name);
 /** Returns the mean grain size of a name [phi]; none for rocks, cobble and gravel. */
 std::optional<double> grainSizeNamed(std::string_view name);
 std::vector<std::string> seabedNames();
+
+/** Backscattering cross section of a seabed after APL-UW TR 9407 (1994), section IV.C: its rough interface and its
+ *  volume. The interface uses Kirchhoff's approximation near the vertical and composite roughness elsewhere; a very
+ *  rough interface uses an empirical law. Valid for 10 to 100 kHz; accurate to about 3 dB for well-known sands, 10 dB
+ *  for rock. ACOUSTICS.md 3.5. */
+class SeabedBackscatter {
+public:
+    /** @param speed_of_sound in the water [m/s] */
+    SeabedBackscatter(const Seabed& seabed, double frequency_khz, double speed_of_sound);
+
+    /** Returns sigma_b at a grazing angle [rad], m^2 at 1 m per m^2 [1]. Angles below 0.001 deg count as 0.001 deg. */
+    double crossSection(double grazing) const;
+
+    /** Return the two parts whose sum is crossSection() [1]. */
+    double roughInterface(double grazing) const;
+    double volume(double grazing) const;
+    /** Return the laws that `roughInterface` blends [1]. */
+    double kirchhoff(double grazing) const;
+    double compositeRoughness(double grazing) const;
+    double largeRoughness(double grazing) const;
+
+private:
+    double perturbation(double grazing) const;
+    double volumeOfAPlane(double grazing) const;
+    double shadowing(double grazing) const;
+    double overSlopes(const std::function<double(double)>& section, double grazing) const;
+
+    Seabed seabed_;
+    double wave_number_;        ///< k in the water [1/cm].
+    double alpha_;              ///< gamma / 2 - 1 [1].
+    double slope_;              ///< s: rms slope of the relief that the wave finds smooth [1].
+    double structure_;          ///< q_c of Kirchhoff's approximation [1].
+    double a_, b_;              ///< a and b of the closed form of Kirchhoff's approximation [1].
+    double normal_reflection_;  ///< |R|^2 at normal incidence [1].
+};
+
+/** Returns the inputs outside the report's range, such as "750 kHz (10 to 100)"; empty when all are inside. */
+std::string outsideSeabedModel(double frequency_khz, double speed_of_sound);
 
 }  // namespace insonify::acoustics

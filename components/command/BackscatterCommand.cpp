@@ -13,7 +13,7 @@
 #include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/Matter.hpp"
 #include "components/acoustics/RoughSurface.hpp"
-#include "components/acoustics/SeabedBackscatter.hpp"
+#include "components/acoustics/Seabed.hpp"
 #include "components/command/CommandLine.hpp"
 #include "components/console/Console.hpp"
 #include "components/deployer/Json.hpp"

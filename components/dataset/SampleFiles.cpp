@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "components/log/NpzFile.hpp"
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "components/log/Writer.hpp"
 #include "components/output/PictureFiles.hpp"
 

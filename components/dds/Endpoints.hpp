@@ -5,7 +5,6 @@
 #include <string>
 
 #include "components/dds/Node.hpp"
-#include "components/dds/RawType.hpp"
 
 namespace insonify::dds {
 

@@ -7,7 +7,6 @@
 #include "components/dds/Node.hpp"
 #include "components/dds/ParameterServer.hpp"
 #include "components/dds/Publication.hpp"
-#include "components/dds/PublisherConfig.hpp"
 #include "components/framework/DynamicPorts.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"

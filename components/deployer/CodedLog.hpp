@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "components/receiver/ReceiverConfig.hpp"
+#include "components/receiver/Receiver.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "components/noise/NoiseConfig.hpp"
-#include "components/receiver/ReceiverConfig.hpp"
+#include "components/noise/Noise.hpp"
+#include "components/receiver/Receiver.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 #include "types/Mount.hpp"
 #include "types/Snapshot.hpp"

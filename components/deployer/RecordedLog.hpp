@@ -9,7 +9,7 @@
 
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/Tasks.hpp"
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "components/log/Writer.hpp"
 #include "components/logger/PropertyLog.hpp"
 #include "types/ConfigError.hpp"

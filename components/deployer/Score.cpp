@@ -11,7 +11,7 @@
 #include <ranges>
 
 #include "components/deployer/Export.hpp"
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "components/output/Canvas.hpp"
 #include "components/output/DiscImage.hpp"
 #include "components/output/FanImage.hpp"

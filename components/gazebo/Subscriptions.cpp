@@ -1,14 +1,66 @@
 #include "components/gazebo/Subscriptions.hpp"
 
-#include <algorithm>
-#include <utility>
+#include <gazebo_messages.pb.h>  // made by the build, of messages.proto
+#include <sys/eventfd.h>
+#include <unistd.h>
 
-#include "components/gazebo/Poses.hpp"
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <zmq.hpp>
+#include <zmq_addon.hpp>
+
+#include "components/gazebo/Discovery.hpp"
+#include "components/gazebo/Multicast.hpp"
 #include "components/gazebo/World.hpp"
 #include "types/ConfigError.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::gazebo {
 namespace {
+
+glm::dvec3 vectorOf(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+types::Pose poseOf(const wire::Pose& message, const types::Axes& axes) {
+    const wire::Quaternion& q = message.orientation();
+    types::Pose pose;
+    pose.position = axes.rockFromWorld(vectorOf(message.position()));
+    // A message omits the identity orientation.
+    const glm::dquat turned =
+        message.has_orientation() ? glm::dquat(q.w(), q.x(), q.y(), q.z()) : glm::dquat(1, 0, 0, 0);
+    pose.orientation = axes.rockFromOrientation(turned);
+    return pose;
+}
+
+std::optional<types::Time> stampOf(const wire::Header& header) {
+    constexpr int64_t latest = int64_t{1} << 40;  // [s]; more than 34,000 years
+    if (!header.has_stamp()) return {};
+    const int64_t seconds = header.stamp().sec();
+    if (seconds < -latest || seconds > latest) return {};
+    return types::Time{seconds * 1'000'000 + header.stamp().nsec() / 1000};
+}
+
+bool parse(std::string_view bytes, auto& message) {
+    return bytes.size() < size_t{1} << 31 && message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
+}
+
+using WorkerClock = std::chrono::steady_clock;
+constexpr int64_t max_message = int64_t{256} << 20;  // [bytes]
+constexpr int max_burst = 200;                       ///< Max messages that are read before datagrams of discovery.
+constexpr std::chrono::milliseconds period{1000};    ///< Between two heartbeats, the same for all programs.
+
+/** Returns the last two parts of a topic, such as "/pose/info". */
+std::string endingOf(const std::string& topic) {
+    const size_t last = topic.rfind('/');
+    const size_t before = last == std::string::npos || last == 0 ? last : topic.rfind('/', last - 1);
+    return before == std::string::npos ? topic : topic.substr(before);
+}
 
 /** Returns the entry for a message that is damaged or has a wrong type. */
 Arrived unread(size_t topic, const std::string& type, const std::string& wanted) {
@@ -20,6 +72,221 @@ Arrived unread(size_t topic, const std::string& type, const std::string& wanted)
 }
 
 }  // namespace
+
+std::optional<PoseMessage> readPoses(std::string_view bytes, types::WorldFrame frame) {
+    wire::PoseV message;
+    if (!parse(bytes, message)) return {};
+    const types::Axes axes{frame};
+    PoseMessage read{stampOf(message.header()), {}};
+    for (const wire::Pose& pose : message.pose()) read.entities.push_back({pose.name(), poseOf(pose, axes)});
+    return read;
+}
+
+std::optional<OdometryMessage> readOdometry(std::string_view bytes, types::WorldFrame frame) {
+    wire::Odometry message;
+    if (!parse(bytes, message)) return {};
+    const types::Axes axes{frame};
+    OdometryMessage read{stampOf(message.header()), poseOf(message.pose(), axes)};
+    types::Pose& pose = read.pose;
+    if (!message.has_twist() || !types::isUsable(pose)) return read;
+    pose.velocity = glm::normalize(pose.orientation) * axes.body(vectorOf(message.twist().linear()));
+    pose.angular_velocity = axes.body(vectorOf(message.twist().angular()));
+    return read;
+}
+
+FoundEntity findEntity(const PoseMessage& message, const std::string& name) {
+    FoundEntity found;
+    int count = 0;
+    for (const PoseMessage::Entity& entity : message.entities)
+        if (entity.name == name) {
+            found.pose = &entity.pose;
+            ++count;
+        }
+    if (count == 1) return found;
+    if (count == 0) return {nullptr, "no entity of that name"};
+    return {nullptr, "several entities of that name; those inside models have poses in their parents' frames"};
+}
+
+class Subscriber::Worker {
+public:
+    Worker(const TransportOptions& options, std::vector<Topic> topics)
+        : topics_(std::move(topics)),
+          multicast_(options, options.topic_port),
+          stop_(eventfd(0, EFD_CLOEXEC)),
+          has_publisher_(topics_.size()),
+          received_(topics_.empty() ? "" : endingOf(topics_[0].name)) {
+        socket_.set(zmq::sockopt::linger, 0);
+        socket_.set(zmq::sockopt::maxmsgsize, max_message);
+        for (size_t i = 0; i < topics_.size(); ++i) {
+            const auto name = qualifiedName(options.partition, topics_[i].name);
+            if (!name) {
+                close(stop_);
+                throw types::ConfigError("", std::to_string(i), "is no name of a topic");
+            }
+            names_.push_back(*name);
+            socket_.set(zmq::sockopt::subscribe, *name);
+        }
+        try {
+            thread_ = types::startThread("the topics of Gazebo", [this] { run(); });
+        } catch (...) {
+            close(stop_);
+            throw;
+        }
+    }
+    ~Worker() {
+        const uint64_t one = 1;
+        [[maybe_unused]] const auto written = write(stop_, &one, sizeof one);
+        thread_.join();
+        close(stop_);
+    }
+
+    bool hasPublisher(size_t topic) const { return has_publisher_[topic]; }
+    std::string received() const {
+        const std::lock_guard lock(mutex_);
+        return received_.text();
+    }
+
+private:
+    void run() {
+        auto next = WorkerClock::now();
+        for (bool continues = true; continues;) {
+            const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next - WorkerClock::now());
+            zmq::pollitem_t items[] = {{socket_.handle(), 0, ZMQ_POLLIN, 0},
+                                       {nullptr, multicast_.descriptor(), ZMQ_POLLIN, 0},
+                                       {nullptr, stop_, ZMQ_POLLIN, 0}};
+            try {
+                zmq::poll(items, std::size(items), std::max(wait, std::chrono::milliseconds{0}));
+                continues = !items[2].revents;
+                if (items[0].revents) readMessages();
+                if (items[1].revents) readDatagrams();
+                if (WorkerClock::now() < next) continue;
+                next = WorkerClock::now() + period;
+                announce();
+            } catch (const std::exception&) {
+                continue;  // a signal, or a message that is too large for the memory: lost
+            }
+        }
+        for (const auto& [address, publication] : publications_) connect(publication, false);
+        multicast_.send(goodbyeDatagram(process_));
+    }
+
+    /** Sends a heartbeat and the topics without a publisher. Forgets publishers that are silent. */
+    void announce() {
+        multicast_.send(aliveDatagram(process_));
+        for (size_t i = 0; i < names_.size(); ++i)
+            if (!has_publisher_[i]) multicast_.send(askDatagram(process_, names_[i]));
+        const auto oldest = WorkerClock::now() - std::chrono::duration<double>(silence_s);
+        for (auto each = last_received_.begin(); each != last_received_.end();) {
+            const auto [process, time] = *each++;
+            if (time < oldest) forget(process, "");
+        }
+    }
+
+    void readMessages() {
+        for (int i = 0; i < max_burst; ++i) {
+            std::vector<zmq::message_t> frames;
+            if (!zmq::recv_multipart(socket_, std::back_inserter(frames), zmq::recv_flags::dontwait)) return;
+            if (frames.size() < 4) continue;  // topic, sender's address, message, type
+            const auto name = std::ranges::find(names_, frames[0].to_string_view());
+            if (name == names_.end()) continue;  // a topic that only begins with the name
+            const Topic& topic = topics_[static_cast<size_t>(name - names_.begin())];
+            topic.use(messageName(frames[3].to_string()), frames[2].to_string_view());
+        }
+    }
+
+    void readDatagrams() {
+        while (const auto datagram = multicast_.receive()) {
+            std::optional<Announcement> news;
+            {
+                const std::lock_guard lock(mutex_);
+                news = readDatagram(datagram->bytes, process_, received_);
+            }
+            if (!news) continue;
+            const Publication& publication = news->publication;
+            switch (news->kind) {
+                case Announcement::Kind::Offer:
+                    if (!publication.is_for_host || datagram->is_from_here) follow(publication);
+                    break;
+                case Announcement::Kind::Withdrawal: forget(news->process, publication.topic); break;
+                case Announcement::Kind::Goodbye: forget(news->process, ""); break;
+                case Announcement::Kind::Alive: break;
+            }
+            if (const auto known = last_received_.find(news->process); known != last_received_.end())
+                known->second = WorkerClock::now();
+        }
+    }
+
+    /** Requests the messages of a publication, or ends the request. Repeated with each offer, because a datagram may be
+     *  lost and a publisher sends only to programs that have asked. */
+    void connect(const Publication& publication, bool begins) const {
+        multicast_.send(connectionDatagram(process_, node_, publication, begins));
+    }
+
+    void follow(const Publication& publication) {
+        if (publication.is_service || std::ranges::count(names_, publication.topic) == 0) return;
+        if (!publications_.contains({publication.address, publication.topic})) {
+            try {
+                if (!isConnected(publication.address)) socket_.connect(publication.address);
+            } catch (const zmq::error_t&) {
+                return;  // invalid address
+            }
+            publications_[{publication.address, publication.topic}] = publication;
+            last_received_[publication.process] = WorkerClock::now();
+            countPublishers();
+        }
+        connect(publication, true);
+    }
+
+    bool isConnected(const std::string& address) const {
+        return std::ranges::any_of(publications_, [&](const auto& each) { return each.first.address == address; });
+    }
+
+    /** Removes the publication of a topic; an empty topic means all topics of the process. */
+    void forget(const std::string& process, const std::string& topic) {
+        for (auto each = publications_.begin(); each != publications_.end();) {
+            const auto [key, publication] = *each;
+            if (publication.process != process || (!topic.empty() && publication.topic != topic)) {
+                ++each;
+                continue;
+            }
+            each = publications_.erase(each);
+            if (!isConnected(key.address)) zmq_disconnect(socket_.handle(), key.address.c_str());
+        }
+        if (topic.empty()) last_received_.erase(process);
+        countPublishers();
+    }
+
+    void countPublishers() {
+        for (size_t i = 0; i < names_.size(); ++i)
+            has_publisher_[i] =
+                std::ranges::any_of(publications_, [&](const auto& each) { return each.first.topic == names_[i]; });
+    }
+
+    struct Key {
+        std::string address, topic;
+        auto operator<=>(const Key&) const = default;
+    };
+
+    const std::vector<Topic> topics_;
+    std::vector<std::string> names_;  ///< Topics, with the partition.
+    const std::string process_ = makeUuid(), node_ = makeUuid();
+    Multicast multicast_;
+    zmq::context_t context_;
+    zmq::socket_t socket_{context_, zmq::socket_type::sub};
+    std::map<Key, Publication> publications_;                       ///< Publications that are received.
+    std::map<std::string, WorkerClock::time_point> last_received_;  ///< Time of the last datagram of their processes.
+    const int stop_;                                                ///< Becomes readable when the thread shall end.
+    std::vector<std::atomic<bool>> has_publisher_;                  ///< For each topic.
+    mutable std::mutex mutex_;
+    Received received_;
+    std::thread thread_;
+};
+
+Subscriber::Subscriber(const TransportOptions& options, std::vector<Topic> topics)
+    : worker_(std::make_unique<Worker>(options, std::move(topics))) {}
+Subscriber::~Subscriber() = default;
+bool Subscriber::hasPublisher(size_t topic) const { return worker_->hasPublisher(topic); }
+std::string Subscriber::received() const { return worker_->received(); }
 
 WorldWatch::Change WorldWatch::take(const PoseMessage& message) {
     const auto isSame = [](const std::string& name, const PoseMessage::Entity& entity) { return name == entity.name; };

@@ -5,15 +5,112 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "components/gazebo/PoseConfig.hpp"
-#include "components/gazebo/Poses.hpp"
-#include "components/gazebo/Subscriber.hpp"
+#include "components/gazebo/TransportOptions.hpp"
+#include "types/ConfigError.hpp"
+#include "types/Describe.hpp"
 #include "types/Pose.hpp"
 #include "types/Time.hpp"
+#include "types/WorldFrame.hpp"
 
 namespace insonify::gazebo {
+
+/** The poses in a message Pose_V: the models of a world and all their links, by name. */
+struct PoseMessage {
+    struct Entity {
+        std::string name;
+        types::Pose pose;  ///< In our axes, without a time. Values that the message does not have are unknown.
+    };
+    std::optional<types::Time> stamp;  ///< Simulated time; none when the message has no stamp, or it is out of bounds.
+    std::vector<Entity> entities;
+};
+/** Reads a Pose_V; none when the bytes are no Pose_V. */
+std::optional<PoseMessage> readPoses(std::string_view message, types::WorldFrame frame);
+
+/** The pose in a message Odometry, with velocities, which the message has in the frame of the body. */
+struct OdometryMessage {
+    std::optional<types::Time> stamp;  ///< As in PoseMessage.
+    types::Pose pose;                  ///< As in PoseMessage::Entity.
+};
+/** Reads an Odometry; none when the bytes are no Odometry. */
+std::optional<OdometryMessage> readOdometry(std::string_view message, types::WorldFrame frame);
+
+/** The result of a search for an entity by name. */
+struct FoundEntity {
+    const types::Pose* pose = nullptr;
+    std::string diagnostic;  ///< Why there is no pose: no entity, or several entities, have the name.
+};
+FoundEntity findEntity(const PoseMessage& message, const std::string& name);
+
+/** The source of the poses of one output port. */
+struct BodyConfig {
+    std::string port = "pose";
+    std::string entity;
+    std::string odometry;
+
+    static void describe(auto& self, auto& visit) {
+        visit({"port", "", "output port of the poses"}, self.port);
+        visit({"entity", "", "the model of this name, of the world's poses; empty: odometry is given"}, self.entity);
+        visit({"odometry", "", "topic of the body's Odometry, /model/rov/odometry; empty: entity is given"},
+              self.odometry);
+    }
+};
+
+struct PoseConfig {
+    std::string world;
+    std::string pose_topic;
+    std::vector<BodyConfig> bodies;
+    types::WorldFrame world_frame = types::WorldFrame::AsIs;
+    std::string partition;
+
+    PoseConfig();  // not inline: g++ 12 would warn that its strings are uninitialized
+
+    static void describe(auto& self, auto& visit) {
+        visit({"bodies", "", "bodies whose poses are read"}, self.bodies);
+        visit({"world", "", "name of Gazebo's world, whose poses are on /world/NAME/pose/info"}, self.world);
+        visit({"pose_topic", "", "another topic of poses; empty: that of the world"}, self.pose_topic);
+        visit({"world_frame", "",
+               "axes of Gazebo's world: as_is, those of the scene, as when both read the same SDF file; enu or "
+               "ned, if x of the scene is north"},
+              self.world_frame);
+        visit({"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+    /** Returns the topic of the entities' poses. */
+    std::string poseTopic() const { return pose_topic.empty() ? "/world/" + world + "/pose/info" : pose_topic; }
+};
+
+/** A topic of Gazebo's transport, and the function that takes its messages. */
+struct Topic {
+    std::string name;  ///< "/world/sea/pose/info".
+    /** Called on the subscriber's thread, with the name of the message's type, "Pose_V", and its bytes. */
+    std::function<void(const std::string& type, std::string_view message)> use;
+};
+
+/** Receives topics of Gazebo's transport on its own thread until destroyed.
+ *
+ *  Supports Gazebo Fortress and all later versions. Publishers may start, stop and restart at any time. Messages arrive
+ *  by TCP from each publisher of the topic. */
+class Subscriber {
+public:
+    /** Throws types::ConfigError when no network supports multicast, or when a topic is invalid for the transport;
+     *  `path` is then the index of the topic, such as "1". */
+    Subscriber(const TransportOptions& options, std::vector<Topic> topics);
+    ~Subscriber();
+    Subscriber(const Subscriber&) = delete;
+    Subscriber& operator=(const Subscriber&) = delete;
+
+    /** Returns whether the topic of this index has a publisher. Thread-safe. */
+    bool hasPublisher(size_t topic) const;
+    /** Lists the available topics with the ending of the first topic. Thread-safe. */
+    std::string received() const;
+
+private:
+    class Worker;
+    std::unique_ptr<Worker> worker_;
+};
 
 /** Finds entities that have appeared in a world, or disappeared, since its scene was read, by the names in its
  *  poses. */

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "components/gazebo/Request.hpp"
+#include "components/gazebo/Discovery.hpp"
 #include "components/gazebo/TransportOptions.hpp"
 #include "components/meshes/WorldBuilder.hpp"
-#include "components/scene/MaterialNames.hpp"
+#include "components/scene/Acoustics.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::gazebo {

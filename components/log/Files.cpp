@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "components/log/Reader.hpp"
-#include "components/log/pocolog/Index.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::log {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "components/log/TypeNames.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"

@@ -9,7 +9,7 @@
 
 #include "components/framework/MayLose.hpp"
 #include "components/framework/Upstream.hpp"
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::logger {

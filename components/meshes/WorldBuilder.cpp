@@ -15,8 +15,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "components/scene/PictureFormat.hpp"
 #include "components/scene/Surface.hpp"
+#include "components/scene/SurfaceMaps.hpp"
 
 namespace insonify::meshes {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "components/nav/ErrorModel.hpp"
 #include "components/nav/Motion.hpp"
-#include "components/nav/SensorConfig.hpp"
 #include "types/Dvl.hpp"
 #include "types/Snapshot.hpp"
 

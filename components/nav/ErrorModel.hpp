@@ -1,12 +1,51 @@
 #pragma once
 // Errors of sensors: white noise and a wandering bias, after IEEE Std 952-1997 (annex C) and O. Woodman, "An
 // introduction to inertial navigation", UCAM-CL-TR-696, 2007.
+#include <cmath>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <optional>
 
+#include "types/Angle.hpp"
+#include "types/Mount.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::nav {
+
+/** The configuration that all sensors share: mount, period of measurements, and seed of the errors. */
+struct SensorConfig {
+    types::Mount mount{};
+    std::optional<uint64_t> seed = {};  ///< None: 1. A deployment gives each task its own seed.
+    double period = 0;
+
+    uint64_t randomSeed() const { return seed.value_or(1); }
+
+    /** Describes the keys of all sensors, with a sensor's descriptions of its mount and its period. */
+    static void describe(auto& self, auto& visit, const char* mount, const char* period) {
+        visit({"mount", "", mount}, self.mount);
+        visit({"seed", "1",
+               "of the random numbers: the same seed and poses give the same errors; absent: a hash of the "
+               "deployment's seed and the task's name"},
+              self.seed);
+        visit({"period", "s", period, 0, 1e6}, self.period);
+    }
+};
+
+/** Returns the normal gravity on the ellipsoid of WGS 84 at a latitude [deg], positive down [m/s^2]: Somigliana's
+ *  closed formula, NIMA TR 8350.2, 3rd edition, equation 4-1. Its growth with depth, about 2.2e-6 m/s^2 per metre, is
+ *  omitted. */
+inline double normalGravity(double latitude_deg) {
+    constexpr double at_equator = 9.7803253359, k = 0.00193185265241, eccentricity_squared = 0.00669437999013;
+    const double sine = std::sin(types::radians(latitude_deg));
+    return at_equator * (1 + k * sine * sine) / std::sqrt(1 - eccentricity_squared * sine * sine);
+}
+
+/** Returns the rotation of the earth at a latitude [deg] in the world, x north, y west, z up; WGS 84 [rad/s]. */
+inline glm::dvec3 earthRotation(double latitude_deg) {
+    constexpr double rate = 7.292115e-5;
+    const double latitude = types::radians(latitude_deg);
+    return {rate * std::cos(latitude), 0, rate * std::sin(latitude)};
+}
 
 /** Returns a variate of N(0, 1), at most 6.7 from 0, that depends only on seed, channel and time (Box and Muller 1958,
  *  from types::hashed). */

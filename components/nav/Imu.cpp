@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "components/nav/Gravity.hpp"
+#include "components/nav/ErrorModel.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::nav {

@@ -5,7 +5,6 @@
 
 #include "components/nav/ErrorModel.hpp"
 #include "components/nav/Motion.hpp"
-#include "components/nav/SensorConfig.hpp"
 #include "types/Imu.hpp"
 
 namespace insonify::nav {

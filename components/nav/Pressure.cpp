@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/nav/Gravity.hpp"
+#include "components/nav/ErrorModel.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::nav {

@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "components/nav/ErrorModel.hpp"
-#include "components/nav/SensorConfig.hpp"
 #include "types/Pose.hpp"
 #include "types/Pressure.hpp"
 

@@ -3,15 +3,40 @@
 //
 // Every number is aligned to its size, counted from the end of those four bytes. A string is a u32 length that includes
 // a final NUL, then the characters. A sequence is a u32 count, then the elements. A fixed array is the elements alone.
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
+#include <vector>
 
-#include "components/ros/Traits.hpp"
+#include "types/Describe.hpp"
 
 namespace insonify::ros {
+
+template <class T>
+concept Message = types::Described<T> && requires {
+    T::type_hash;
+};
+
+/** Whether T is a sequence or an array of fixed length in ROS. */
+template <class T>
+struct IsSequence : std::false_type {};
+template <class T>
+struct IsSequence<std::vector<T>> : std::true_type {};
+template <class T>
+struct IsArray : std::false_type {};
+template <class T, size_t n>
+struct IsArray<std::array<T, n>> : std::true_type {};
+
+template <class T>
+concept Sequence = IsSequence<T>::value;
+template <class T>
+concept Array = IsArray<T>::value;
+template <class T>
+concept Primitive = std::is_arithmetic_v<T>;
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied in host order");
 

@@ -3,8 +3,8 @@
 // that ROS cannot represent, and std::invalid_argument for invalid messages.
 #include <initializer_list>
 
+#include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
-#include "components/ros/SensorMessages.hpp"
 #include "types/DepthMap.hpp"
 #include "types/PointCloud.hpp"
 #include "types/Range.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
+#include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
-#include "components/ros/SonarMessages.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::ros {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "types/SonarElements.hpp"
 #include "types/SonarReturns.hpp"
 #include "types/SonarSettings.hpp"

@@ -2,9 +2,8 @@
 // Conversions of a ping to ROS 2 messages and back. The memory of outputs is reused. Conversions to messages throw
 // std::invalid_argument for a ping whose lists do not match its counts, and std::out_of_range for a time that ROS
 // cannot represent.
+#include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
-#include "components/ros/SensorMessages.hpp"
-#include "components/ros/SonarMessages.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::ros {

@@ -1,12 +1,74 @@
 #include "components/ros/Poses.hpp"
 
+#include <cmath>
+#include <glm/matrix.hpp>
 #include <numbers>
 
 #include "components/ros/Stamps.hpp"
+#include "types/RequireSound.hpp"
+#include "types/WorldFrame.hpp"
 
 namespace insonify::ros {
-
 namespace {
+
+using Covariance3 = std::array<double, 9>;
+
+Vector3 vectorOf(glm::dvec3 v) { return {v.x, v.y, v.z}; }
+glm::dvec3 fromRos(const Vector3& v) { return {v.x, v.y, v.z}; }
+
+/** Returns the covariance by rows. The first element is -1 if the value itself is unknown. */
+Covariance3 rowsOf(const glm::dmat3& covariance, bool value_known, double unknown) {
+    Covariance3 rows;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            rows[static_cast<size_t>(3 * row + column)] = isUnknown(covariance) ? unknown : covariance[column][row];
+    if (!value_known) rows[0] = -1;
+    return rows;
+}
+
+glm::dmat3 matrixOf(const Covariance3& rows, double unknown) {
+    glm::dmat3 matrix{0};
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) matrix[column][row] = rows[static_cast<size_t>(3 * row + column)];
+    Covariance3 none;
+    none.fill(unknown);
+    return rows[0] == -1 || rows == none ? types::Pose::unknownMatrix() : matrix;
+}
+
+/** Writes a vector of the body, and its covariance. */
+void report(glm::dvec3 value, const glm::dmat3& covariance, WorldFrame frame, Vector3& reported, Covariance3& rows) {
+    const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
+    reported = isUnknown(value) ? Vector3{} : vectorOf(body(value));
+    rows = rowsOf(both(covariance, body), !isUnknown(value), 0);
+}
+
+void read(const Vector3& reported, const Covariance3& rows, WorldFrame frame, glm::dvec3& value,
+          glm::dmat3& covariance) {
+    const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
+    value = rows[0] == -1 ? glm::dvec3(types::Pose::unknown) : body(fromRos(reported));
+    covariance = both(matrixOf(rows, 0), body);
+}
+
+/** Converts from axes with z up to an instrument's axes, whose z is its look direction, and back. */
+glm::dvec3 turnedOver(glm::dvec3 v) { return {v.x, -v.y, -v.z}; }
+
+void writeBeam(const types::Dvl& dvl, size_t beam, Dvl& message) {
+    const double range = dvl.beam_ranges[beam], variance = dvl.beam_velocity_variances[beam];
+    message.beam_unit_vec[beam] = vectorOf(turnedOver(dvl.beam_directions[beam]));
+    message.range[beam] = range;
+    message.beam_quality[beam] = std::isfinite(range) ? 1.0f : 0.0f;
+    message.beam_velocity[beam] = static_cast<float>(dvl.beam_velocities[beam]);
+    message.beam_velocity_covar[beam] = std::isnan(variance) ? -1.0f : static_cast<float>(variance);
+}
+
+void clearBeams(Dvl& message) {
+    message.beam_unit_vec.fill({});
+    message.range.fill(types::Pose::unknown);
+    message.range_covar.fill(-1);
+    message.beam_quality.fill(0);
+    message.beam_velocity.fill(std::numeric_limits<float>::quiet_NaN());
+    message.beam_velocity_covar.fill(-1);
+}
 
 using types::Axes;
 
@@ -57,6 +119,99 @@ void readPose(const Header& header, const Pose& message, Axes axes, types::Pose&
 }
 
 }  // namespace
+
+void convert(const types::Imu& imu, WorldFrame frame, const std::string& frame_id, Imu& message) {
+    message.header = {toRos(imu.time), frame_id};
+    const bool is_known = !std::isnan(glm::length(imu.orientation));
+    const glm::dquat q = is_known ? types::Axes{frame}.orientationFromRock(imu.orientation) : glm::dquat(1, 0, 0, 0);
+    message.orientation = {q.x, q.y, q.z, q.w};
+    const auto to_world = [&](glm::dvec3 v) { return types::Axes{frame}.worldFromRock(imu.orientation * v); };
+    message.orientation_covariance = rowsOf(both(imu.cov_orientation, to_world), is_known, 0);
+    report(imu.angular_velocity, imu.cov_angular_velocity, frame, message.angular_velocity,
+           message.angular_velocity_covariance);
+    report(imu.linear_acceleration, imu.cov_linear_acceleration, frame, message.linear_acceleration,
+           message.linear_acceleration_covariance);
+}
+
+void convert(const Imu& message, WorldFrame frame, types::Imu& imu) {
+    imu = {};
+    imu.time = fromRos(message.header.stamp);
+    const Quaternion& q = message.orientation;
+    if (message.orientation_covariance[0] != -1)
+        imu.orientation = types::Axes{frame}.rockFromOrientation(glm::dquat(q.w, q.x, q.y, q.z));
+    const auto from_world = [&](glm::dvec3 v) {
+        return glm::inverse(imu.orientation) * types::Axes{frame}.rockFromWorld(v);
+    };
+    imu.cov_orientation = both(matrixOf(message.orientation_covariance, 0), from_world);
+    read(message.angular_velocity, message.angular_velocity_covariance, frame, imu.angular_velocity,
+         imu.cov_angular_velocity);
+    read(message.linear_acceleration, message.linear_acceleration_covariance, frame, imu.linear_acceleration,
+         imu.cov_linear_acceleration);
+}
+
+void convert(const types::ImuSensors& sensors, WorldFrame frame, const std::string& frame_id, Imu& message) {
+    types::Imu imu;
+    imu.time = sensors.time;
+    imu.angular_velocity = sensors.gyro;
+    imu.linear_acceleration = sensors.acc;
+    convert(imu, frame, frame_id, message);
+}
+
+void convert(const Imu& message, WorldFrame frame, types::ImuSensors& sensors) {
+    types::Imu imu;
+    convert(message, frame, imu);
+    sensors = {};
+    sensors.time = imu.time;
+    sensors.acc = imu.linear_acceleration;
+    sensors.gyro = imu.angular_velocity;
+}
+
+void convert(const types::Dvl& dvl, const std::string& frame_id, Dvl& message) {
+    types::requireSound(dvl, "a velocity log's sample");
+    const glm::dvec3 v = turnedOver(dvl.velocity);
+    message.header = {toRos(dvl.time), frame_id};
+    message.velocity_mode = Dvl::bottom;
+    message.dvl_type = Dvl::piston;
+    message.velocity = vectorOf(v);
+    message.velocity_covar = rowsOf(both(dvl.cov_velocity, turnedOver), true, -1);
+    message.altitude = dvl.altitude;
+    message.course_gnd = std::atan2(v.y, v.x);
+    message.speed_gnd = std::hypot(v.x, v.y);
+    message.num_good_beams = static_cast<uint8_t>(dvl.goodBeams());
+    message.sound_speed = static_cast<float>(dvl.speed_of_sound);
+    message.beam_ranges_valid = dvl.goodBeams() > 0;
+    message.beam_velocities_valid = dvl.hasBottomLock();
+    clearBeams(message);
+    for (size_t beam = 0; beam < dvl.beam_directions.size(); ++beam) writeBeam(dvl, beam, message);
+}
+
+void convert(const Dvl& message, types::Dvl& dvl) {
+    dvl = {};
+    dvl.time = fromRos(message.header.stamp);
+    dvl.velocity = turnedOver(fromRos(message.velocity));
+    dvl.cov_velocity = both(matrixOf(message.velocity_covar, -1), turnedOver);
+    dvl.altitude = message.altitude;
+    dvl.speed_of_sound = static_cast<double>(message.sound_speed);
+    for (size_t beam = 0; beam < Dvl::beams; ++beam) {
+        if (message.beam_unit_vec[beam] == Vector3{}) continue;
+        const double variance = static_cast<double>(message.beam_velocity_covar[beam]);
+        dvl.beam_directions.push_back(turnedOver(fromRos(message.beam_unit_vec[beam])));
+        dvl.beam_ranges.push_back(message.range[beam]);
+        dvl.beam_velocities.push_back(static_cast<double>(message.beam_velocity[beam]));
+        dvl.beam_velocity_variances.push_back(variance == -1 ? types::Pose::unknown : variance);
+    }
+}
+
+void convert(const types::Pressure& pressure, const std::string& frame_id, FluidPressure& message) {
+    message.header = {toRos(pressure.time), frame_id};
+    message.fluid_pressure = static_cast<double>(pressure.pascal);
+    message.variance = 0;
+}
+
+void convert(const FluidPressure& message, types::Pressure& pressure) {
+    pressure.time = fromRos(message.header.stamp);
+    pressure.pascal = static_cast<float>(message.fluid_pressure);
+}
 
 glm::dvec3 worldFromRock(WorldFrame frame, glm::dvec3 v) { return Axes{frame}.worldFromRock(v); }
 glm::dvec3 rockFromWorld(WorldFrame frame, glm::dvec3 v) { return Axes{frame}.rockFromWorld(v); }

@@ -5,14 +5,11 @@
 #include <type_traits>
 
 #include "components/ros/Clouds.hpp"
-#include "components/ros/GeometryMessages.hpp"
 #include "components/ros/InsonifyMessages.hpp"
-#include "components/ros/Navigation.hpp"
+#include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
-#include "components/ros/SensorMessages.hpp"
-#include "components/ros/SonarMessages.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/Image.hpp"
 #include "types/Samples.hpp"

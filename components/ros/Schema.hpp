@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "components/ros/Traits.hpp"
+#include "components/ros/Cdr.hpp"
 
 namespace insonify::ros {
 

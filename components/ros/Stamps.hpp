@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::ros {

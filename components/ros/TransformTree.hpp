@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::ros {

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
 #include <utility>
 
+#include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Clusters.hpp"
 #include "components/scene/SurfaceMaps.hpp"
 #include "types/ConfigError.hpp"
@@ -15,6 +17,18 @@
 
 namespace insonify::scene {
 namespace {
+
+std::atomic<SurveyOpener>& opener() {
+    static std::atomic<SurveyOpener> opener = nullptr;
+    return opener;
+}
+
+/** Returns the opener of the component library. */
+auto* libraryOpener(const std::filesystem::path& file) try {
+    return loader::load("survey").entry<Survey*(const std::filesystem::path&, int)>("insonify_open_survey");
+} catch (const types::ConfigError& error) {
+    throw types::ConfigError(file.string(), "", error.diagnostics().front().text());
+}
 
 constexpr const char* floor_name = "bathymetry";  ///< Name of the object and of its material.
 constexpr double max_posts = 4096;                ///< Max posts of a window along each side [1].
@@ -68,6 +82,13 @@ void checkTexels(const Survey& mosaic, const std::filesystem::path& file, const 
 }
 
 }  // namespace
+
+std::unique_ptr<Survey> openSurvey(const std::filesystem::path& file, int band) {
+    if (const SurveyOpener given = opener()) return given(file, band);
+    return std::unique_ptr<Survey>(libraryOpener(file)(file, band));
+}
+
+void setSurveyOpener(SurveyOpener given) { opener() = given; }
 
 void BathymetryConfig::check(types::Diagnostics& diagnostics) const {
     if (file.empty()) diagnostics.push_back({"file", "is missing; give the path of a survey"});

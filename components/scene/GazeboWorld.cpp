@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "components/loader/ComponentLibrary.hpp"
-#include "components/scene/VertexRounding.hpp"
+#include "components/scene/Scene.hpp"
 
 namespace insonify::scene {
 namespace {

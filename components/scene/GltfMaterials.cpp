@@ -12,7 +12,6 @@
 #include <memory>
 
 #include "components/scene/Acoustics.hpp"
-#include "components/scene/PictureFormat.hpp"
 #include "components/scene/SurfaceMaps.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "components/scene/GltfAccessor.hpp"
-#include "components/scene/GltfDeformation.hpp"
+#include "components/scene/GltfAnimation.hpp"
 #include "components/scene/GltfMaterials.hpp"
 #include "components/scene/Surface.hpp"
 #include "types/Geometry.hpp"

@@ -1,14 +1,25 @@
 #pragma once
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "types/Describe.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::scene {
+
+/** Number of bytes that isPngOrJpeg() examines. */
+inline constexpr size_t picture_mark_size = 8;
+
+/** Returns whether a picture is PNG or JPEG by its first bytes. stb_image would read other formats with untested
+ *  decoders. */
+inline bool isPngOrJpeg(std::string_view begin) {
+    return begin.starts_with("\x89PNG\r\n\x1a\n") || begin.starts_with("\xff\xd8\xff");
+}
 
 /** The meaning of a surface map's values: decibels, interpolated linearly between two values, or classes. */
 struct MapValues {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/device/OculusPing.hpp"
-#include "components/receiver/ReceiverConfig.hpp"
+#include "components/receiver/Receiver.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 

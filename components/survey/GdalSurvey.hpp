@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "components/scene/Survey.hpp"
+#include "components/scene/Bathymetry.hpp"
 
 namespace insonify::survey {
 

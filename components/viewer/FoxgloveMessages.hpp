@@ -1,11 +1,11 @@
 #pragma once
 // Messages of foxglove_msgs that Foxglove's 3-D panel draws, field for field as in its ROS 2 schemas: see
-// components/ros/GeometryMessages.hpp.
+// components/ros/Messages.hpp.
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Messages.hpp"
 
 namespace insonify::viewer::foxglove {
 

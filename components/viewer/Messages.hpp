@@ -5,10 +5,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
 #include "components/ros/Samples.hpp"
 #include "components/ros/Schema.hpp"
-#include "components/ros/SensorMessages.hpp"
 #include "components/viewer/Foxglove.hpp"
 #include "components/viewer/FoxgloveMessages.hpp"
 #include "components/viewer/Frame.hpp"

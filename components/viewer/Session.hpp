@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "components/viewer/AccessPolicy.hpp"
 #include "components/viewer/Frame.hpp"
 #include "components/viewer/Server.hpp"
 #include "types/ThrottledWarning.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/acoustics/ElementField.hpp"
+#include "components/acoustics/BeamPattern.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::acoustics {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "components/acoustics/SeabedBackscatter.hpp"
+#include "components/acoustics/Seabed.hpp"
 #include "tests/acoustics/Degree.hpp"
 
 namespace insonify::acoustics {

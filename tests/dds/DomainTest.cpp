@@ -3,7 +3,7 @@
 #include "components/dds/Endpoints.hpp"
 #include "components/dds/Node.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "tests/dds/Loopback.hpp"
 #include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "components/ros/Cdr.hpp"
-#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 #include "tests/support/Paths.hpp"

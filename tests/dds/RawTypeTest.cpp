@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "components/dds/Endpoints.hpp"
-#include "components/dds/RawType.hpp"
+#include "components/dds/Node.hpp"
 #include "components/ros/Cdr.hpp"
 #include "tests/dds/Loopback.hpp"
 

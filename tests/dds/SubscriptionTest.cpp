@@ -4,7 +4,7 @@
 #include "components/dds/Endpoints.hpp"
 #include "components/dds/Subscription.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/SonarMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "components/gazebo/Discovery.hpp"
-#include "components/gazebo/Poses.hpp"
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/gazebo/World.hpp"
 #include "tests/scene/SceneFiles.hpp"

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "components/viewer/AccessPolicy.hpp"
 #include "components/viewer/Foxglove.hpp"
-#include "components/viewer/StatusText.hpp"
+#include "components/viewer/Publisher.hpp"
+#include "components/viewer/Server.hpp"
 #include "tests/support/Fuzz.hpp"
 
 namespace insonify::fuzz {

@@ -8,7 +8,6 @@
 #include <ignition/transport/TopicUtils.hh>
 
 #include "components/gazebo/Discovery.hpp"
-#include "components/gazebo/Request.hpp"
 #include "components/gazebo/World.hpp"
 #include "components/sdf/Sdf.hpp"
 #include "tests/gazebo/FortressScene.hpp"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "components/gazebo/Poses.hpp"
+#include "components/gazebo/Subscriptions.hpp"
 #include "tests/gazebo/FortressWorld.hpp"
 
 namespace insonify::gazebo {

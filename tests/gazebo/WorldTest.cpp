@@ -6,8 +6,8 @@
 
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/gazebo/World.hpp"
+#include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
-#include "components/scene/MaterialNames.hpp"
 #include "tests/gazebo/Recordings.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 #include "tests/support/Refused.hpp"

@@ -5,7 +5,6 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/gpu/Objects.hpp"
-#include "components/gpu/ReadBack.hpp"
 
 namespace insonify::gpu {
 namespace {

@@ -160,7 +160,7 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/console/Json.cpp", "components/framework/Port.hpp"));
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/console/Json.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
-    EXPECT_TRUE(allowed("components/noise/NoiseConfig.cpp", "components/acoustics/AmbientNoise.hpp"));
+    EXPECT_TRUE(allowed("components/noise/Noise.cpp", "components/acoustics/AmbientNoise.hpp"));
     EXPECT_FALSE(allowed("components/acoustics/Water.hpp", "components/sonar/config/SonarConfig.hpp"));
     EXPECT_FALSE(allowed("components/receiver/Receiver.cpp", "components/acoustics/Water.hpp"));
     EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/log/Writer.hpp"));
@@ -181,7 +181,7 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/dds/Node.cpp", "components/framework/Port.hpp"));
     EXPECT_TRUE(allowed("components/dds/Node.cpp", "components/ros/Cdr.hpp"));
     EXPECT_TRUE(allowed("components/gazebo/PoseTask.hpp", "components/pose/ListenerTask.hpp"));
-    EXPECT_FALSE(allowed("components/gazebo/Poses.hpp", "components/pose/Trajectory.hpp"));
+    EXPECT_FALSE(allowed("components/gazebo/Subscriptions.hpp", "components/pose/Trajectory.hpp"));
     EXPECT_TRUE(allowed("components/sonar/renderer/SonarRenderer.cpp", "components/gpu/Context.hpp"));
     EXPECT_TRUE(allowed("components/command/main.cpp", "components/noise/NoiseTask.hpp"));
 }

@@ -5,7 +5,7 @@
 
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "components/log/Writer.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "components/log/Check.hpp"
-#include "components/log/pocolog/Index.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "components/logger/LogThread.hpp"

@@ -1,8 +1,8 @@
 // Frames as PyPI's pymavlink 2.4.50 packs them, and their errors.
 #include <gmock/gmock.h>
 
+#include "components/mavlink/Body.hpp"
 #include "components/mavlink/Frame.hpp"
-#include "components/mavlink/Messages.hpp"
 #include "tests/mavlink/Packed.hpp"
 
 namespace insonify::mavlink {

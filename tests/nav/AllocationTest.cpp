@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/nav/DvlTask.hpp"
-#include "components/nav/ImuTask.hpp"
-#include "components/nav/PressureTask.hpp"
+#include "components/nav/SensorTasks.hpp"
 #include "tests/nav/Paths.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Ports.hpp"

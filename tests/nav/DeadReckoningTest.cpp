@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "components/nav/Dvl.hpp"
-#include "components/nav/Gravity.hpp"
+#include "components/nav/ErrorModel.hpp"
 #include "components/nav/Imu.hpp"
 #include "components/nav/Pressure.hpp"
 #include "components/pose/Trajectory.hpp"

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
-#include "components/nav/Gravity.hpp"
-#include "components/nav/ImuTask.hpp"
+#include "components/nav/ErrorModel.hpp"
+#include "components/nav/SensorTasks.hpp"
 #include "tests/nav/Paths.hpp"
 #include "tests/support/TaskBench.hpp"
 

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/nav/Gravity.hpp"
+#include "components/nav/ErrorModel.hpp"
 #include "components/nav/Imu.hpp"
 #include "tests/nav/Allan.hpp"
 #include "tests/nav/Paths.hpp"

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/nav/PressureTask.hpp"
+#include "components/nav/SensorTasks.hpp"
 #include "tests/nav/Paths.hpp"
 #include "tests/support/TaskBench.hpp"
 

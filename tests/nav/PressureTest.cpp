@@ -1,7 +1,7 @@
 // Pressures, compared with the tables of UNESCO 44 and Saunders' formula.
 #include <gmock/gmock.h>
 
-#include "components/nav/Gravity.hpp"
+#include "components/nav/ErrorModel.hpp"
 #include "components/nav/Pressure.hpp"
 #include "tests/nav/Paths.hpp"
 

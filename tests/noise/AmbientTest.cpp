@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "components/acoustics/AmbientNoise.hpp"
-#include "components/noise/NoiseConfig.hpp"
+#include "components/noise/Noise.hpp"
 #include "tests/support/Refused.hpp"
 
 namespace insonify::noise {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "components/noise/FieldFilter.hpp"
+#include "components/noise/Noise.hpp"
 #include "tests/noise/Distributions.hpp"
 #include "tests/support/Refused.hpp"
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "components/device/DeviceBins.hpp"
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "components/log/Writer.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "components/output/FanShape.hpp"

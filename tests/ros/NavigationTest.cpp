@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "components/ros/Navigation.hpp"
+#include "components/ros/Poses.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::ros {

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/scene/MaterialNames.hpp"
+#include "components/scene/Acoustics.hpp"
 #include "tests/scene/SceneFiles.hpp"
 
 namespace insonify::scene {

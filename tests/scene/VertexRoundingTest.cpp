@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/scene/VertexRounding.hpp"
+#include "components/scene/Scene.hpp"
 #include "tests/support/Scenes.hpp"
 
 namespace insonify::scene {

@@ -4,7 +4,6 @@
 #include "components/meshes/VisualMeshes.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
-#include "components/scene/MaterialNames.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 
 namespace insonify::sdf {

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "components/acoustics/Seabed.hpp"
-#include "components/acoustics/SeabedBackscatter.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"

@@ -5,7 +5,6 @@
 
 #include "components/sonar/renderer/Metrics.hpp"
 #include "components/sonar/surfaces/FacetLobes.hpp"
-#include "components/study/FractalFloor.hpp"
 #include "components/study/StudyScene.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/Scenes.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "components/sonar/raster/Culler.hpp"
-#include "components/study/FractalFloor.hpp"
+#include "components/study/StudyScene.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 #include "types/Angle.hpp"
 

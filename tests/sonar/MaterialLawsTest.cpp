@@ -6,7 +6,6 @@
 #include "components/acoustics/Matter.hpp"
 #include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/Seabed.hpp"
-#include "components/acoustics/SeabedBackscatter.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
 #include "types/Angle.hpp"
 

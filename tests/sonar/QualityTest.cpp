@@ -10,7 +10,7 @@
 #include "components/sonar/renderer/QualityKeeper.hpp"
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "components/sonar/tasks/SonarTask.hpp"
-#include "components/study/FractalFloor.hpp"
+#include "components/study/StudyScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 

@@ -6,12 +6,11 @@
 #include <numbers>
 #include <random>
 
-#include "components/acoustics/AdaptiveTable.hpp"
 #include "components/acoustics/Backscatter.hpp"
-#include "components/acoustics/ElementField.hpp"
+#include "components/acoustics/BeamPattern.hpp"
+#include "components/acoustics/Curve.hpp"
 #include "components/acoustics/Plate.hpp"
 #include "components/acoustics/Seabed.hpp"
-#include "components/acoustics/SeabedBackscatter.hpp"
 #include "components/sonar/bins/EchoShape.hpp"
 #include "components/sonar/multipath/WayPatterns.hpp"
 #include "components/sonar/plan/EchoRules.hpp"

@@ -6,8 +6,6 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/error/ErrorAnalysis.hpp"
-#include "components/study/error/ErrorEffects.hpp"
-#include "components/study/error/ErrorReport.hpp"
 #include "components/study/error/ErrorStudy.hpp"
 
 namespace insonify::study {

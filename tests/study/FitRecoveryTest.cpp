@@ -5,7 +5,7 @@
 #include <set>
 
 #include "components/study/Probe.hpp"
-#include "components/study/likeness/LikenessReport.hpp"
+#include "components/study/likeness/Likeness.hpp"
 #include "tests/study/FitBench.hpp"
 #include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"

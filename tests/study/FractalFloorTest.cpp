@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-#include "components/study/FractalFloor.hpp"
+#include "components/study/StudyScene.hpp"
 
 namespace insonify::study {
 namespace {

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "components/study/likeness/Likeness.hpp"
-#include "components/study/likeness/LikenessReport.hpp"
 #include "tests/support/Paths.hpp"
 #include "types/Hash.hpp"
 

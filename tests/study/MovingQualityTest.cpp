@@ -9,7 +9,7 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "components/sonar/tasks/SonarTask.hpp"
-#include "components/study/FractalFloor.hpp"
+#include "components/study/StudyScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"

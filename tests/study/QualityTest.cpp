@@ -11,7 +11,6 @@
 #include "components/sonar/renderer/Metrics.hpp"
 #include "components/sonar/renderer/Quality.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "components/study/FractalFloor.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StudyScene.hpp"

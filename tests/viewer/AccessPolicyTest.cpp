@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/viewer/AccessPolicy.hpp"
+#include "components/viewer/Server.hpp"
 
 namespace insonify::viewer {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "components/ros/Cdr.hpp"
-#include "components/ros/SonarMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "tests/viewer/Bench.hpp"
 #include "tests/viewer/Client.hpp"
 

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "components/ros/Cdr.hpp"
-#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "components/viewer/Messages.hpp"
 #include "components/viewer/ViewerConfig.hpp"
 #include "tests/support/Folder.hpp"

@@ -3,7 +3,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "components/viewer/StatusText.hpp"
+#include "components/viewer/Publisher.hpp"
 
 namespace insonify::viewer {
 namespace {

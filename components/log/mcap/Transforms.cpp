@@ -8,9 +8,9 @@
 
 #include "components/log/mcap/Bag.hpp"
 #include "components/ros/Cdr.hpp"
+#include "components/ros/Messages.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Schema.hpp"
-#include "components/ros/SonarMessages.hpp"
 #include "types/Elapsed.hpp"
 
 namespace insonify::log::mcap {

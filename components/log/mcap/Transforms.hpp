@@ -9,7 +9,7 @@
 
 #include "components/log/Stream.hpp"
 #include "components/log/mcap/ChunkWriter.hpp"
-#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
 #include "types/Mount.hpp"
 

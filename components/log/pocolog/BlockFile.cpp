@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "components/log/pocolog/Metadata.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Wire.hpp"
 
 namespace insonify::log::pocolog {

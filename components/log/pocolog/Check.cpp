@@ -7,8 +7,6 @@
 #include <iterator>
 
 #include "components/log/pocolog/BlockFile.hpp"
-#include "components/log/pocolog/Index.hpp"
-#include "components/log/pocolog/Metadata.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Typelib.hpp"
 #include "components/log/pocolog/Wire.hpp"

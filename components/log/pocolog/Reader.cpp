@@ -1,15 +1,70 @@
 #include "components/log/pocolog/Reader.hpp"
 
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <map>
+#include <string_view>
+#include <utility>
 
 #include "components/log/TypeNames.hpp"
-#include "components/log/pocolog/Metadata.hpp"
 #include "components/log/pocolog/Wire.hpp"
 
 namespace insonify::log::pocolog {
 namespace {
+
+std::string inQuotes(std::string_view value) {
+    std::string text = "\"";
+    for (const char c : value) {
+        if (c == '"' || c == '\\')
+            text += {'\\', c};
+        else if (c == '\n')
+            text += "\\n";
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            text += fmt::format("\\x{:02x}", c);
+        else
+            text += c;
+    }
+    return text + '"';
+}
+
+size_t byteOf(const YAML::Mark& mark) { return mark.is_null() ? 0 : static_cast<size_t>(mark.pos); }
+
+constexpr std::string_view index_magic = "POCOSIM_INDEX";
+constexpr uint32_t index_version = 3;
+constexpr uint64_t stream_entry_size = 8 * sizeof(uint64_t);
+constexpr uint64_t sample_entry_size = 2 * sizeof(uint64_t);
+
+void putBigEndian(std::vector<char>& bytes, auto value) {
+    for (size_t i = sizeof value; i-- > 0;) bytes.push_back(static_cast<char>(value >> (8 * i)));
+}
+
+void put(std::vector<char>& bytes, uint64_t value) { putBigEndian(bytes, value); }
+void put(std::vector<char>& bytes, types::Time time) { put(bytes, static_cast<uint64_t>(time.microseconds)); }
+
+/** Returns the earliest and latest time, 0 without samples. The earliest need not be the first sample's: the clock may
+ *  have been set back, and offsets from it are not negative. */
+std::pair<types::Time, types::Time> spanOf(const StreamIndex& stream) {
+    if (stream.samples.empty()) return {};
+    const auto [first, last] = std::ranges::minmax_element(stream.samples, {}, &StreamIndex::Entry::time);
+    return {first->time, last->time};
+}
+
+void putStream(std::vector<char>& bytes, const StreamIndex& stream, uint64_t data_position) {
+    put(bytes, stream.declaration);
+    const auto [first, last] = spanOf(stream);
+    put(bytes, data_position);
+    put(bytes, first);
+    put(bytes, stream.samples.size());
+    put(bytes, stream.first_received);
+    put(bytes, stream.last_received);
+    put(bytes, first);
+    put(bytes, last);
+}
 
 /** The place of a sample. */
 struct Block {
@@ -129,6 +184,76 @@ void scan(const BlockFile& file, const std::filesystem::path& path, AtDamage at_
 }
 
 }  // namespace
+
+std::string toYaml(const Metadata& metadata) {
+    std::string yaml;
+    for (const auto& [key, value] : metadata) yaml += key + ": " + inQuotes(value) + "\n";
+    return yaml;
+}
+
+Metadata metadataFromYaml(std::string_view yaml) try {
+    Metadata metadata;
+    const YAML::Node map = YAML::Load(std::string(yaml));
+    if (!map.IsMap()) return metadata;
+    for (const auto& entry : map)
+        if (entry.first.IsScalar() && !entry.second.IsMap() && !entry.second.IsSequence())
+            metadata[entry.first.Scalar()] = entry.second.Scalar();
+    return metadata;
+} catch (const YAML::Exception&) {
+    return {};
+}
+
+std::optional<size_t> findNotFlat(std::string_view yaml) try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(std::string(yaml));
+    if (documents.size() > 1) return byteOf(documents[1].Mark());
+    if (documents.empty() || documents[0].IsNull()) return {};
+    const YAML::Node& map = documents[0];
+    if (!map.IsMap()) return byteOf(map.Mark());
+    for (const auto& entry : map)
+        for (const YAML::Node& node : {YAML::Node(entry.first), YAML::Node(entry.second)})
+            if (node.IsMap() || node.IsSequence()) return byteOf(node.Mark());
+    return {};
+} catch (const YAML::Exception& error) {
+    return byteOf(error.mark);
+}
+
+std::filesystem::path indexPath(const std::filesystem::path& log) {
+    return std::filesystem::path(log).replace_extension(".idx");
+}
+
+std::vector<char> indexBytes(const std::vector<StreamIndex>& streams, uint64_t log_size, types::Time log_modified) {
+    std::vector<char> bytes(index_magic.begin(), index_magic.end());
+    putBigEndian(bytes, index_version);
+    put(bytes, log_size);
+    put(bytes, log_modified);
+    put(bytes, streams.size());
+    uint64_t data_position = bytes.size() + streams.size() * stream_entry_size, size = data_position;
+    for (const StreamIndex& stream : streams) size += stream.samples.size() * sample_entry_size;
+    bytes.reserve(size);
+    for (const StreamIndex& stream : streams) {
+        putStream(bytes, stream, data_position);
+        data_position += stream.samples.size() * sample_entry_size;
+    }
+    for (const StreamIndex& stream : streams) {
+        const types::Time first = spanOf(stream).first;
+        for (const StreamIndex::Entry& sample : stream.samples) {
+            put(bytes, sample.position);
+            put(bytes, sample.time - first);
+        }
+    }
+    return bytes;
+}
+
+void writeIndex(const std::filesystem::path& log, const std::vector<StreamIndex>& streams) {
+    struct stat status {};
+    if (stat(log.c_str(), &status) != 0) return;
+    const types::Time modified{int64_t{status.st_mtim.tv_sec} * 1'000'000 + status.st_mtim.tv_nsec / 1000};
+    const std::vector<char> bytes = indexBytes(streams, static_cast<uint64_t>(status.st_size), modified);
+    std::ofstream file(indexPath(log), std::ios::binary);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file) std::filesystem::remove(indexPath(log));
+}
 
 std::optional<size_t> sampleOf(const std::string& type) {
     std::optional<size_t> sample;

@@ -8,7 +8,7 @@
 #include "components/log/Files.hpp"
 #include "components/log/Writer.hpp"
 #include "components/log/pocolog/BlockFile.hpp"
-#include "components/log/pocolog/Index.hpp"
+#include "components/log/pocolog/Reader.hpp"
 
 namespace insonify::log::pocolog {
 

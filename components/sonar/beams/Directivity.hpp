@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "components/acoustics/BeamPattern.hpp"
-#include "components/acoustics/ElementField.hpp"
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "components/acoustics/ElementField.hpp"
+#include "components/acoustics/BeamPattern.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "components/acoustics/Taper.hpp"
+#include "components/acoustics/BeamPattern.hpp"
 #include "components/sonar/bins/EchoField.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/SonarElements.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include <glm/vec3.hpp>
 
-#include "components/acoustics/AdaptiveTable.hpp"
+#include "components/acoustics/Curve.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 
 namespace insonify::sonar {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/gpu/Objects.hpp"
 #include "components/gpu/Program.hpp"
-#include "components/gpu/ReadBack.hpp"
 #include "components/sonar/base/Counters.hpp"
 
 namespace insonify::sonar {

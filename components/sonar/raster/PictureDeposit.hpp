@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/gpu/ReadBack.hpp"
+#include "components/gpu/Objects.hpp"
 #include "components/sonar/base/ThreadPool.hpp"
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/beams/WaterView.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "components/gpu/ReadBack.hpp"
+#include "components/gpu/Objects.hpp"
 
 namespace insonify::sonar {
 namespace {

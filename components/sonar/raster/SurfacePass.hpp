@@ -6,7 +6,6 @@
 
 #include "components/gpu/Objects.hpp"
 #include "components/gpu/Program.hpp"
-#include "components/gpu/ReadBack.hpp"
 #include "components/sonar/base/ThreadPool.hpp"
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/raster/DrawLists.hpp"

@@ -9,7 +9,6 @@
 #include "components/acoustics/Matter.hpp"
 #include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/Seabed.hpp"
-#include "components/acoustics/SeabedBackscatter.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "components/acoustics/AdaptiveTable.hpp"
+#include "components/acoustics/Curve.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 #include "types/Geometry.hpp"
 

@@ -13,8 +13,8 @@
 #include "components/deployer/Pipeline.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/study/commands/StudyCommand.hpp"
-#include "components/study/error/ErrorEffects.hpp"
-#include "components/study/error/ErrorReport.hpp"
+#include "components/study/error/ErrorAnalysis.hpp"
+#include "components/study/error/ErrorStudy.hpp"
 #include "types/Ascii.hpp"
 #include "types/ConfigError.hpp"
 

@@ -10,7 +10,7 @@
 #include "components/deployer/Pipeline.hpp"
 #include "components/study/CodedPing.hpp"
 #include "components/study/commands/StudyCommand.hpp"
-#include "components/study/likeness/LikenessReport.hpp"
+#include "components/study/likeness/Likeness.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {

@@ -2,8 +2,8 @@
 #include <optional>
 #include <vector>
 
-#include "components/noise/NoiseConfig.hpp"
-#include "components/receiver/ReceiverConfig.hpp"
+#include "components/noise/Noise.hpp"
+#include "components/receiver/Receiver.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/CodedPing.hpp"
 #include "types/Snapshot.hpp"

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "components/output/PictureFiles.hpp"
-#include "components/study/likeness/LikenessReport.hpp"
+#include "components/study/likeness/Likeness.hpp"
 #include "types/Angle.hpp"
 #include "types/Describe.hpp"
 #include "types/Quaternion.hpp"

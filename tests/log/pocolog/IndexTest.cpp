@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/log/pocolog/Index.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
 

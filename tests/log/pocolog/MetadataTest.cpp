@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/log/pocolog/Metadata.hpp"
+#include "components/log/pocolog/Reader.hpp"
 
 namespace insonify::log::pocolog {
 namespace {

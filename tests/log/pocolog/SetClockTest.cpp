@@ -6,7 +6,6 @@
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/LoggerClock.hpp"
-#include "components/log/pocolog/Index.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
