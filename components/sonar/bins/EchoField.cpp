@@ -21,7 +21,7 @@ INSONIFY_VECTOR_CLONES void addScaled(const float* from, float weight, float* __
 }
 
 /** fields[j] += sum of weights[i] * from[i][j]. */
-INSONIFY_VECTOR_CLONES void addFour(const std::array<const float*, 4>& from, const std::array<float, 4>& weights,
+INSONIFY_VECTOR_CLONES void addFourScaled(const std::array<const float*, 4>& from, const std::array<float, 4>& weights,
                                     float* __restrict fields, size_t count) {
     const float *const a = from[0], *const b = from[1], *const c = from[2], *const d = from[3];
     for (size_t j = 0; j < count; ++j)
@@ -64,11 +64,11 @@ Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers, bool imaginar
     return {plan.beams, plan.cells, numbers, rules};
 }
 
-/** fields[j] += i turned[j], complex numbers. */
-INSONIFY_VECTOR_CLONES void addTurned(const float* turned, float* __restrict fields, size_t count) {
+/** fields[j] += i quadrature[j], complex numbers. */
+INSONIFY_VECTOR_CLONES void addQuadrature(const float* quadrature, float* __restrict fields, size_t count) {
     for (size_t j = 0; j < count; ++j) {
-        fields[2 * j] -= turned[2 * j + 1];
-        fields[2 * j + 1] += turned[2 * j];
+        fields[2 * j] -= quadrature[2 * j + 1];
+        fields[2 * j + 1] += quadrature[2 * j];
     }
 }
 
@@ -115,29 +115,29 @@ FieldResponse::FieldResponse(const RenderPlan& plan) {
     const auto stride = static_cast<int>(stride_);
     for (int t = -maximum; t <= maximum; ++t) {
         const double power = pulse_->mean((t - 0.5) * width, (t + 0.5) * width);
-        const int from = (stride - 1) / 2 + t, run = (from % stride + stride) % stride;
-        const ptrdiff_t shift = (from - run) / stride;
-        taps_.push_back({static_cast<size_t>(run), shift,
+        const int from = (stride - 1) / 2 + t, phase = (from % stride + stride) % stride;
+        const ptrdiff_t shift = (from - phase) / stride;
+        taps_.push_back({static_cast<size_t>(phase), shift,
                          static_cast<float>(std::copysign(std::sqrt(power), pulse_->amplitude(t * width)))});
         margin_ = std::max(margin_, static_cast<size_t>(std::abs(shift)));
     }
 }
 
-void FieldResponse::spread(std::span<const float> sorted, std::span<float> fields) const {
+void FieldResponse::spread(std::span<const float> phases, std::span<float> fields) const {
     if (!pulse_) {
-        std::ranges::copy(sorted, fields.begin());
+        std::ranges::copy(phases, fields.begin());
         return;
     }
     std::ranges::fill(fields, 0.0f);
     const auto fromOf = [&](const Tap& tap) {
-        return sorted.data() + (static_cast<ptrdiff_t>(tap.run * runLength() + 2 * margin_) + 2 * tap.shift);
+        return phases.data() + (static_cast<ptrdiff_t>(tap.phase * phaseLength() + 2 * margin_) + 2 * tap.shift);
     };
     size_t t = 0;
     for (; t + 4 <= taps_.size(); t += 4) {
         std::array<const float*, 4> from;
         std::array<float, 4> weights;
         for (size_t i = 0; i < 4; ++i) from[i] = fromOf(taps_[t + i]), weights[i] = taps_[t + i].weight;
-        addFour(from, weights, fields.data(), fields.size());
+        addFourScaled(from, weights, fields.data(), fields.size());
     }
     for (; t < taps_.size(); ++t) addScaled(fromOf(taps_[t]), taps_[t].weight, fields.data(), fields.size());
 }
@@ -148,22 +148,82 @@ double FieldResponse::amplitude(size_t sample, double range) const {
     return number == binAt(range, sample_width_) ? 1 : 0;
 }
 
-EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), response_(plan) {
-    const BinGrid grid = summedGrid(plan);
-    const BinLevels levels(plan.config, grid);
-    for (int k = 0; k < grid.bin_count; ++k) amplitudes_.push_back(std::sqrt(levels.factor(static_cast<size_t>(k))));
-    cells_.resize(plan.cells.size() * numbers());
-    if (plan.has(Pass::Beamform)) {
-        beamformer_ = fieldBeamformer(plan, numbers(), false);
-        beams_.resize(plan.beams.size() * numbers());
-        if (plan.directivity->isComplex()) {
-            turner_ = fieldBeamformer(plan, numbers(), true);
-            turned_.resize(beams_.size());
-        }
+void FieldResponse::addEcho(double range, std::complex<double> field, std::span<float> fields) const {
+    const double first = std::max(0.0, binAt(range - reach_, sample_width_));
+    const double last = binAt(range + reach_, sample_width_);
+    for (auto sample = static_cast<size_t>(first); sample < samples_ && static_cast<double>(sample) <= last; ++sample) {
+        const std::complex<double> received = amplitude(sample, range) * field;
+        fields[2 * sample] += static_cast<float>(received.real());
+        fields[2 * sample + 1] += static_cast<float>(received.imag());
     }
-    scratch_.resize(static_cast<size_t>(threads));
+}
+
+FieldBeams::FieldBeams(const RenderPlan& plan, size_t numbers)
+    : numbers_(numbers), beam_count_(plan.beams.size()), cells_(plan.cells.size() * numbers) {
+    if (!plan.has(Pass::Beamform)) return;
+    beamformer_ = fieldBeamformer(plan, numbers, false);
+    beams_.resize(beam_count_ * numbers);
+    if (!plan.directivity->isComplex()) return;
+    quadrature_ = fieldBeamformer(plan, numbers, true);
+    quadratures_.resize(beams_.size());
+}
+
+void FieldBeams::form(ThreadPool& threads) {
+    if (!beamformer_) return;
+    const auto eachOf = [&](size_t count, const auto& work) {
+        threads.run([&](int part, int parts) {
+            for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts)) work(i);
+        });
+    };
+    eachOf(beamformer_->groupCount(), [&](size_t group) {
+        beamformer_->sumGroup(group, cells_);
+        if (quadrature_) quadrature_->sumGroup(group, cells_);
+    });
+    eachOf(beam_count_, [&](size_t number) {
+        beamformer_->form(number, cells_, beam(number));
+        if (!quadrature_) return;
+        const std::span<float> own(&quadratures_[number * numbers_], numbers_);
+        quadrature_->form(number, cells_, own);
+        addQuadrature(own.data(), beam(number).data(), numbers_ / 2);
+    });
+}
+
+WaterField::WaterField(const RenderPlan& plan, size_t cells)
+    : cells_(cells), width_(plan.grid.bin_width * plan.grid.bin_count / static_cast<double>(cells)) {}
+
+void WaterField::fill(const types::Pose& sonar, const Beam& azimuth, std::span<const float> intensities, uint32_t seed,
+                      std::span<float> real, std::span<float> imaginary) const {
+    const glm::dvec3 ray = sonar.orientation * glm::dvec3(std::cos(azimuth.centre), std::sin(azimuth.centre), 0);
+    const double spread = azimuth.high - azimuth.low;
+    for (size_t first = 0; first < cells_;) {
+        // Cubes as long as a range cell, or at short range as the azimuth cell's width; powers of 2 keep them fixed.
+        const double near = (static_cast<double>(first) + 0.5) * width_;
+        const double side = std::exp2(std::floor(std::log2(std::min(width_, near * spread))));
+        const double finer_to = 2 * side <= width_ ? 2 * side / spread : std::numeric_limits<double>::infinity();
+        const double last = std::min(std::ceil(finer_to / width_ - 0.5), static_cast<double>(cells_));
+        Cubes cubes{first, std::max(static_cast<size_t>(last), first + 1), {}, {}, {}, seed};
+        for (int axis = 0; axis < 3; ++axis) {
+            const double start = (sonar.position[axis] + near * ray[axis]) / side, base = std::floor(start);
+            cubes.start[axis] = static_cast<float>(start - base);
+            cubes.step[axis] = static_cast<float>(width_ * ray[axis] / side);
+            cubes.base[axis] = squareOf(base);
+        }
+        scatterInCubes(cubes, intensities.data(), real.data(), imaginary.data());
+        first = cubes.last;
+    }
+}
+
+EchoField::EchoField(const RenderPlan& plan, int threads)
+    : Accumulator(plan),
+      plan_(plan),
+      response_(plan),
+      water_(plan, response_.cells()),
+      beams_(plan, numbers()),
+      scratch_(static_cast<size_t>(threads)) {
+    for (int k = 0; k < plan.summed.bin_count; ++k)
+        amplitudes_.push_back(std::sqrt(levels().factor(static_cast<size_t>(k))));
     for (Scratch& scratch : scratch_) {
-        scratch.sorted.resize(response_.sortedSize());
+        scratch.phases.resize(response_.phasesSize());
         for (std::vector<float>* each : {&scratch.energies, &scratch.real, &scratch.imaginary})
             each->resize(response_.cells());
         scratch.spread.resize(numbers());
@@ -174,94 +234,43 @@ bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, 
     Scratch& scratch = scratch_[thread];
     const double quantum = std::sqrt(solid_angle / rules.strength_scale) / quanta_per_unit;
     const size_t cells = response_.cells(), samples = response_.samples(), stride = cells / samples;
-    for (size_t run = 0; run < stride; ++run)
-        scaleSums(sums + 2 * run, amplitudes_.data() + run, stride, quantum, &scratch.sorted[response_.place(run)],
-                  samples);
+    for (size_t phase = 0; phase < stride; ++phase)
+        scaleSums(sums + 2 * phase, amplitudes_.data() + phase, stride, quantum,
+                  &scratch.phases[response_.place(phase)], samples);
     if (!rules.own.empty()) {
-        addOwnSums(rules, sums, cell, solid_angle, energies(thread));
-        scatter(cell, scratch.energies, 1, scratch);
+        addOwnSums(rules, sums, cell, solid_angle, energies(cell, thread));
+        scatter(cell, 1, scratch);
     }
-    response_.spread(scratch.sorted, {&cells_[cell * numbers()], numbers()});
+    response_.spread(scratch.phases, beams_.cell(cell));
     return std::any_of(sums, sums + 2 * cells, [](uint64_t sum) { return sum != 0; });
 }
 
-std::span<float> EchoField::energies(size_t thread) {
+std::span<float> EchoField::energies(size_t /*cell*/, size_t thread) {
     std::ranges::fill(scratch_[thread].energies, 0.0f);
     return scratch_[thread].energies;
 }
 
-void EchoField::addEnergies(size_t cell, std::span<const float> intensities, size_t thread) {
+void EchoField::addEnergies(size_t cell, size_t thread) {
     Scratch& scratch = scratch_[thread];
     for (size_t k = 0; k < response_.cells(); ++k)
-        scratch.sorted[response_.place(k)] = scratch.sorted[response_.place(k) + 1] = 0;
-    scatter(cell, intensities, 2, scratch);
-    response_.spread(scratch.sorted, scratch.spread);
-    addScaled(scratch.spread.data(), 1, &cells_[cell * numbers()], numbers());
+        scratch.phases[response_.place(k)] = scratch.phases[response_.place(k) + 1] = 0;
+    scatter(cell, 2, scratch);
+    response_.spread(scratch.phases, scratch.spread);
+    addScaled(scratch.spread.data(), 1, beams_.cell(cell).data(), numbers());
 }
 
-void EchoField::scatter(size_t cell, std::span<const float> intensities, uint32_t seed, Scratch& scratch) const {
-    const Beam& azimuth = plan_.cells[cell];
-    const glm::dvec3 ray = sonar_.orientation * glm::dvec3(std::cos(azimuth.centre), std::sin(azimuth.centre), 0);
-    const double width = plan_.grid.bin_width * plan_.grid.bin_count / static_cast<double>(response_.cells());
-    const double spread = azimuth.high - azimuth.low;
-    for (size_t first = 0; first < response_.cells();) {
-        // Cubes as long as a range cell, or at short range as the azimuth cell's width; powers of 2 keep them fixed.
-        const double near = (static_cast<double>(first) + 0.5) * width;
-        const double side = std::exp2(std::floor(std::log2(std::min(width, near * spread))));
-        const double finer_to = 2 * side <= width ? 2 * side / spread : std::numeric_limits<double>::infinity();
-        const double last = std::min(std::ceil(finer_to / width - 0.5), static_cast<double>(response_.cells()));
-        Cubes cubes{first, std::max(static_cast<size_t>(last), first + 1), {}, {}, {}, seed};
-        for (int axis = 0; axis < 3; ++axis) {
-            const double start = (sonar_.position[axis] + near * ray[axis]) / side, base = std::floor(start);
-            cubes.start[axis] = static_cast<float>(start - base);
-            cubes.step[axis] = static_cast<float>(width * ray[axis] / side);
-            cubes.base[axis] = squareOf(base);
-        }
-        scatterInCubes(cubes, intensities.data(), scratch.real.data(), scratch.imaginary.data());
-        first = cubes.last;
-    }
+void EchoField::scatter(size_t cell, uint32_t seed, Scratch& scratch) const {
+    water_.fill(sonar_, plan_.cells[cell], scratch.energies, seed, scratch.real, scratch.imaginary);
     for (size_t k = 0; k < response_.cells(); ++k) {
-        scratch.sorted[response_.place(k)] += scratch.real[k];
-        scratch.sorted[response_.place(k) + 1] += scratch.imaginary[k];
-    }
-}
-
-void EchoField::form(ThreadPool& threads) {
-    if (!beamformer_) return;
-    const auto eachOf = [&](size_t count, const auto& work) {
-        threads.run([&](int part, int parts) {
-            for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts)) work(i);
-        });
-    };
-    eachOf(beamformer_->groupCount(), [&](size_t group) {
-        beamformer_->sumGroup(group, cells_);
-        if (turner_) turner_->sumGroup(group, cells_);
-    });
-    eachOf(plan_.beams.size(), [&](size_t beam) {
-        beamformer_->form(beam, cells_, {&beams_[beam * numbers()], numbers()});
-        if (!turner_) return;
-        turner_->form(beam, cells_, {&turned_[beam * numbers()], numbers()});
-        addTurned(&turned_[beam * numbers()], &beams_[beam * numbers()], response_.samples());
-    });
-}
-
-void EchoField::add(size_t beam, double range, std::complex<double> field) {
-    const double width = response_.sampleWidth();
-    const double first = std::max(0.0, binAt(range - response_.reach(), width));
-    const double last = binAt(range + response_.reach(), width);
-    float* const fields = &beams()[beam * numbers()];
-    for (auto sample = static_cast<size_t>(first); sample < response_.samples() && static_cast<double>(sample) <= last;
-         ++sample) {
-        const std::complex<double> received = response_.amplitude(sample, range) * field;
-        fields[2 * sample] += static_cast<float>(received.real());
-        fields[2 * sample + 1] += static_cast<float>(received.imag());
+        scratch.phases[response_.place(k)] += scratch.real[k];
+        scratch.phases[response_.place(k) + 1] += scratch.imaginary[k];
     }
 }
 
 void EchoField::detect(types::Sonar& ping) const {
     const size_t per_bin = response_.samples() / ping.bin_count;
-    if (per_bin == 1) return square(beams().data(), ping.bins.data(), ping.bins.size());
-    const float* field = beams().data();
+    if (per_bin == 1) return square(beams_.all().data(), ping.bins.data(), ping.bins.size());
+    const float* field = beams_.all().data();
     for (float& bin : ping.bins) {
         float sum = 0;
         for (size_t i = 0; i < per_bin; ++i, field += 2) sum += field[0] * field[0] + field[1] * field[1];

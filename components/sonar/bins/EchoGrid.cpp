@@ -4,7 +4,17 @@
 #include <cmath>
 #include <utility>
 
+#include "components/sonar/bins/EchoField.hpp"
+#include "components/sonar/plan/Effects.hpp"
+
 namespace insonify::sonar {
+
+Accumulator::Accumulator(const RenderPlan& plan) : levels_(plan.config, plan.summed) {}
+
+std::unique_ptr<Accumulator> makeAccumulator(const RenderPlan& plan, int threads) {
+    if (plan.sumsFields()) return std::make_unique<EchoField>(plan, threads);
+    return std::make_unique<EchoGrid>(plan, threads);
+}
 
 Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, bool of_fields) {
     const double half = plan.directivity->boxWidth() / 2, floor = plan.directivity->floor();
@@ -40,21 +50,28 @@ Beamformer::Rules rulesOfZones(const RenderPlan& plan, size_t samples,
 }
 
 EchoGrid::EchoGrid(const RenderPlan& plan, int threads)
-    : bin_count_(static_cast<size_t>(plan.grid.bin_count)), beam_count_(plan.beams.size()) {
+    : Accumulator(plan), bin_count_(static_cast<size_t>(plan.grid.bin_count)), beam_count_(plan.beams.size()) {
     if (plan.has(Pass::Pulse))
         response_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound), plan.grid);
     if (response_)
         padded_.assign(static_cast<size_t>(threads), std::vector<float>(bin_count_ + 2 * response_->margin()));
-    takeQuality(plan);
+    EchoGrid::setQuality(plan);
 }
 
-void EchoGrid::takeQuality(const RenderPlan& plan) {
+void EchoGrid::setQuality(const RenderPlan& plan) {
     if (plan.has(Pass::Beamform)) beamformer_ = beamformerOf(plan);
     if (!passes()) echoes_.resize(plan.cells.size() * bin_count_);
 }
 
-void EchoGrid::finishBeam(size_t beam, std::span<float> padded, types::Sonar& ping) const {
-    const std::span<float> bins(ping.bins.data() + beam * bin_count_, bin_count_);
+bool EchoGrid::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread) {
+    const std::span<float> bins = energies(cell, thread);
+    const bool received = levels().fill(rules, sums, solid_angle, bins);
+    addOwnSums(rules, sums, cell, solid_angle, bins);
+    return received;
+}
+
+void EchoGrid::finishBeam(size_t beam, std::span<float> padded) const {
+    const std::span<float> bins(bins_ + beam * bin_count_, bin_count_);
     const std::span<float> formed = response_ ? padded.subspan(response_->margin(), bin_count_) : bins;
     if (beamformer_)
         beamformer_->form(beam, echoes_, formed);
@@ -63,7 +80,7 @@ void EchoGrid::finishBeam(size_t beam, std::span<float> padded, types::Sonar& pi
     if (response_) response_->spread(padded, bins);
 }
 
-void EchoGrid::finish(types::Sonar& ping, ThreadPool& threads) {
+void EchoGrid::finish(ThreadPool& threads) {
     if (passes()) return;
     const auto eachOf = [&](size_t count, const auto& work) {
         threads.run([&](int part, int parts) {
@@ -74,7 +91,7 @@ void EchoGrid::finish(types::Sonar& ping, ThreadPool& threads) {
     if (beamformer_)
         eachOf(beamformer_->groupCount(), [&](size_t group, size_t) { beamformer_->sumGroup(group, echoes_); });
     eachOf(beam_count_, [&](size_t beam, size_t part) {
-        finishBeam(beam, response_ ? std::span<float>(padded_[part]) : std::span<float>(), ping);
+        finishBeam(beam, response_ ? std::span<float>(padded_[part]) : std::span<float>());
     });
 }
 

@@ -4,11 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "components/sonar/base/ThreadPool.hpp"
 #include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/bins/Beamformer.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/Sonar.hpp"
 
 namespace insonify::sonar {
 
@@ -22,27 +21,25 @@ Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, boo
 Beamformer::Rules rulesOfZones(const RenderPlan& plan, size_t samples,
                                const std::function<Beamformer::Rules(size_t zone)>& zoneRules);
 
-/** Transfers echoes from azimuth cells to the bins of a ping: beams are formed of the cells, and the pulse spreads them
- *  in range. In a plan without either, cells are the ping's beams, and there is no work. */
-class EchoGrid {
+/** Energies of azimuth cells, of which beams are formed, and which the pulse spreads in range. In a plan without either,
+ *  cells are the ping's beams, and are filled in place. */
+class EchoGrid final : public Accumulator {
 public:
-    /** `threads`: size of the pool that will finish it. */
     EchoGrid(const RenderPlan& plan, int threads);
-    /** Switches to the same plan with other azimuth cells. */
-    void takeQuality(const RenderPlan& plan);
-
-    /** Returns the buffer for the intensities of a cell, one for each bin; each cell is filled once per ping. */
-    std::span<float> cell(size_t cell, types::Sonar& ping) {
-        return {passes() ? ping.bins.data() + cell * bin_count_ : echoes_.data() + cell * bin_count_, bin_count_};
+    void setQuality(const RenderPlan& plan) override;
+    void begin(const types::Snapshot& /*snapshot*/, types::Sonar& ping) override { bins_ = ping.bins.data(); }
+    bool fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread) override;
+    std::span<float> energies(size_t cell, size_t /*thread*/) override {
+        return {(passes() ? bins_ : echoes_.data()) + cell * bin_count_, bin_count_};
     }
-    /** Finishes the ping once all cells are filled. Allocates nothing. */
-    void finish(types::Sonar& ping, ThreadPool& threads);
+    void finish(ThreadPool& threads) override;
 
 private:
     bool passes() const { return !beamformer_ && !response_; }
-    void finishBeam(size_t beam, std::span<float> padded, types::Sonar& ping) const;
+    void finishBeam(size_t beam, std::span<float> padded) const;
 
     size_t bin_count_, beam_count_;
+    float* bins_ = nullptr;  ///< Of the ping.
     std::optional<Beamformer> beamformer_;
     std::optional<RangeResponse> response_;
     std::vector<float> echoes_;               ///< [cell][bin].

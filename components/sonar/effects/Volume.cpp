@@ -155,7 +155,7 @@ private:
 };
 
 void VolumeInPings::takeQuality() {
-    const BinGrid grid = summedGrid(plan_);
+    const BinGrid& grid = plan_.summed;
     open_.assign(plan_.cells.size(), 0.0);
     if (layers_.empty()) open_ = openSolidAngles(plan_);
     const double strength = strongest(plan_.config), beta = makeAbsorption(plan_.config).intensityPerMetre();
@@ -182,15 +182,16 @@ std::vector<float> openWater(const RenderPlan& plan) {
     types::Sonar ping;
     ping.resize(static_cast<uint32_t>(plan.grid.bin_count), static_cast<uint32_t>(plan.beams.size()));
     EchoGrid grid(plan, 1);
+    grid.begin({}, ping);
     for (size_t cell = 0; cell < open.size(); ++cell) {
-        const std::span<float> bins = grid.cell(cell, ping);
+        const std::span<float> bins = grid.energies(cell, 0);
         for (int j = 0; j < plan.grid.bin_count; ++j) {
             const double of_steradian = waterBetween(plan.grid, j, strength) * std::exp(-beta * plan.grid.centre(j));
             bins[static_cast<size_t>(j)] = static_cast<float>(open[cell] * of_steradian);
         }
     }
     ThreadPool alone(1);
-    grid.finish(ping, alone);
+    grid.finish(alone);
     plan.beams.toTableOrder(std::span(ping.bins), ping.bin_count);
     return ping.bins;
 }

@@ -35,7 +35,7 @@ public:
 
     void takeQuality() override {
         patterns_.emplace(plan_);
-        bin_count_ = static_cast<size_t>(summedGrid(plan_).bin_count);
+        bin_count_ = static_cast<size_t>(plan_.summed.bin_count);
     }
     void begin(const types::Snapshot& snapshot) override;
     void follow(const TracedPing& ping, std::span<const TracedTile> tiles) override;

@@ -531,7 +531,7 @@ PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry)
 void PathEchoes::takeQuality() {
     patterns_.emplace(plan_);
     truth_.reset();
-    bin_count_ = static_cast<size_t>(summedGrid(plan_).bin_count);
+    bin_count_ = static_cast<size_t>(plan_.summed.bin_count);
     sums_.assign(plan_.cells.size() * bin_count_, 0);
 }
 

@@ -12,8 +12,8 @@
 
 namespace insonify::sonar {
 
+class Accumulator;
 class DeformedMeshes;
-class EchoField;
 class PingEffects;
 class RayPaths;
 
@@ -51,8 +51,8 @@ public:
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;
     /** Sets the truth that the next pings fill; its grid is theirs already. Null: no truth is recorded. */
     virtual void setTruth(types::SonarTruth* truth) = 0;
-    /** Returns the field of the last ping, still to be squared into its bins; null where energies are summed. */
-    virtual EchoField* field() { return nullptr; }
+    /** Returns what has summed the last ping's echoes, before detect(). */
+    virtual Accumulator& accumulator() = 0;
     /** Returns the bent sound paths of the last ping; null where all paths are straight. */
     virtual const RayPaths* bent() const { return nullptr; }
     /** Returns whether the last ping has any echo. */

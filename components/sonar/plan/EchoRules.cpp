@@ -47,7 +47,7 @@ double samplesOfLobe(const RenderPlan& plan, double samples) {
 }  // namespace
 
 EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects) {
-    const BinGrid bins = summedGrid(plan);
+    const BinGrid& bins = plan.summed;
     EchoRules rules;
     rules.features = plan.features;
     rules.bins = bins;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/sonar/plan/Effects.hpp"
+#include "components/sonar/plan/ScattererLattice.hpp"
 #include "types/Angle.hpp"
 #include "types/Ascii.hpp"
 
@@ -71,6 +72,10 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     plan.setQuality(config.rows(), config.columnsPerBeam());
     for (const Effect* effect : effects())
         if (effect->plan(geometry, plan)) plan.effects.push_back(effect);
+    const int parts = fieldSamplingOf(plan).parts;
+    plan.summed = plan.grid;
+    plan.summed.bin_count *= parts;
+    plan.summed.bin_width /= parts;
     return plan;
 }
 

@@ -100,6 +100,7 @@ struct RenderPlan {
     std::vector<const Effect*> effects;        ///< Active effects, in order.
     std::vector<Pass> passes;                  ///< In order.
     BinGrid grid;
+    BinGrid summed;  ///< Range cells in which echoes are summed: the bins, or parts of them where fields are summed.
     MaterialLaws laws;
     std::shared_ptr<const acoustics::SoundProfile> profile;  ///< Bends the rays; null: they are straight.
     Fan beams;

@@ -40,14 +40,6 @@ FieldSampling fieldSamplingOf(const RenderPlan& plan) {
     return {samples, samples * (2 * std::max(0, half) + 1)};
 }
 
-BinGrid summedGrid(const RenderPlan& plan) {
-    BinGrid grid = plan.grid;
-    const int parts = fieldSamplingOf(plan).parts;
-    grid.bin_count *= parts;
-    grid.bin_width /= parts;
-    return grid;
-}
-
 std::vector<LatticeLevel> scattererLattice(const RenderPlan& plan) {
     if (!plan.features.has(Feature::Speckle)) return {};
     const SpeckleConfig& speckle = *plan.config.speckle;

@@ -1,7 +1,6 @@
 #pragma once
+#include <cstdint>
 #include <vector>
-
-#include "components/sonar/beams/BinGrid.hpp"
 
 namespace insonify::sonar {
 
@@ -26,8 +25,6 @@ double beamWidthOf(const RenderPlan& plan);
 /** Returns the range resolution: of the pulse, or of the bins where they determine it [m]. */
 double rangeResolutionOf(const RenderPlan& plan);
 FieldSampling fieldSamplingOf(const RenderPlan& plan);
-/** Returns the range cells in which a plan's echoes are summed: its bins, or parts of them. */
-BinGrid summedGrid(const RenderPlan& plan);
 
 /** Returns the lattices from the nearest range to the far edge of the last bin. Neighbouring spacings differ by the
  *  square root of 2, so that a resolution cell has the configured number of scatterers, and at most twice that. */

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/bins/BinLevels.hpp"
-#include "components/sonar/bins/EchoGrid.hpp"
+#include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/plan/EchoRenderer.hpp"
 #include "components/sonar/plan/Effects.hpp"
@@ -54,6 +53,7 @@ public:
     void takeShapes(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
+    Accumulator& accumulator() override { return *accumulator_; }
     bool hasEchoes() const override;
     std::vector<Omitted> culled() const override;
     const std::string& device() const override { return device_; }
@@ -73,8 +73,8 @@ private:
     void fillTruth();
     /** Passes the rasterised pictures to the deposits. */
     void take(const WaterView& water);
-    void fillBins(types::Sonar& ping);
-    void fill(size_t cell, const uint64_t* sums, size_t thread, std::span<float> bins);
+    void fillBins();
+    void fill(size_t cell, const uint64_t* sums, size_t thread);
     /** Adds the seconds since the last call to a stage. */
     void lap(Stage& stage);
 
@@ -85,7 +85,6 @@ private:
     gpu::EglContext context_;
     std::string why_on_processor_;  ///< Empty unless the device was to sum the pictures and cannot.
     std::string device_;
-    BinLevels levels_;
     Culler culler_;
     ThreadPool threads_;
     SurfacePass surface_;
@@ -96,7 +95,7 @@ private:
     std::optional<WaterTruth> water_;              ///< Made with it, where effects have own sums.
     std::unique_ptr<PictureDeposit> cpu_deposit_;  ///< Made for truth, where the device deposits.
     PictureDeposit* truth_deposit_ = nullptr;      ///< The deposit on the processor that records the truth.
-    std::optional<EchoGrid> grid_;
+    std::unique_ptr<Accumulator> accumulator_;
     EchoRules rules_;
     std::span<const uint64_t> sums_;  ///< Sums of the last ping, until the quality changes.
     bool rendered_ = false;           ///< Whether there is a last ping.
@@ -111,7 +110,6 @@ RasterEchoes::RasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry, 
       context_(wanted_device_),
       why_on_processor_(checkDevice()),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
-      levels_(plan.config, plan.grid),
       culler_(*geometry_, {nearest_rasterised, reachOf(plan), plan.config.draw_all}),
       threads_(plan.options.threads),
       surface_(context_, surfaceSetup(), culler_, threads_) {
@@ -146,7 +144,10 @@ SurfacePass::Setup RasterEchoes::surfaceSetup() const {
 
 void RasterEchoes::makeDeposit() {
     DepositSetup setup = depositSetup(plan_, effects_);
-    grid_ ? grid_->takeQuality(plan_) : void(grid_.emplace(plan_, threads_.size()));
+    if (accumulator_)
+        accumulator_->setQuality(plan_);
+    else
+        accumulator_ = makeAccumulator(plan_, threads_.size());
     rules_ = setup.rules;
     if (depositsOnProcessor())
         deposit_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
@@ -198,21 +199,20 @@ void RasterEchoes::take(const WaterView& water) {
     if (truth_ && cpu_deposit_) takeAll(*cpu_deposit_);
 }
 
-void RasterEchoes::fillBins(types::Sonar& ping) {
+void RasterEchoes::fillBins() {
     if (truth_ && water_) water_->begin();
     threads_.run([&](int part, int parts) {
         for (auto cell = static_cast<size_t>(part); cell < plan_.cells.size(); cell += static_cast<size_t>(parts))
-            fill(cell, &sums_[cell * rules_.sumCount()], static_cast<size_t>(part), grid_->cell(cell, ping));
+            fill(cell, &sums_[cell * rules_.sumCount()], static_cast<size_t>(part));
     });
-    grid_->finish(ping, threads_);
+    accumulator_->finish(threads_);
 }
 
-void RasterEchoes::fill(size_t cell, const uint64_t* sums, size_t thread, std::span<float> bins) {
+void RasterEchoes::fill(size_t cell, const uint64_t* sums, size_t thread) {
     const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
     if (truth_ && water_) water_->take(rules_, sums, cell, pixel, thread);
-    count(Counter::Bins, bins.size());
-    levels_.fill(rules_, sums, pixel, bins);
-    addOwnSums(rules_, sums, cell, pixel, bins);
+    count(Counter::Bins, static_cast<uint64_t>(plan_.grid.bin_count));
+    accumulator_->fill(cell, rules_, sums, pixel, thread);
 }
 
 void RasterEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
@@ -233,7 +233,8 @@ void RasterEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, S
     sums_ = deposit_->finish();
     if (truth_ && cpu_deposit_) cpu_deposit_->finish();
     lap(stages[DepositStage]);
-    fillBins(ping);
+    accumulator_->begin(snapshot, ping);
+    fillBins();
     if (truth_) fillTruth();
     rendered_ = true;
     lap(stages[BeamStage]);
@@ -268,12 +269,11 @@ bool RasterEchoes::changePlan() {
     why_on_processor_ = checkDevice();
     if (!surface_.serves(surfaceSetup())) return false;
     culler_.setRules({nearest_rasterised, reachOf(plan_), plan_.config.draw_all});
-    levels_ = BinLevels(plan_.config, plan_.grid);
     surface_.takeLaws();
     surface_.resize(plan_.frusta);
     sums_ = {};
     rendered_ = false;
-    grid_.reset();
+    accumulator_.reset();
     makeDeposit();
     context_.check();
     return true;

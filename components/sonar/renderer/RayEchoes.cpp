@@ -9,9 +9,7 @@
 #include <utility>
 
 #include "components/sonar/base/ThreadPool.hpp"
-#include "components/sonar/bins/BinLevels.hpp"
-#include "components/sonar/bins/EchoField.hpp"
-#include "components/sonar/bins/EchoGrid.hpp"
+#include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/multipath/WallRays.hpp"
@@ -66,7 +64,7 @@ public:
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool forget() override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
-    EchoField* field() override { return field_ ? &*field_ : nullptr; }
+    Accumulator& accumulator() override { return *accumulator_; }
     const RayPaths* bent() const override { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
     bool hasEchoes() const override { return received_; }
     const std::string& device() const override { return device_; }
@@ -79,9 +77,9 @@ private:
         std::vector<std::array<float, tile_samples>> passed;  ///< Shares of each tile's samples, where there are walls.
         MappedTiles mapped;
         std::vector<uint64_t> sums;
-        std::optional<TruthTable> shown;      ///< Truth of the sums, where it is recorded.
-        std::vector<uint64_t> one_beam;       ///< For TruthSink.
-        std::vector<uint64_t> reported_sums;  ///< Sums of energies, where the truth of fields is recorded.
+        std::optional<TruthTable> shown;   ///< Truth of the sums, where it is recorded.
+        std::vector<uint64_t> one_beam;    ///< For TruthSink.
+        std::vector<uint64_t> truth_sums;  ///< Sums of energies, where the truth of fields is recorded.
         size_t number = 0;
         Stages stages{};
         Clock::time_point last;
@@ -113,9 +111,9 @@ private:
                 surface_maps_ ? &*surface_maps_ : nullptr};
     }
     TracedPing tracedPing() {
-        return {rules_, levels_, view_, visibility_, scene(), truth_ ? truth_grid_->water() : nullptr};
+        return {rules_,  accumulator_->levels(), view_, visibility_, scene(), truth_ ? truth_grid_->water() : nullptr};
     }
-    void addEnergies(types::Sonar& ping);
+    void addEnergies();
     void depositPart(const Part& part, std::span<TracedTile> tiles, Worker& worker);
     /** Deposits tiles. `behind_walls`: without the water in front of the hits. */
     void deposit(std::span<const TracedTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
@@ -126,11 +124,11 @@ private:
     bool traceThrough(TracedTile& tile) const;
     /** Follows rays through walls that ring or have a fill, and between walls; deposits their echoes. */
     void followWalls(std::span<const TracedTile> tiles, int first_beam, Worker& worker) const;
-    void work(Worker& worker, types::Sonar& ping);
-    void workOn(const Part& part, Worker& worker, types::Sonar& ping);
+    void work(Worker& worker);
+    void workOn(const Part& part, Worker& worker);
     std::span<TracedTile> trace(const Part& part, Worker& worker) const;
     /** Fills the bins of a cell from its sums. Returns whether it has any echo. */
-    bool fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping);
+    bool fill(size_t cell, const Worker& worker, const uint64_t* sums);
     /** Adds a part's sums to its strip's. Returns whether these are now complete, and in the worker. */
     bool gather(const Part& part, Worker& worker);
 
@@ -138,14 +136,12 @@ private:
     types::GeometryPtr geometry_;
     PingEffects& effects_;
     EchoRules rules_;
-    std::optional<EchoRules> truth_rules_;  ///< Rules for energies, where fields are summed.
+    std::optional<EchoRules> energy_rules_;  ///< For the truth, where fields are summed.
     TracedView view_;
     TileDirections directions_;
-    BinLevels levels_;
-    WaterView water_;                 ///< Water view of this ping.
-    WaterMirror surface_;             ///< Ends rays that have passed walls.
-    std::optional<EchoGrid> grid_;    ///< For energies,
-    std::optional<EchoField> field_;  ///< or for fields.
+    WaterView water_;      ///< Water view of this ping.
+    WaterMirror surface_;  ///< Ends rays that have passed walls.
+    std::unique_ptr<Accumulator> accumulator_;
     std::unique_ptr<ObjectPlaces> places_;
     RayVisibility visibility_;
     std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
@@ -175,7 +171,6 @@ RayEchoes::RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEf
       geometry_(std::move(geometry)),
       effects_(effects),
       rules_(makeEchoRules(plan, effects)),
-      levels_(plan.config, summedGrid(plan)),
       surface_(plan.config),
       visibility_(*geometry_),
       threads_(plan.options.threads),
@@ -250,9 +245,7 @@ void RayEchoes::takeLaws() {
 
 bool RayEchoes::changePlan() {
     ray_paths_.reset();
-    grid_.reset();
-    field_.reset();
-    truth_rules_.reset();
+    accumulator_.reset();
     takeLaws();
     takePlan();
     return true;
@@ -262,12 +255,11 @@ bool RayEchoes::forget() {
     if (ray_paths_) return false;
     visibility_.forget();
     rules_ = makeEchoRules(plan_, effects_);
-    if (truth_rules_) truth_rules_ = makeEnergyRules(plan_, effects_);
+    if (energy_rules_) energy_rules_ = makeEnergyRules(plan_, effects_);
     return true;
 }
 
 void RayEchoes::takePlan() {
-    levels_ = BinLevels(plan_.config, summedGrid(plan_));
     surface_ = WaterMirror(plan_.config);
     if (plan_.profile || plan_.config.motion_in_ping) {
         if (!ray_paths_) ray_paths_.emplace(plan_, *geometry_);
@@ -280,14 +272,12 @@ void RayEchoes::takePlan() {
 void RayEchoes::takeQuality() {
     rules_ = makeEchoRules(plan_, effects_);
     view_.cells = makeAngularView(plan_);
-    if (plan_.features.has(Feature::Speckle)) {
-        field_.emplace(plan_, threads_.size());
-        truth_rules_ = makeEnergyRules(plan_, effects_);
-    } else if (grid_) {
-        grid_->takeQuality(plan_);
-    } else {
-        grid_.emplace(plan_, threads_.size());
-    }
+    energy_rules_.reset();
+    if (plan_.sumsFields()) energy_rules_ = makeEnergyRules(plan_, effects_);
+    if (accumulator_)
+        accumulator_->setQuality(plan_);
+    else
+        accumulator_ = makeAccumulator(plan_, threads_.size());
     shareOut();
     truth_grid_.reset();
 }
@@ -321,9 +311,9 @@ void RayEchoes::makeTruth() {
     truth_grid_.emplace(plan_, rules_, whole, threads_.size());
     for (Worker& worker : workers_) {
         worker.shown.emplace(static_cast<size_t>(beamsTogether()), static_cast<size_t>(plan_.grid.bin_count));
-        const EchoRules& reported = field_ ? *truth_rules_ : rules_;
-        worker.one_beam.assign(reported.sumCount(), 0);
-        if (field_) worker.reported_sums.assign(static_cast<size_t>(beamsTogether()) * reported.sumCount(), 0);
+        worker.one_beam.assign((energy_rules_ ? *energy_rules_ : rules_).sumCount(), 0);
+        if (energy_rules_)
+            worker.truth_sums.assign(static_cast<size_t>(beamsTogether()) * energy_rules_->sumCount(), 0);
     }
 }
 
@@ -431,7 +421,7 @@ bool RayEchoes::traceThrough(std::span<TracedTile> tiles, Worker& worker) const 
 void RayEchoes::followWalls(std::span<const TracedTile> tiles, int first_beam, Worker& worker) const {
     const PlacedScene scene = this->scene();
     WallRays rays(rules_, view_, visibility_, scene, surface_, reverberation_, plan_.config.max_walls,
-                  levels_.lossOfWater());
+                  accumulator_->levels().lossOfWater());
     for (const TracedTile& tile : tiles)
         if (rays.begin(tile, directions_.rays(view_.cells, tile.first_column, tile.first_row)))
             while (const TracedTile* echoes = rays.next()) deposit({echoes, 1}, true, first_beam, worker);
@@ -439,23 +429,20 @@ void RayEchoes::followWalls(std::span<const TracedTile> tiles, int first_beam, W
 
 void RayEchoes::deposit(std::span<const TracedTile> tiles, bool behind_walls, int first_beam, Worker& worker) const {
     if (!surface_maps_) return depositAsMet(tiles, behind_walls, first_beam, worker);
-    worker.mapped.take(view_, scene(), tiles, field_.has_value());
+    worker.mapped.take(view_, scene(), tiles, plan_.sumsFields());
     depositAsMet(worker.mapped.whole(), behind_walls, first_beam, worker);
     depositAsMet(worker.mapped.rest(), true, first_beam, worker);
 }
 
 void RayEchoes::depositAsMet(std::span<const TracedTile> tiles, bool behind_walls, int first_beam,
                              Worker& worker) const {
-    const EchoSums sums{first_beam, worker.sums.data(), nullptr, behind_walls};
-    if (field_)
-        depositPatches(rules_, view_, scene(), tiles, sums);
-    else if (!truth_)
-        depositTiles(rules_, view_, scene(), tiles, sums);
-    if (!truth_) return;
-    std::vector<uint64_t>& reported = field_ ? worker.reported_sums : worker.sums;
-    const TruthSink truth{*worker.shown, {}, worker.one_beam};
-    depositTiles(field_ ? *truth_rules_ : rules_, view_, scene(), tiles,
-                 {first_beam, reported.data(), &truth, behind_walls});
+    EchoSums sums{first_beam, worker.sums.data(), nullptr, behind_walls};
+    if (energy_rules_) depositPatches(rules_, view_, scene(), tiles, sums);
+    if (energy_rules_ && !truth_) return;
+    std::optional<TruthSink> truth;
+    if (truth_) sums.truth = &truth.emplace(TruthSink{*worker.shown, {}, worker.one_beam});
+    if (energy_rules_) sums.sums = worker.truth_sums.data();
+    depositTiles(energy_rules_ ? *energy_rules_ : rules_, view_, scene(), tiles, sums);
 }
 
 void RayEchoes::depositPart(const Part& part, std::span<TracedTile> tiles, Worker& worker) {
@@ -469,7 +456,7 @@ void RayEchoes::depositPart(const Part& part, std::span<TracedTile> tiles, Worke
         deposit(tiles, true, part.first_beam, worker);
 }
 
-void RayEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
+void RayEchoes::workOn(const Part& part, Worker& worker) {
     const std::span<TracedTile> tiles = trace(part, worker);
     worker.lap(DrawStage);
     effects_.followRays(tracedPing(), tiles);
@@ -478,48 +465,43 @@ void RayEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
             worker.received |= fill(static_cast<size_t>(part.first_beam + beam), worker,
-                                    &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], ping);
+                                    &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()]);
     for (int beam = 0; truth_ && beam < part.beams; ++beam)
         truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
                           *truth_);
     worker.lap(BeamStage);
 }
 
-bool RayEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping) {
+bool RayEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums) {
     if (truth_ && truth_grid_->water())
         truth_grid_->water()->take(rules_, sums, cell, view_.cells.cell(), worker.number);
     count(Counter::Bins, static_cast<uint64_t>(rules_.bins.bin_count));
-    if (field_) return field_->fill(cell, rules_, sums, view_.cells.cell(), worker.number);
-    const std::span<float> bins = grid_->cell(cell, ping);
-    const bool received = levels_.fill(rules_, sums, view_.cells.cell(), bins);
-    addOwnSums(rules_, sums, cell, view_.cells.cell(), bins);
-    return received;
+    return accumulator_->fill(cell, rules_, sums, view_.cells.cell(), worker.number);
 }
 
-void RayEchoes::addEnergies(types::Sonar& ping) {
+void RayEchoes::addEnergies() {
     const TracedPing traced = tracedPing();
     threads_.run([&](int part, int parts) {
         for (int cell = part; cell < view_.cells.beams; cell += parts) {
             const auto i = static_cast<size_t>(cell);
             const auto thread = static_cast<size_t>(part);
-            const std::span<float> bins = field_ ? field_->energies(thread) : grid_->cell(i, ping);
-            const bool any = effects_.addEnergies(traced, i, bins);
-            if (any && field_) field_->addEnergies(i, bins, thread);
-            workers_[thread].received |= any;
+            if (!effects_.addEnergies(traced, i, accumulator_->energies(i, thread))) continue;
+            accumulator_->addEnergies(i, thread);
+            workers_[thread].received = true;
         }
     });
 }
 
-void RayEchoes::work(Worker& worker, types::Sonar& ping) {
+void RayEchoes::work(Worker& worker) {
     worker.last = Clock::now();
-    for (size_t i = next_++; i < parts_.size(); i = next_++) workOn(parts_[i], worker, ping);
+    for (size_t i = next_++; i < parts_.size(); i = next_++) workOn(parts_[i], worker);
 }
 
 void RayEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
     Worker& own = workers_.front();
     own.last = Clock::now();
     place(snapshot);
-    if (field_) field_->begin(snapshot);
+    accumulator_->begin(snapshot, ping);
     if (truth_ && !truth_grid_) makeTruth();
     if (truth_) truth_grid_->begin();
     stages[CullStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
@@ -534,15 +516,12 @@ void RayEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stag
     }
     const bool alone = parts_.size() == 1;
     if (alone)
-        work(own, ping);
+        work(own);
     else
-        threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
+        threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)]); });
     own.last = Clock::now();
-    if (effects_.followsRays()) addEnergies(ping);
-    if (field_)
-        field_->form(threads_);
-    else
-        grid_->finish(ping, threads_);
+    if (effects_.followsRays()) addEnergies();
+    accumulator_->finish(threads_);
     if (truth_) truth_grid_->finish(*truth_, threads_);
     if (truth_) effects_.addToTruth(tracedPing(), *truth_);
     stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();

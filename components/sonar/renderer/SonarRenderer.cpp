@@ -195,10 +195,10 @@ void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth)
 
 void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) {
     const auto start = std::chrono::steady_clock::now();
-    EchoField* const field = parts_->echoes->field();
-    PingInMaking made{snapshot, ping, field, parts_->echoes->bent(), parts_->truthOf(ping)};
+    Accumulator& echoes = parts_->echoes->accumulator();
+    PingInMaking made{snapshot, ping, echoes.field(), parts_->echoes->bent(), parts_->truthOf(ping)};
     parts_->effects.addEchoes(made);
-    if (field) field->detect(ping);
+    echoes.detect(ping);
     parts_->effects.addToBins(ping);
     parts_->plan.beams.toTableOrder(std::span(ping.bins), ping.bin_count);
     parts_->stages[BeamStage].seconds +=
@@ -218,14 +218,14 @@ bool SonarRenderer::takeAlike(const types::Sonar& ping, types::Sonar& alike) con
 }
 
 void SonarRenderer::setElements(const types::Sonar& ping, types::SonarElements* signals) {
-    if (signals && !(parts_->echoes->field() && parts_->plan.config.elements))
+    if (signals && !(parts_->plan.sumsFields() && parts_->plan.config.elements))
         throw std::logic_error("the sonar has no elements");
     parts_->heard_ping = &ping;
     parts_->signals = signals;
 }
 
 void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements& signals) {
-    const EchoField* field = parts_->echoes->field();
+    const EchoField* field = parts_->echoes->accumulator().field();
     if (!parts_->array) parts_->array.emplace(lineArrayOf(parts_->plan.config));
     takeSignals(parts_->plan, *field, *parts_->array, signals);
     signals.time = ping.time;
