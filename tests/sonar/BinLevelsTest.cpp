@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "components/sonar/bins/BinLevels.hpp"
+#include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 
 namespace insonify::sonar {

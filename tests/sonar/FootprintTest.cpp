@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "components/sonar/bins/Limb.hpp"
+#include "components/sonar/bins/Estimators.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "components/sonar/bins/Limb.hpp"
+#include "components/sonar/bins/Estimators.hpp"
 
 namespace insonify::sonar {
 namespace {

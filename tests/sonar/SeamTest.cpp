@@ -8,7 +8,6 @@
 #include <random>
 
 #include "components/sonar/surfaces/FacetLobes.hpp"
-#include "components/sonar/surfaces/MeshEdges.hpp"
 #include "components/sonar/surfaces/StraightEdges.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "components/sonar/rays/TileDirections.hpp"
+#include "components/sonar/rays/TileCells.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 

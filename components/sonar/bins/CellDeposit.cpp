@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "components/sonar/base/Counters.hpp"
-#include "components/sonar/bins/Limb.hpp"
+#include "components/sonar/bins/Estimators.hpp"
 #include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {
@@ -46,11 +46,9 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void coverAll(const Cells& cells
 /** Returns the estimator with the features of a plan. */
 const EstimatorEntry& estimatorOf(const Features& features) {
     Features known;
-    for (const auto& all : {physicalEstimators(), nearestEstimators(), meanEstimators()})
-        for (const EstimatorEntry& entry : all) known = known | entry.features;
-    for (const auto& all : {physicalEstimators(), nearestEstimators(), meanEstimators()})
-        for (const EstimatorEntry& entry : all)
-            if (entry.features == (features & known)) return entry;
+    for (const EstimatorEntry& entry : estimators()) known = known | entry.features;
+    for (const EstimatorEntry& entry : estimators())
+        if (entry.features == (features & known)) return entry;
     throw std::logic_error("no estimator has the features of the plan");
 }
 

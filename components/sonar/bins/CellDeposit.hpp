@@ -57,9 +57,7 @@ private:
     const EstimatorEntry& estimator_;
 };
 
-/** Estimators by file: `physical`, one bin for each sample, means of `cerqueira2017`. */
-std::span<const EstimatorEntry> physicalEstimators();
-std::span<const EstimatorEntry> nearestEstimators();
-std::span<const EstimatorEntry> meanEstimators();
+/** Returns the estimators: `physical`, one bin for each sample, means of `cerqueira2017`. */
+std::span<const EstimatorEntry> estimators();
 
 }  // namespace insonify::sonar

@@ -4,17 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "components/sonar/bins/EchoField.hpp"
 #include "components/sonar/plan/Effects.hpp"
 
 namespace insonify::sonar {
-
-Accumulator::Accumulator(const RenderPlan& plan) : levels_(plan.config, plan.summed) {}
-
-std::unique_ptr<Accumulator> makeAccumulator(const RenderPlan& plan, int threads) {
-    if (plan.sumsFields()) return std::make_unique<EchoField>(plan, threads);
-    return std::make_unique<EchoGrid>(plan, threads);
-}
 
 Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, bool of_fields) {
     const double half = plan.directivity->boxWidth() / 2, floor = plan.directivity->floor();

@@ -9,7 +9,6 @@
 
 #include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/multipath/PathCells.hpp"
-#include "components/sonar/multipath/SharedBins.hpp"
 #include "components/sonar/multipath/WayPatterns.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
 

@@ -1,6 +1,9 @@
 #pragma once
+#include <atomic>
 #include <glm/vec3.hpp>
 
+#include "components/sonar/bins/Estimators.hpp"
+#include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 
@@ -33,5 +36,34 @@ HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const CellAng
 
 /** Returns the plane of the triangle that ray `i` of a tile has hit, sonar axes. */
 MirrorPlane planeMet(const PlacedScene& scene, const TileHits& hits, int i);
+
+namespace {
+
+/** Adds energies to bins that all threads share. */
+#define HAVE_PHYSICAL
+struct SharedBins : Bins {
+    using Bins::Bins;
+    void addToBin(uint cell, uint bin, double amount, double) const {
+        if (!(amount > 0)) return;
+        std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (by_way) std::atomic_ref(by_way[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (truth) truth->show(cell, bin, ObjectEcho::of(quanta(amount), sine_elevation, sine_grazing, object, 1));
+    }
+    PathTruth* truth = nullptr;  ///< Receives each echo's truth, with the next three values; null: none.
+    uint32_t object = 0;
+    double sine_elevation = 0,
+           sine_grazing = 0;     ///< Sines of the elevation at the sonar and of the grazing angle at the object [1].
+    uint64_t* by_way = nullptr;  ///< Additional sums, of the current kind of path; null: none.
+    static constexpr std::memory_order relaxed = std::memory_order_relaxed;
+#include "shaders/deposit.glsl"
+};
+#undef HAVE_PHYSICAL
+
+/** Returns a quantum of the sums [sr]. */
+double quantumOf(const TracedPing& ping) {
+    return ping.view.cells.cell() / (quanta_per_unit * ping.rules.strength_scale);
+}
+
+}  // namespace
 
 }  // namespace insonify::sonar

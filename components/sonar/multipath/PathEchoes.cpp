@@ -11,7 +11,6 @@
 #include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/multipath/PathCells.hpp"
-#include "components/sonar/multipath/SharedBins.hpp"
 #include "components/sonar/multipath/WallRay.hpp"
 #include "components/sonar/multipath/WayPatterns.hpp"
 #include "components/sonar/plan/ScattererLattice.hpp"

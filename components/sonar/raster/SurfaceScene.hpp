@@ -7,7 +7,7 @@
 #include "components/sonar/base/Interface.hpp"
 #include "components/sonar/surfaces/FacetLobes.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
-#include "components/sonar/surfaces/Planes.hpp"
+#include "components/sonar/surfaces/MeshFacts.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {

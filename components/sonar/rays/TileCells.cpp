@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "components/sonar/base/Counters.hpp"
-#include "components/sonar/rays/MappedCells.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -164,6 +164,89 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositTiles(const EchoRule
     }
     cells.finish();
     count(Counter::SamplesMerged, cells.merged());
+}
+
+INSONIFY_VECTOR_CLONES void MappedCells::setCosines(const PlacedScene& scene, int first, int end, Cells& cells) {
+    for (int i = first; i < end; ++i) {
+        const double x = cells.cos_el[i] * cells.cos_az[i], y = cells.cos_el[i] * cells.sin_az[i], z = cells.sin_el[i];
+        const double nx = cells.normal_x[i], ny = cells.normal_y[i], nz = cells.normal_z[i];
+        const double facing = std::abs(nx * x + ny * y + nz * z), larger = facing > 1e-6 ? facing : 1e-6;
+        const double extent = cells.width[i] > cells.height[i] ? cells.width[i] : cells.height[i];
+        x_[i] = static_cast<float>(x);
+        y_[i] = static_cast<float>(y);
+        z_[i] = static_cast<float>(z);
+        extent_[i] = static_cast<float>(std::abs(cells.distance[i]) / larger * extent);
+        normal_[i] = static_cast<float>(std::sqrt(nx * nx + ny * ny + nz * nz));
+    }
+    for (int i = first, next; i < end; i = next) {
+        for (next = i + 1; next < end && command_[next] == command_[i];) ++next;
+        if (command_[i] == TileHits::nothing) continue;
+        const CommandRecord& command = scene.commands[command_[i]];
+        const auto material = static_cast<int>(command.material);
+        if (!scene.normal_maps.isMapped(material)) continue;
+        scene.normal_maps.cosines(
+            scene.objects[command.object], command.object, material,
+            {next - i, triangle_ + i, u_ + i, v_ + i, x_ + i, y_ + i, z_ + i, extent_ + i, normal_ + i},
+            cells.mapped + i);
+    }
+}
+
+TileDirections::TileDirections(const TracedView& view, int strip_columns)
+    : tile_(view.shape.all),
+      strip_columns_(strip_columns),
+      tiles_across_(static_cast<size_t>((strip_columns + tile_.columns - 1) / tile_.columns)) {
+    const AngularView& cells = view.cells;
+    for (int strip = 0; strip < cells.columns(); strip += strip_columns) {
+        const int end = std::min(strip + strip_columns, cells.columns());
+        for (int first = strip; first < strip + strip_columns; first += tile_.columns) {
+            Angles& angles = columns_.emplace_back();
+            for (int i = 0; i < tile_samples; ++i) {
+                const int column = first + view.shape.at[i].columns;
+                angles.at[i] = std::min(column, end - 1);
+                angles.active |= static_cast<uint32_t>(column < end) << i;
+                const AngularView::Direction& azimuth = cells.azimuths[cells.at(angles.at[i]) + 1];
+                angles.cosine[i] = azimuth.cosine;
+                angles.sine[i] = azimuth.sine;
+            }
+        }
+    }
+    for (int first = 0; first < cells.rows; first += tile_.rows) {
+        Angles& angles = rows_.emplace_back();
+        for (int i = 0; i < tile_samples; ++i) {
+            const int row = first + view.shape.at[i].rows;
+            angles.at[i] = std::min(row, cells.rows - 1);
+            angles.active |= static_cast<uint32_t>(row < cells.rows) << i;
+            const AngularView::Elevation& elevation = cells.elevations[static_cast<size_t>(2 * angles.at[i] + 1)];
+            angles.cosine[i] = elevation.cosine;
+            angles.sine[i] = elevation.sine;
+        }
+    }
+}
+
+INSONIFY_VECTOR_CLONES TileRays TileDirections::product(const Angles& across, const Angles& up) {
+    TileRays rays;
+    for (int i = 0; i < tile_samples; ++i) {
+        rays.x[i] = static_cast<float>(up.cosine[i] * across.cosine[i]);
+        rays.y[i] = static_cast<float>(up.cosine[i] * across.sine[i]);
+        rays.z[i] = static_cast<float>(up.sine[i]);
+    }
+    return rays;
+}
+
+TileRays TileDirections::rays(const AngularView& view, int column, int row) const {
+    const auto tile = static_cast<size_t>(column % strip_columns_ / tile_.columns);
+    const Angles& across = columns_[static_cast<size_t>(column / strip_columns_) * tiles_across_ + tile];
+    const Angles& up = rows_[static_cast<size_t>(row / tile_.rows)];
+    TileRays rays = product(across, up);
+    rays.active = across.active & up.active;
+    if (!view.conical) return rays;
+    for (int i = 0; i < tile_samples; ++i) {
+        const glm::vec3 ray(view.direction(across.at[i], up.at[i]));
+        rays.x[i] = ray.x;
+        rays.y[i] = ray.y;
+        rays.z[i] = ray.z;
+    }
+    return rays;
 }
 
 }  // namespace insonify::sonar

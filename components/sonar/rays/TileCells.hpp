@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <span>
+#include <vector>
 
 #include "components/sonar/bins/CellDeposit.hpp"
 #include "components/sonar/rays/NormalMapping.hpp"
@@ -172,5 +173,62 @@ inline void putApparent(Cells& cells, int i, const ApparentPlane& plane) {
  *  nothing. */
 void depositTiles(const EchoRules& rules, const TracedView& view, const PlacedScene& scene,
                   std::span<const TracedTile> tiles, const EchoSums& to);
+
+/** Adds the fields of tiles to sums, [range cell][real, imaginary] with sign. All samples of a tile that hit the same
+ *  triangle are one patch of scatterers. Allocates nothing. */
+void depositPatches(const EchoRules& rules, const TracedView& view, const PlacedScene& scene,
+                    std::span<const TracedTile> tiles, const EchoSums& to);
+
+/** Places of a batch's cells in normal maps. Their cosines are computed together. */
+class MappedCells {
+public:
+    /** Records the place of cell i: the hits' command, its triangle within the object's mesh, and barycentric
+     *  coordinates of the triangle's second and third corner [1]. */
+    void place(int i, uint32_t command, uint32_t triangle, float u, float v) {
+        command_[i] = command;
+        triangle_[i] = triangle;
+        u_[i] = u;
+        v_[i] = v;
+    }
+    /** Records that cell i hits nothing. */
+    void placeMiss(int i) { command_[i] = TileHits::nothing; }
+
+    /** Sets Cells::mapped of the cells from `first` to before `end` whose materials have maps. */
+    void setCosines(const PlacedScene& scene, int first, int end, Cells& cells);
+
+private:
+    static_assert(Cells::capacity <= NormalMapping::max_samples);
+
+    uint32_t command_[Cells::capacity], triangle_[Cells::capacity];
+    float u_[Cells::capacity], v_[Cells::capacity];
+    float x_[Cells::capacity], y_[Cells::capacity], z_[Cells::capacity];  ///< As in NormalMapping::Samples.
+    float extent_[Cells::capacity], normal_[Cells::capacity];             ///< As in NormalMapping::Samples.
+};
+
+/** Directions of the rays of tiles, from tables for the columns and the rows of tiles. */
+class TileDirections {
+public:
+    TileDirections() = default;
+    /** `strip_columns`: the columns of a strip; tiles of one strip have no columns of the next. */
+    TileDirections(const TracedView& view, int strip_columns);
+
+    /** Returns the rays of the tile that begins at a column and a row; rays outside of the strip and of the view are
+     *  not active. */
+    TileRays rays(const AngularView& view, int column, int row) const;
+
+private:
+    /** The angles of a tile's samples in one direction. */
+    struct Angles {
+        alignas(64) double cosine[tile_samples], sine[tile_samples];
+        int at[tile_samples];  ///< Column or row in the view.
+        uint32_t active = 0;   ///< Bit i: sample i is inside of the strip, or of the view.
+    };
+    static TileRays product(const Angles& across, const Angles& up);
+
+    TileShape::Extent tile_{1, 1};
+    int strip_columns_ = 1;
+    size_t tiles_across_ = 1;  ///< Tiles in a strip.
+    std::vector<Angles> columns_, rows_;
+};
 
 }  // namespace insonify::sonar

@@ -1,11 +1,9 @@
-#include "components/sonar/rays/TilePatches.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <glm/geometric.hpp>
 
-#include "components/sonar/rays/MappedCells.hpp"
 #include "components/sonar/rays/Scatterers.hpp"
+#include "components/sonar/rays/TileCells.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {

@@ -19,8 +19,7 @@
 #include "components/sonar/rays/MeshesAhead.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
-#include "components/sonar/rays/TileDirections.hpp"
-#include "components/sonar/rays/TilePatches.hpp"
+#include "components/sonar/rays/TileCells.hpp"
 #include "components/sonar/surfaces/DeformedMeshes.hpp"
 #include "components/sonar/surfaces/FacetLobes.hpp"
 #include "components/sonar/surfaces/ObjectPlaces.hpp"
@@ -111,7 +110,7 @@ private:
                 surface_maps_ ? &*surface_maps_ : nullptr};
     }
     TracedPing tracedPing() {
-        return {rules_,  accumulator_->levels(), view_, visibility_, scene(), truth_ ? truth_grid_->water() : nullptr};
+        return {rules_, accumulator_->levels(), view_, visibility_, scene(), truth_ ? truth_grid_->water() : nullptr};
     }
     void addEnergies();
     void depositPart(const Part& part, std::span<TracedTile> tiles, Worker& worker);

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "components/sonar/surfaces/MeshEdges.hpp"
+#include "components/sonar/surfaces/StraightEdges.hpp"
 
 namespace insonify::sonar {
 namespace {

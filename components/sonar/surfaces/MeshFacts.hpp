@@ -2,6 +2,7 @@
 #include <array>
 #include <glm/mat3x3.hpp>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,13 @@
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {
+
+/** Returns the planes of a mesh's triangles. */
+std::vector<PlaneRecord> planesOf(const types::Mesh& mesh);
+/** Fills a list of that size with the planes of a mesh's triangles. */
+void findPlanes(const types::Mesh& mesh, std::span<PlaneRecord> planes);
+/** Returns the planes of all meshes' triangles, mesh after mesh, in their order. */
+std::vector<PlaneRecord> planesOf(const types::Geometry& geometry);
 
 /** Data that sonars derive from a mesh alone, each made when it is first requested. All sonars of a process, and all
  *  geometries that share the mesh, share its MeshFacts. Thread-safe. */

@@ -1,7 +1,9 @@
-#include "components/sonar/bins/BinLevels.hpp"
+#include "components/sonar/bins/Accumulator.hpp"
 
 #include <cmath>
 
+#include "components/sonar/bins/EchoField.hpp"
+#include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 
 namespace insonify::sonar {
@@ -32,6 +34,13 @@ bool BinLevels::fill(const EchoRules& rules, const uint64_t* sums, double solid_
         }
     }
     return any != 0;
+}
+
+Accumulator::Accumulator(const RenderPlan& plan) : levels_(plan.config, plan.summed) {}
+
+std::unique_ptr<Accumulator> makeAccumulator(const RenderPlan& plan, int threads) {
+    if (plan.sumsFields()) return std::make_unique<EchoField>(plan, threads);
+    return std::make_unique<EchoGrid>(plan, threads);
 }
 
 }  // namespace insonify::sonar
