@@ -46,48 +46,78 @@ double backscatterOverCosine(vec4 law, double mu, double cosine, LobeSlopes slop
     return section;
 }
 
+// A vector, in axes with z up at elevation 90 degrees.
+struct Axis {
+    double x, y, z;
+};
+
+Axis cross(Axis a, Axis b) { return Axis(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
+
+// How a sonar sees a sample of a facet: planeFootprint()'s plane, direction and extent.
+struct LobeView {
+    Axis normal, axis;                      // of the facet, any length; `axis` is its first principal direction
+    double range;                           // [m]
+    double cos_az, sin_az, cos_el, sin_el;  // direction of the sample's middle
+    double width, height;                   // [rad]
+    double mapped;                          // cosine of a mapped normal; 0: the plane's normal applies
+};
+
+// A principal direction of a facet in a view, times its length: away from the sonar, and square of the rest.
+struct SeenAxis {
+    double along, across;
+    double sample_square;  // square of the sample's width in this direction [rad^2]
+};
+
+SeenAxis seenAxis(Axis axis, LobeView view) {
+    double ahead = axis.x * view.cos_az + axis.y * view.sin_az;
+    double aside = axis.y * view.cos_az - axis.x * view.sin_az;
+    double up = axis.z * view.cos_el - ahead * view.sin_el;
+    double across = aside * aside + up * up + MIN_ACROSS;
+    double wide = view.width * view.width, high = view.height * view.height;
+    return SeenAxis(ahead * view.cos_el + axis.z * view.sin_el, across,
+                    (wide * aside * aside + high * (up * up + MIN_ACROSS)) / across);
+}
+
 // Returns the mean square slope of a lobe in a principal direction of a facet: that of the micro-relief plus the
 // facet's plus half the square of the angle by which the normal turns within a sample. The last term makes the samples
-// together cover all of a narrower lobe. `sample_square`: square of the sample's width [rad^2].
+// together cover all of a narrower lobe.
 double meanSquareSlope(vec4 direction, double relief, double sample_square, double range) {
     double turn = 1.0 + 4.0 * range * double(direction.z);
     return relief + double(direction.x) + double(direction.y) + 0.5 * sample_square * turn * turn;
 }
 
-// Returns the slopes of a sample with planeFootprint()'s plane, direction and extent. `axis`: the facet's first
-// direction, of any length; `bent`: cosine of a mapped normal, 0: the plane's normal applies.
-LobeSlopes lobeSlopes(FacetRecord facet, double relief, double range, double normal_x, double normal_y, double normal_z,
-                      double axis_x, double axis_y, double axis_z, double cos_az, double sin_az, double cos_el, double sin_el,
-                      double width, double height, double bent) {
-    double second_x = normal_y * axis_z - normal_z * axis_y;
-    double second_y = normal_z * axis_x - normal_x * axis_z;
-    double second_z = normal_x * axis_y - normal_y * axis_x;
-    double first_x = second_y * normal_z - second_z * normal_y;
-    double first_y = second_z * normal_x - second_x * normal_z;
-    double first_z = second_x * normal_y - second_y * normal_x;
-    double ahead_1 = first_x * cos_az + first_y * sin_az, ahead_2 = second_x * cos_az + second_y * sin_az;
-    double aside_1 = first_y * cos_az - first_x * sin_az, aside_2 = second_y * cos_az - second_x * sin_az;
-    double up_1 = first_z * cos_el - ahead_1 * sin_el, up_2 = second_z * cos_el - ahead_2 * sin_el;
-    double along_1 = ahead_1 * cos_el + first_z * sin_el, along_2 = ahead_2 * cos_el + second_z * sin_el;
-    double across_1 = aside_1 * aside_1 + up_1 * up_1 + MIN_ACROSS, across_2 = aside_2 * aside_2 + up_2 * up_2 + MIN_ACROSS;
-    double facing = ((normal_x * cos_az + normal_y * sin_az) * cos_el + normal_z * sin_el) /
-                    sqrt(normal_x * normal_x + normal_y * normal_y + normal_z * normal_z);
+struct LobeSines {
+    double first, second;
+};
+
+// Returns the squares of the sines of the incidence along both principal directions; `square_1`: mean square slope along
+// the first, which bounds by how much the curved facet bows.
+LobeSines lobeSines(FacetRecord facet, LobeView view, SeenAxis first, SeenAxis second, double square_1) {
+    double facing = ((view.normal.x * view.cos_az + view.normal.y * view.sin_az) * view.cos_el + view.normal.z * view.sin_el) /
+                    sqrt(view.normal.x * view.normal.x + view.normal.y * view.normal.y + view.normal.z * view.normal.z);
     double cosine_square = max(facing * facing, MIN_LOBE_COSINE * MIN_LOBE_COSINE);
+    double sine_1 = first.along * first.along / (first.along * first.along + first.across);
+    double bow = min(sine_1 / cosine_square, 4.0 * square_1);
+    double of_plane = second.along / sqrt(second.along * second.along + second.across);
+    double sine_2 = of_plane - (double(facet.first.w) + double(facet.second.w) * bow) * facing;
+    double square_2 = sine_2 * sine_2;
+    if (!(view.mapped > 0.0)) return LobeSines(sine_1, square_2);
+    double share = (sine_1 + MIN_SINE_SQUARE) / (sine_1 + square_2 + 2.0 * MIN_SINE_SQUARE);
+    double sine_square = max(1.0 - view.mapped * view.mapped, 0.0);
+    return LobeSines(share * sine_square, (1.0 - share) * sine_square);
+}
+
+// Returns the slopes of a facet's lobe in a sample, for a micro-relief of a mean square slope. For example, a level plate
+// (normal 0 0 1, axis 1 0 0) seen from straight above has sines 0 and the squares of the relief and the sample.
+LobeSlopes lobeSlopes(FacetRecord facet, double relief, LobeView view) {
+    Axis second_axis = cross(view.normal, view.axis);
+    SeenAxis first = seenAxis(cross(second_axis, view.normal), view), second = seenAxis(second_axis, view);
     LobeSlopes slopes;
-    double wide = width * width, high = height * height;
-    slopes.square_1 = meanSquareSlope(
-        facet.first, relief, (wide * aside_1 * aside_1 + high * (up_1 * up_1 + MIN_ACROSS)) / across_1, range);
-    slopes.square_2 = meanSquareSlope(
-        facet.second, relief, (wide * aside_2 * aside_2 + high * (up_2 * up_2 + MIN_ACROSS)) / across_2, range);
-    slopes.sine_1 = along_1 * along_1 / (along_1 * along_1 + across_1);
-    double bow = min(slopes.sine_1 / cosine_square, 4.0 * slopes.square_1);
-    double sine_2 = along_2 / sqrt(along_2 * along_2 + across_2) - (double(facet.first.w) + double(facet.second.w) * bow) * facing;
-    slopes.sine_2 = sine_2 * sine_2;
-    if (bent > 0.0) {
-        double share = (slopes.sine_1 + MIN_SINE_SQUARE) / (slopes.sine_1 + slopes.sine_2 + 2.0 * MIN_SINE_SQUARE);
-        slopes.sine_1 = share * max(1.0 - bent * bent, 0.0);
-        slopes.sine_2 = (1.0 - share) * max(1.0 - bent * bent, 0.0);
-    }
+    slopes.square_1 = meanSquareSlope(facet.first, relief, first.sample_square, view.range);
+    slopes.square_2 = meanSquareSlope(facet.second, relief, second.sample_square, view.range);
+    LobeSines sines = lobeSines(facet, view, first, second, slopes.square_1);
+    slopes.sine_1 = sines.first;
+    slopes.sine_2 = sines.second;
     slopes.wave_1 = double(facet.first.y);
     slopes.wave_2 = double(facet.second.y);
     slopes.edges = double(facet.axis.w);

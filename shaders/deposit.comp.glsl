@@ -328,9 +328,9 @@ float strengthRange(Seen seen, Covered cell, vec2 towards, float width, float he
         if (material.law.y > 0.0) {
             Angles at = anglesOf(towards);
             vec3 normal = rounded(seen.normal) / seen.normal_length.high;
-            slopes = lobeSlopes(facetOf(seen.triangle), material.law.z, 1.0 / inverse_range, normal.x, normal.y, normal.z,
-                                seen.axis.x, seen.axis.y, seen.axis.z, at.cos_az, at.sin_az, at.cos_el, at.sin_el, width, height,
-                                seen.mapped);
+            LobeView view = LobeView(Axis(normal.x, normal.y, normal.z), Axis(seen.axis.x, seen.axis.y, seen.axis.z),
+                                     1.0 / inverse_range, at.cos_az, at.sin_az, at.cos_el, at.sin_el, width, height, seen.mapped);
+            slopes = lobeSlopes(facetOf(seen.triangle), material.law.z, view);
         }
         return strength_scale / inverse_range * backscatterOverCosine(material.law, material.values.x, cosine, slopes);
     }

@@ -145,9 +145,17 @@ double MaterialLaws::overCosine(size_t material, double cosine, const LobeSlopes
 LobeSlopes MaterialLaws::lobeSlopes(size_t material, const LobeSample& sample) const {
     Shared shared{tables.data()};
     const glm::dvec3 &n = sample.normal, &a = sample.axis;
-    return shared.lobeSlopes(sample.facet, double{records[material].law.z}, sample.range, n.x, n.y, n.z, a.x, a.y, a.z,
-                             sample.cos_az, sample.sin_az, sample.cos_el, sample.sin_el, sample.width, sample.height,
-                             sample.bent);
+    return shared.lobeSlopes(sample.facet, double{records[material].law.z},
+                             {{n.x, n.y, n.z},
+                              {a.x, a.y, a.z},
+                              sample.range,
+                              sample.cos_az,
+                              sample.sin_az,
+                              sample.cos_el,
+                              sample.sin_el,
+                              sample.width,
+                              sample.height,
+                              sample.mapped});
 }
 
 MaterialLaws::Bistatic MaterialLaws::bistatic(size_t material, double in, double out, double half,

@@ -18,7 +18,7 @@ struct LobeSample {
     double range;                           ///< [m]
     double cos_az, sin_az, cos_el, sin_el;  ///< Direction of the sample's middle.
     double width = 0, height = 0;           ///< [rad]
-    double bent = 0;                        ///< Cosine of a mapped normal; 0: the plane's [1].
+    double mapped = 0;                      ///< Cosine of a mapped normal; 0: the plane's [1].
 
     /** Sets the direction, a unit vector. */
     void lookAlong(const glm::dvec3& direction);

@@ -134,7 +134,7 @@ sonar::LobeSlopes RayTree::lobeSlopes(uint32_t triangle, double cosine, const gl
     sample.axis = glm::dvec3(facets_[triangle].axis);
     sample.range = range;
     sample.lookAlong(direction);
-    if (plane.mapped) sample.bent = cosine;
+    if (plane.mapped) sample.mapped = cosine;
     return laws_.lobeSlopes(static_cast<size_t>(plane.material), sample);
 }
 
