@@ -192,7 +192,7 @@ Pair difference(Pair a, Pair b) { return sumOf(a, negative(b)); }
 Placed placed(ObjectRecord object, vec3 normal) {
     Pair x = dotOf(object.normal_x.xyz, normal), y = dotOf(object.normal_y.xyz, normal);
     Pair c = pairOf(axis_cosine), s = pairOf(axis_sine);
-    return Placed(sumOf(productOf(c, x), productOf(s, y)), difference(productOf(c, y), productOf(s, x)),
+    return Placed(sumOf(product(c, x), product(s, y)), difference(product(c, y), product(s, x)),
                   dotOf(object.normal_z.xyz, normal));
 }
 
@@ -223,16 +223,16 @@ Pair distanceOf(PlaneRecord plane, ObjectRecord object) {
     vec3 n = plane.normal.xyz, point = plane.point.xyz, eye = object.eye.xyz, rest = object.eye_rest.xyz;
     Pair sum = Pair(plane.normal.w, 0.0);
     for (int i = 0; i < 3; ++i)
-        sum = sumOf(sum, productOf(Pair(n[i], 0.0), sumOf(exactSum(point[i], -eye[i]), Pair(-rest[i], 0.0))));
+        sum = sumOf(sum, product(Pair(n[i], 0.0), sumOf(exactSum(point[i], -eye[i]), Pair(-rest[i], 0.0))));
     return sum;
 }
 
 // Length times the cosine of incidence, and the length of the ray.
 Pair alongRay(Placed normal, Ray ray) {
-    return sumOf(sumOf(normal.x, productOf(normal.y, ray.u)), productOf(normal.z, ray.v));
+    return sumOf(sumOf(normal.x, product(normal.y, ray.u)), product(normal.z, ray.v));
 }
 Pair lengthOfRay(Ray ray) {
-    return rootOf(sumOf(sumOf(Pair(1.0, 0.0), productOf(ray.u, ray.u)), productOf(ray.v, ray.v)));
+    return root(sumOf(sumOf(Pair(1.0, 0.0), product(ray.u, ray.u)), product(ray.v, ray.v)));
 }
 
 Seen seenAt(ivec2 pixel, Ray ray) {
@@ -248,12 +248,12 @@ Seen seenAt(ivec2 pixel, Ray ray) {
     seen.triangle = command.first_triangle + texel.y;
     PlaneRecord plane = PlaneRecord(planes[2u * seen.triangle], planes[2u * seen.triangle + 1u]);
     seen.normal = placed(object, plane.normal.xyz);
-    seen.normal_length = rootOf(sumOf(sumOf(productOf(seen.normal.x, seen.normal.x), productOf(seen.normal.y, seen.normal.y)),
-                               productOf(seen.normal.z, seen.normal.z)));
+    seen.normal_length = root(sumOf(sumOf(product(seen.normal.x, seen.normal.x), product(seen.normal.y, seen.normal.y)),
+                               product(seen.normal.z, seen.normal.z)));
     seen.distance = distanceOf(plane, object);
 #ifdef HAVE_JITTER
-    seen.ray.u = sumOf(ray.u, productOf(pairOf(pixel_u), jitterOf(pixel, 0u)));
-    seen.ray.v = sumOf(ray.v, productOf(pairOf(pixel_v), jitterOf(pixel, 1u)));
+    seen.ray.u = sumOf(ray.u, product(pairOf(pixel_u), jitterOf(pixel, 0u)));
+    seen.ray.v = sumOf(ray.v, product(pairOf(pixel_v), jitterOf(pixel, 1u)));
 #endif
     seen.strength = strengthOf(command.material);
 #ifdef HAVE_NORMAL_MAP
@@ -296,13 +296,13 @@ struct Covered {
 Covered covered(Seen seen, Ray towards, PictureCell cell) {
     Angles at = anglesOf(directionOf(towards));
     vec3 normal = rounded(seen.normal);
-    Pair facing = quotientOf(alongRay(seen.normal, towards), lengthOfRay(towards));
+    Pair facing = quotient(alongRay(seen.normal, towards), lengthOfRay(towards));
     float ahead = normal.x * at.cos_az + normal.y * at.sin_az, aside = normal.y * at.cos_az - normal.x * at.sin_az;
     bool echo = seen.distance.high * facing.high > 0.0 && abs(facing.high) > EDGE_ON_COSINE * seen.normal_length.high;
     Pair inverse = Pair(0.0, 0.0), nearest = inverse;
     if (echo) {
-        inverse = quotientOf(facing, seen.distance);
-        nearest = quotientOf(seen.normal_length, seen.distance.high > 0.0 ? seen.distance : negative(seen.distance));
+        inverse = quotient(facing, seen.distance);
+        nearest = quotient(seen.normal_length, seen.distance.high > 0.0 ? seen.distance : negative(seen.distance));
     }
     origin = inverse.high;
     pixel_place = inverse.low;
@@ -386,14 +386,14 @@ uint firstBin(Seen seen) {
 }
 
 // (place + 0.5) * size - extent.
-Pair middleOf(int place, vec2 size, vec2 extent) {
-    return difference(productOf(Pair(float(place) + 0.5, 0.0), pairOf(size)), pairOf(extent));
+Pair middle(int place, vec2 size, vec2 extent) {
+    return difference(product(Pair(float(place) + 0.5, 0.0), pairOf(size)), pairOf(extent));
 }
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     bool inside = all(lessThan(pixel, image_size));
-    Ray ray = Ray(middleOf(pixel.x, pixel_u, extent_u), middleOf(pixel.y, pixel_v, extent_v));
+    Ray ray = Ray(middle(pixel.x, pixel_u, extent_u), middle(pixel.y, pixel_v, extent_v));
     Seen seen = seenAt(min(pixel, image_size - 1), ray);
     uint at = sharesOf(min(pixel, image_size - 1)), share = share_starts[at];
     bool received = inside && share < share_starts[at + 1u];

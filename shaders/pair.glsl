@@ -34,21 +34,21 @@ Pair sumOf(Pair a, Pair b) {
     return exactSum(high.high, low);
 }
 
-Pair productOf(Pair a, Pair b) {
+Pair product(Pair a, Pair b) {
     Pair high = exactProduct(a.high, b.high);
     precise float low = high.low + (a.high * b.low + a.low * b.high);
     return exactSum(high.high, low);
 }
 
-Pair quotientOf(Pair a, Pair b) {
+Pair quotient(Pair a, Pair b) {
     precise float first = a.high / b.high;
-    Pair rest = sumOf(a, negative(productOf(b, Pair(first, 0.0f))));
+    Pair rest = sumOf(a, negative(product(b, Pair(first, 0.0f))));
     precise float second = rest.high / b.high;
     return exactSum(first, second);
 }
 
 // The square root of a number above 0.
-Pair rootOf(Pair a) {
+Pair root(Pair a) {
     precise float first = sqrt(a.high);
     Pair rest = sumOf(a, negative(exactProduct(first, first)));
     precise float second = 0.5f * rest.high / first;

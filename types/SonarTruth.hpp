@@ -42,7 +42,7 @@ struct SonarTruth : RangeBins {
     bool isByMirror(size_t bin) const { return path[bin] != 0 && path[bin] < through_wall; }
     /** Copies the grid of a ping, and resizes the lists to its bins. Allocates nothing when the shape has not
      *  changed. */
-    void takeGrid(const Sonar& ping);
+    void copyGrid(const Sonar& ping);
     /** Returns the error of the lists, as the rest of a sentence after "a sample"; null when there is none. */
     const char* diagnostic() const;
 
@@ -78,7 +78,7 @@ struct SonarTruth : RangeBins {
 };
 using SonarTruthPtr = std::shared_ptr<const SonarTruth>;
 
-inline void SonarTruth::takeGrid(const Sonar& ping) {
+inline void SonarTruth::copyGrid(const Sonar& ping) {
     time = ping.time;
     static_cast<RangeBins&>(*this) = ping;
     bin_count = ping.bin_count;

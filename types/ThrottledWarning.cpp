@@ -37,7 +37,7 @@ std::map<std::string, uint64_t> ThrottledWarning::byReason() const {
     return by_reason_;
 }
 
-std::string ThrottledWarning::takeWarning(Clock::time_point now) {
+std::string ThrottledWarning::consumeWarning(Clock::time_point now) {
     std::lock_guard lock(mutex_);
     if (count_ == reported_ || (reported_ > 0 && now < reported_at_ + interval)) return "";
     reported_ = count_;

@@ -65,7 +65,7 @@ public:
             found = std::min(found, within({right ? high.x : low.x, up ? high.y : low.y, on ? high.z : low.z}, at));
         }
         if (found != nobody) return found;
-        uint32_t& head = first_[slotOf(own)];
+        uint32_t& head = first_[slot(own)];
         next_[vertex] = head;
         return head = vertex;
     }
@@ -74,7 +74,7 @@ private:
     static constexpr double cells = 8;  ///< Side of a cell, in distances of one place [1].
 
     glm::dvec3 cellOf(const glm::dvec3& at) const { return glm::floor(at * per_cell_); }
-    size_t slotOf(const glm::dvec3& cell) const {
+    size_t slot(const glm::dvec3& cell) const {
         uint64_t key = 0;
         for (const double number : {cell.x, cell.y, cell.z}) {
             key = (key ^ std::bit_cast<uint64_t>(number + 0.0)) * 0x9e3779b97f4a7c15u;
@@ -84,7 +84,7 @@ private:
     }
     uint32_t within(const glm::dvec3& cell, const glm::dvec3& at) const {
         uint32_t lowest = nobody;
-        for (uint32_t i = first_[slotOf(cell)]; i != nobody; i = next_[i]) {
+        for (uint32_t i = first_[slot(cell)]; i != nobody; i = next_[i]) {
             const glm::dvec3 off = glm::dvec3(positions_[i]) - at;
             if (glm::dot(off, off) <= within_ * within_) lowest = std::min(lowest, i);
         }

@@ -93,7 +93,7 @@ constexpr double min_kirchhoff = 40 * degree;
 double blend(double x) { return 1 / (1 + std::exp(x)); }
 
 /** q_c of Kirchhoff's approximation: equations 36 and 39 [1]. */
-double structureOf(double alpha, double roughness, double wave_number) {
+double structure(double alpha, double roughness, double wave_number) {
     const double c_h2 = 2 * pi * roughness * std::tgamma(2 - alpha) * std::pow(2, -2 * alpha) /
                         (alpha * (1 - alpha) * std::tgamma(1 + alpha));
     return c_h2 * std::pow(2, 1 - 2 * alpha) * std::pow(wave_number, 2 * (1 - alpha));
@@ -111,7 +111,7 @@ double closedFormB(double alpha, double a) {
 }
 
 /** Returns s, the rms slope of the relief that the wave finds smooth: equation 42 [1]. */
-double slopeOf(double alpha, double roughness, double wave_number) {
+double slope(double alpha, double roughness, double wave_number) {
     const double square = std::pow(2 * pi * roughness, 1 / alpha) / (2 * (1 - alpha)) *
                           std::pow(wave_number * wave_number / alpha, (1 - alpha) / alpha);
     return std::sqrt(square);
@@ -123,7 +123,7 @@ double kirchhoffLevel(double alpha) { return std::pow(2, 2 * (1 - alpha) / alpha
 
 }  // namespace
 
-HalfSpace halfSpaceOf(const Seabed& seabed) { return {seabed.density_ratio, seabed.speed_ratio, seabed.loss}; }
+HalfSpace halfSpace(const Seabed& seabed) { return {seabed.density_ratio, seabed.speed_ratio, seabed.loss}; }
 
 std::complex<double> waveNumberRatio(const HalfSpace& half_space) {
     return std::complex<double>(1, half_space.loss) / half_space.speed_ratio;
@@ -183,11 +183,11 @@ SeabedBackscatter::SeabedBackscatter(const Seabed& seabed, double frequency_khz,
     : seabed_(seabed),
       wave_number_(2 * pi * 1e3 * frequency_khz / (100 * speed_of_sound)),
       alpha_(seabed.roughness_slope / 2 - 1),
-      slope_(slopeOf(alpha_, seabed.roughness, wave_number_)),
-      structure_(structureOf(alpha_, seabed.roughness, wave_number_)),
+      slope_(slope(alpha_, seabed.roughness, wave_number_)),
+      structure_(structure(alpha_, seabed.roughness, wave_number_)),
       a_(closedFormA(alpha_)),
       b_(closedFormB(alpha_, a_)),
-      normal_reflection_(std::norm(halfSpaceReflection(halfSpaceOf(seabed), pi / 2))) {}
+      normal_reflection_(std::norm(halfSpaceReflection(halfSpace(seabed), pi / 2))) {}
 
 double SeabedBackscatter::crossSection(double grazing) const {
     const double angle = std::max(grazing, min_grazing);
@@ -220,7 +220,7 @@ double SeabedBackscatter::compositeRoughness(double grazing) const {
 /** First order of small perturbations: equations 7 and 50 to 52. */
 double SeabedBackscatter::perturbation(double grazing) const {
     const double k = wave_number_, sine = std::sin(grazing), cosine = std::cos(grazing);
-    const std::complex<double> y = roughnessAmplitude(halfSpaceOf(seabed_), grazing);
+    const std::complex<double> y = roughnessAmplitude(halfSpace(seabed_), grazing);
     const double scatterers = std::sqrt(4 * k * k * cosine * cosine + k * k / 100);
     const double spectrum = seabed_.roughness * std::pow(scatterers, -seabed_.roughness_slope);
     return 4 * std::pow(k * sine, 4) * std::norm(y) * spectrum;
@@ -262,7 +262,7 @@ double SeabedBackscatter::volume(double grazing) const {
 
 /** Equations 65 and 66. */
 double SeabedBackscatter::volumeOfAPlane(double grazing) const {
-    const HalfSpace half_space = halfSpaceOf(seabed_);
+    const HalfSpace half_space = halfSpace(seabed_);
     const std::complex<double> kappa = waveNumberRatio(half_space), r = halfSpaceReflection(half_space, grazing);
     const std::complex<double> p = std::sqrt(kappa * kappa - std::pow(std::cos(grazing), 2));
     return 5 * seabed_.loss * seabed_.volume * std::norm(1.0 - r * r) * std::pow(std::sin(grazing), 2) /

@@ -13,7 +13,7 @@ struct HalfSpace {
     double density_ratio = 1, speed_ratio = 1;
     double loss = 0;  ///< delta: imaginary over real part of the wave number [1].
 };
-HalfSpace halfSpaceOf(const Seabed& seabed);
+HalfSpace halfSpace(const Seabed& seabed);
 
 /** Returns kappa = (1 + i delta) / nu: the wave number in the half-space over that in the water [1]. */
 std::complex<double> waveNumberRatio(const HalfSpace& half_space);

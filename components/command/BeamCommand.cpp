@@ -51,7 +51,7 @@ Cut azimuthCut(const sonar::RenderPlan& plan) {
     const auto ahead = std::min_element(plan.beams.begin(), plan.beams.end(), nearer);
     if (!plan.has(sonar::Pass::Beamform)) return boxOf(ahead->low - ahead->centre, ahead->high - ahead->centre);
     const std::vector<double> weights =
-        sonar::beamformerOf(plan).weights(static_cast<size_t>(ahead - plan.beams.begin()));
+        sonar::beamformer(plan).weights(static_cast<size_t>(ahead - plan.beams.begin()));
     Cut cut;
     for (size_t c = 0; c < weights.size(); ++c) cut.add(plan.cells[c].centre - ahead->centre, weights[c]);
     const double axis = plan.directivity->azimuth(ahead->centre, ahead->centre);

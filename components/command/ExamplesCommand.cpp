@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /** Returns the first sentence of the comment that a deployment begins with. */
-std::string purposeOf(const fs::path& file) {
+std::string purpose(const fs::path& file) {
     std::ifstream stream(file);
     std::string text;
     for (std::string line; std::getline(stream, line) && line.starts_with("# ");)
@@ -32,7 +32,7 @@ int listExamples() {
         if (entry.path().extension() == ".yml") files.push_back(entry.path());
     std::ranges::sort(files);
     for (const fs::path& file : files)
-        console::printResult("{:32} {}\n", file.lexically_relative(shared).string(), purposeOf(file));
+        console::printResult("{:32} {}\n", file.lexically_relative(shared).string(), purpose(file));
     console::printResult(
         "They are in {}. Any command takes them as deploy/NAME.yml, from every folder without a deploy of its own.\n",
         shared.string());

@@ -43,7 +43,7 @@ struct RosNode {
     std::string lastWord() const { return name.substr(name.rfind('/') + 1); }
 };
 
-std::vector<RosNode> rosNodesOf(const framework::DeploymentSpec& spec) {
+std::vector<RosNode> rosNodes(const framework::DeploymentSpec& spec) {
     std::vector<RosNode> nodes;
     for (const framework::TaskSpec& task : spec.tasks) {
         if (!task.type.starts_with("dds::")) continue;
@@ -96,17 +96,17 @@ public:
     }
     void apply() {
         for (const RosAssignment& remap : remaps_)
-            if (remap.name == "__ns") takeNamespace(remap);
+            if (remap.name == "__ns") setNamespace(remap);
         for (const RosAssignment& remap : remaps_)
             if (remap.name == "__node" || remap.name == "__name")
                 nameNodes(remap);
             else if (remap.name != "__ns")
-                takeTopic(remap);
+                addTopic(remap);
         for (const auto& [is_parameter, word] : parameters_) is_parameter ? setParameter(word) : readFile(word);
     }
 
 private:
-    void takeNamespace(const RosAssignment& remap) {
+    void setNamespace(const RosAssignment& remap) {
         if (!remap.node.empty())
             refuseRosArgument("-r " + remap.node + ":__ns: is for one node; the namespace is that of all, __ns");
         spec_.set("namespace", YAML::Node(remap.value), {section_start, "-r __ns"});
@@ -115,11 +115,10 @@ private:
     void nameNodes(const RosAssignment& remap) {
         if (!types::isRosName(remap.value) || remap.value.find('/') != std::string::npos)
             refuseRosArgument("-r __node: is " + remap.value + "; must be a word of letters, digits and _");
-        std::vector<RosNode> nodes = rosNodesOf(spec_);
+        std::vector<RosNode> nodes = rosNodes(spec_);
         std::erase_if(nodes, [&](const RosNode& node) { return !remap.node.empty() && remap.node != node.lastWord(); });
         if (nodes.empty() && !remap.node.empty())
-            refuseRosArgument("-r " + remap.node + ":__node: there is no such node; " +
-                              rosNodeNames(rosNodesOf(spec_)));
+            refuseRosArgument("-r " + remap.node + ":__node: there is no such node; " + rosNodeNames(rosNodes(spec_)));
         const auto sends = [&](const RosNode& node) { return spec_.task(node.task)->type == "dds::PublisherTask"; };
         const auto first = std::ranges::find_if(nodes, sends);
         const std::string named = nodes.empty() ? "" : (first == nodes.end() ? nodes.front() : *first).task;
@@ -129,7 +128,7 @@ private:
                       {section_start, "-r __node"});
     }
 
-    void takeTopic(const RosAssignment& remap) {
+    void addTopic(const RosAssignment& remap) {
         for (const std::string& name : {remap.name, remap.value})
             if (!types::isRosName(name))
                 refuseRosArgument("-r " + remap.name + ":=" + remap.value + ": " + name +
@@ -139,7 +138,7 @@ private:
 
     void setParameter(const std::string& word) {
         const RosAssignment parameter = readRosAssignment("-p", word);
-        const auto nodes = rosNodesOf(spec_);
+        const auto nodes = rosNodes(spec_);
         if (!parameter.node.empty() && std::ranges::count(nodes, parameter.node, &RosNode::lastWord) == 0)
             refuseRosArgument("-p " + word + ": there is no node " + parameter.node + "; " + rosNodeNames(nodes));
         try {
@@ -158,7 +157,7 @@ private:
             throw types::ConfigError(file, "",
                                      fmt::format("is of no node of the deployment, but of {}; {}; /** fits all",
                                                  names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")),
-                                                 rosNodeNames(rosNodesOf(spec_))));
+                                                 rosNodeNames(rosNodes(spec_))));
     }
 
     /** @param name the keys that lead to the block: a node's name or a part of it. */
@@ -174,7 +173,7 @@ private:
                 continue;
             }
             names.push_back(name);
-            const auto nodes = rosNodesOf(spec_);
+            const auto nodes = rosNodes(spec_);
             const bool of_all = name == "/**" || name == "**";  // also where no task is a node
             if (!of_all && std::ranges::none_of(nodes, [&](const auto& node) { return fitsNode(name, node.name); }))
                 continue;

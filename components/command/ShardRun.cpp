@@ -29,7 +29,7 @@ using framework::DeploymentSpec;
 Json runOf(const RunOptions& options, const DeploymentSpec& spec) {
     return {{"insonify", INSONIFY_VERSION},
             {"deployment", std::filesystem::path(spec.file).filename().string()},
-            {"deployment_sha256", console::sha256Of(spec.text)},
+            {"deployment_sha256", console::sha256(spec.text)},
             {"set", options.set},
             {"seed", options.seed.value_or(0)},
             {"pings", options.limits.samples},

@@ -24,7 +24,7 @@ constexpr std::array<uint32_t, 64> rounds{
 
 using Schedule = std::array<uint32_t, 64>;
 
-Schedule scheduleOf(const unsigned char* block) {
+Schedule schedule(const unsigned char* block) {
     Schedule w{};
     for (size_t i = 0; i < 16; ++i)
         w[i] = uint32_t{block[4 * i]} << 24 | uint32_t{block[4 * i + 1]} << 16 | uint32_t{block[4 * i + 2]} << 8 |
@@ -39,8 +39,8 @@ Schedule scheduleOf(const unsigned char* block) {
 
 }  // namespace
 
-void Sha256::takeBlock(const unsigned char* block) {
-    const Schedule w = scheduleOf(block);
+void Sha256::addBlock(const unsigned char* block) {
+    const Schedule w = schedule(block);
     auto [a, b, c, d, e, f, g, h] = state_;
     for (size_t i = 0; i < 64; ++i) {
         const uint32_t choice = (e & f) ^ (~e & g), majority = (a & b) ^ (a & c) ^ (b & c);
@@ -58,7 +58,7 @@ void Sha256::add(std::string_view bytes) {
     size_t left = bytes.size();
     while (left > 0) {
         if (filled_ == 0 && left >= block_.size()) {
-            takeBlock(data);
+            addBlock(data);
             data += block_.size(), left -= block_.size();
             continue;
         }
@@ -66,7 +66,7 @@ void Sha256::add(std::string_view bytes) {
         std::copy_n(data, taken, block_.begin() + static_cast<std::ptrdiff_t>(filled_));
         data += taken, left -= taken, filled_ += taken;
         if (filled_ < block_.size()) continue;
-        takeBlock(block_.data());
+        addBlock(block_.data());
         filled_ = 0;
     }
 }
@@ -83,7 +83,7 @@ std::string Sha256::hex() {
     return text;
 }
 
-std::string sha256Of(std::string_view bytes) {
+std::string sha256(std::string_view bytes) {
     Sha256 hash;
     hash.add(bytes);
     return hash.hex();

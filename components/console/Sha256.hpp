@@ -16,7 +16,7 @@ public:
     std::string hex();
 
 private:
-    void takeBlock(const unsigned char* block);
+    void addBlock(const unsigned char* block);
 
     std::array<uint32_t, 8> state_{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
                                    0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
@@ -25,7 +25,7 @@ private:
     uint64_t length_ = 0;  ///< So far [B].
 };
 
-std::string sha256Of(std::string_view bytes);
+std::string sha256(std::string_view bytes);
 /** Throws std::runtime_error when the file cannot be read. */
 std::string sha256OfFile(const std::filesystem::path& file);
 

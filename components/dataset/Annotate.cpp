@@ -46,7 +46,7 @@ public:
     }
 
 private:
-    double intensityOf(size_t bin) const {
+    double intensity(size_t bin) const {
         const auto value = static_cast<double>(ping_.bins[bin]);
         return decibel_ ? std::pow(10, value / 10) : value;
     }
@@ -63,7 +63,7 @@ private:
     bool counts(size_t bin) const {
         const int32_t instance = instanceAt(bin);
         return instance != none && instances_.category(instance) != 0 && !isGhost(bin) &&
-               static_cast<double>(truth_.share[bin]) >= config_.min_share && intensityOf(bin) > 0;
+               static_cast<double>(truth_.share[bin]) >= config_.min_share && intensity(bin) > 0;
     }
 
     void labelCells() {
@@ -110,7 +110,7 @@ private:
         uint32_t first = 0;  // bin of the shadow
         for (uint32_t k = 0; k < ping_.bin_count; ++k) {
             if (truth_.shadow[start + k] != 0) continue;
-            if (first < k) std::fill(&shadow_of_[first], &shadow_of_[k], tracerOf(start, first, k));
+            if (first < k) std::fill(&shadow_of_[first], &shadow_of_[k], tracer(start, first, k));
             first = k + 1;
         }
     }
@@ -119,7 +119,7 @@ private:
      *  object has no class, or is also what is behind the shadow, as on an uneven floor. If several echoes have
      *  elevations within one bin's change of that behind, the last echo hides the bins: sound has passed the others.
      *  Bins behind the shadow in which the water is louder than the first echoes are skipped. */
-    int32_t tracerOf(size_t start, uint32_t first, uint32_t behind) const {
+    int32_t tracer(size_t start, uint32_t first, uint32_t behind) const {
         while (behind + 1 < ping_.bin_count && isWater(start + behind)) ++behind;
         const auto elevation = [&](uint32_t k) {
             return isGhost(start + k) ? std::numeric_limits<double>::quiet_NaN()
@@ -144,7 +144,7 @@ private:
         for (uint32_t k = first; k < last; ++k) {
             const size_t bin = size_t{beam} * ping_.bin_count + k;
             if (!counts(bin)) continue;
-            const double energy = intensityOf(bin) * static_cast<double>(truth_.share[bin]);
+            const double energy = intensity(bin) * static_cast<double>(truth_.share[bin]);
             if (energy <= strongest) continue;
             strongest = energy;
             object = instanceAt(bin);
@@ -170,8 +170,7 @@ private:
             if (!shows(bin, k, object)) continue;
             ++annotation.bins;
             if (annotation.is_shadow) continue;
-            annotation.energy +=
-                intensityOf(bin) * (annotation.object < 0 ? 1 : static_cast<double>(truth_.share[bin]));
+            annotation.energy += intensity(bin) * (annotation.object < 0 ? 1 : static_cast<double>(truth_.share[bin]));
         }
         const cv::Point at = picture_.pixelOf(beam, cell);
         widen(annotation.box, at.x, at.y);

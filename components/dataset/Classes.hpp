@@ -20,7 +20,7 @@ public:
     const std::vector<std::string>& names() const { return names_; }  ///< Names of the classes from 1 on.
     uint32_t of(const std::string& object) const;
     /** Returns the class of the shadows of a class; 0 if shadows have no class. */
-    uint32_t shadowOf(uint32_t category) const {
+    uint32_t shadow(uint32_t category) const {
         return category == 0 || first_shadow_ == 0 ? 0 : first_shadow_ + category;
     }
     uint32_t ghost() const { return ghost_; }  ///< The class of ghosts; 0 if ghosts have no class.

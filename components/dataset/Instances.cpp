@@ -16,7 +16,7 @@ Instances::Instances(const Classes& classes, const std::vector<Lineage>& objects
             if (classes.of(*above) == category) name = *above;
         const auto object = static_cast<int32_t>(instances_.size());
         const int32_t first = category == 0 ? object : first_of.try_emplace(name, object).first->second;
-        instances_.push_back({first, std::move(name), category, classes.shadowOf(category)});
+        instances_.push_back({first, std::move(name), category, classes.shadow(category)});
     }
 }
 

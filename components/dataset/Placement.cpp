@@ -129,7 +129,7 @@ std::optional<PlacedObject> Placement::tryOnce(const ObjectGroup& group, const s
     object.radius *= scale, object.low *= scale;
     const Circle circle{at.x, at.y, object.radius};
     if (!isFree(group, circle)) return std::nullopt;
-    const std::optional<double> z = heightOf(group, object, circle, word + 2);
+    const std::optional<double> z = height(group, object, circle, word + 2);
     groundless_ += !z;
     if (!z) return std::nullopt;
     PlacedObject placed{name, object.filed, true, scale};
@@ -166,8 +166,8 @@ bool Placement::isFree(const ObjectGroup& group, const Circle& circle) const {
     return true;
 }
 
-std::optional<double> Placement::heightOf(const ObjectGroup& group, const Placeable& object, const Circle& at,
-                                          uint64_t word) const {
+std::optional<double> Placement::height(const ObjectGroup& group, const Placeable& object, const Circle& at,
+                                        uint64_t word) const {
     if (!group.z.empty()) return between(group.z, word);
     if (!group.ground) return object.filed.position.z;
     const std::optional<double> ground = highestAt(scene_.grounds.at(*group.ground), at.x, at.y);

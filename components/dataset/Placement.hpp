@@ -26,8 +26,8 @@ private:
     bool isFree(const ObjectGroup& group, const Circle& circle) const;
     /** Returns a random number in a span, by the word's number in this sample; the first value if both are the same. */
     double between(const std::vector<double>& span, uint64_t word) const;
-    std::optional<double> heightOf(const ObjectGroup& group, const Placeable& object, const Circle& at,
-                                   uint64_t word) const;
+    std::optional<double> height(const ObjectGroup& group, const Placeable& object, const Circle& at,
+                                 uint64_t word) const;
 
     const Sweep& sweep_;
     const SceneParts& scene_;

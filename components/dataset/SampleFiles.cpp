@@ -86,7 +86,7 @@ Json toJson(const Run& run, const types::BeamArc& arc) {
 }
 
 /** Returns a picture whose grey levels are the numbers of annotations, or of classes. */
-types::Image maskOf(types::Image picture, const Annotated& annotated, bool classes) {
+types::Image mask(types::Image picture, const Annotated& annotated, bool classes) {
     for (size_t i = 0; i < picture.image.size(); ++i) {
         const uint16_t number = annotated.labels[i];
         const uint32_t level = number == 0 ? 0 : classes ? annotated.annotations[number - 1u].category : number;
@@ -100,7 +100,7 @@ types::Image maskOf(types::Image picture, const Annotated& annotated, bool class
 }
 
 /** Returns class, centre and size of each box, relative to the picture. */
-std::string yoloOf(const Annotated& annotated, const output::PlainPicture& picture) {
+std::string yolo(const Annotated& annotated, const output::PlainPicture& picture) {
     const double width = picture.width(), height = picture.height();
     std::string text;
     for (const Annotation& each : annotated.annotations)
@@ -264,11 +264,11 @@ Json SampleFiles::writeFiles(const std::string& stem, const Recorded& recorded, 
                              const Json& meta) {
     Json files = Json::object();
     if (hasPictures(format_)) files[stem + ".png"] = putPicture(stem + ".png", picture_.image());
-    if (format_ == Format::Yolo) files[stem + ".txt"] = store_.putText(stem + ".txt", yoloOf(annotated, picture_));
+    if (format_ == Format::Yolo) files[stem + ".txt"] = store_.putText(stem + ".txt", yolo(annotated, picture_));
     if (format_ == Format::Mask)
         for (const bool classes : {false, true}) {
             const std::string name = stem + (classes ? "_classes.png" : "_instances.png");
-            files[name] = putPicture(name, maskOf(picture_.image(), annotated, classes));
+            files[name] = putPicture(name, mask(picture_.image(), annotated, classes));
         }
     if (format_ == Format::Npz)
         files[stem + ".npz"] =

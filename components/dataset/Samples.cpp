@@ -61,7 +61,7 @@ std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::stri
     return names;
 }
 
-uint64_t wordOf(const Sweep& sweep, uint64_t index, size_t number) {
+uint64_t word(const Sweep& sweep, uint64_t index, size_t number) {
     return types::hashed(sweep.seed, index, setting_stream + number);
 }
 
@@ -181,7 +181,7 @@ Sample Samples::at(uint64_t index) const {
     sample.objects = place(sample.scene, sample.pose, sample.run.front().at);
     sample.settings = settingsOf(sample.setting);
     for (size_t i = 0; i < sweep_.drawn.size(); ++i)
-        sample.settings.emplace_back(sweep_.drawn[i].property, sweep_.drawn[i].draw(wordOf(sweep_, index, i)));
+        sample.settings.emplace_back(sweep_.drawn[i].property, sweep_.drawn[i].draw(word(sweep_, index, i)));
     sample.seed = types::hashed(sweep_.seed, index, noise_stream) | 1;
     sample.part = sweep_.split.of(sweep_.seed, sample.scene * poses_ + sample.pose);
     return sample;

@@ -92,7 +92,7 @@ private:
 };
 
 /** Returns the random word with which a sample draws the setting `number` of Sweep::drawn. */
-uint64_t wordOf(const Sweep& sweep, uint64_t index, size_t number);
+uint64_t word(const Sweep& sweep, uint64_t index, size_t number);
 
 /** Returns the names that match one of the patterns, in order. Throws types::ConfigError at `what` of the sweep for a
  *  pattern without a match.

@@ -26,7 +26,7 @@ std::string escaped(const std::string& text) {
 std::string colourOf(uint32_t category) { return fmt::format("hsl({},90%,60%)", category * 137 % 360); }
 
 /** Returns the median of numbers by their counts, which are not all 0. */
-double medianOf(const std::map<double, uint64_t>& counts) {
+double median(const std::map<double, uint64_t>& counts) {
     uint64_t total = 0, before = 0;
     for (const auto& [number, count] : counts) total += count;
     std::optional<double> lower;
@@ -52,7 +52,7 @@ void StatisticsPage::OfSetting::addBars(const std::string& property, Bars& bars)
     for (const auto& [number, count] : numbers) total += count;
     if (numbers.size() > (total == numbers.size() ? max_single : max_values)) {
         bars.emplace_back(fmt::format("{}: {:.6g} to {:.6g}, median {:.6g}", property, numbers.begin()->first,
-                                      numbers.rbegin()->first, medianOf(numbers)),
+                                      numbers.rbegin()->first, median(numbers)),
                           total);
     } else {
         for (const auto& [number, count] : numbers) bars.emplace_back(fmt::format("{} = {}", property, number), count);
@@ -81,10 +81,10 @@ void StatisticsPage::add(const Json& record, const std::string& picture) {
         ++ranges_[static_cast<int>((near + far) / 2) / range_step];
     }
     ++objects_in_picture_[record["annotations"].size()];
-    if (!picture.empty() && examples_.size() < max_examples) examples_.push_back(exampleOf(record, picture));
+    if (!picture.empty() && examples_.size() < max_examples) examples_.push_back(example(record, picture));
 }
 
-std::string StatisticsPage::exampleOf(const Json& record, const std::string& picture) {
+std::string StatisticsPage::example(const Json& record, const std::string& picture) {
     const Json& size = record["picture"];
     const int width = size["width"], height = size["height"];
     std::string text =

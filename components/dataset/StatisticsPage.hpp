@@ -38,7 +38,7 @@ private:
 
     static std::string drawn(const std::string& caption, const Bars& bars);
     std::string tableOfClasses() const;
-    static std::string exampleOf(const Json& record, const std::string& picture);
+    static std::string example(const Json& record, const std::string& picture);
 
     const std::string title_;
     const Classes& classes_;

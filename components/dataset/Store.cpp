@@ -47,7 +47,7 @@ std::string bytesOf(const fs::path& file) {
 
 std::string sumOf(Json record) {
     record.erase("sum");
-    return console::sha256Of(textOf(record));
+    return console::sha256(textOf(record));
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ void Store::refuseOthers() const {
 
 std::string Store::stemOf(uint64_t index) const {
     return fmt::format("{:06}_{}", index,
-                       console::sha256Of(fmt::format("{}\n{}", digest_, index)).substr(0, hash_digits));
+                       console::sha256(fmt::format("{}\n{}", digest_, index)).substr(0, hash_digits));
 }
 
 std::string Store::put(const std::string& name, const std::function<void(const fs::path&)>& writer) {

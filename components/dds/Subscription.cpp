@@ -45,7 +45,7 @@ std::string similarTopics(const std::vector<Published>& all, const std::string& 
     return text;
 }
 
-Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
+Reader reader(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
     const char* hash = topic.type == PoseType::Odometry ? ros::Odometry::type_hash : ros::PoseStamped::type_hash;
     const Quality quality{.reliability = config.reliability, .depth = std::max(config.depth, min_depth)};
     return {node, ddsTopic(topic.topic), typeOf(topic.type), hash, quality, std::move(arrived), maximum};
@@ -63,7 +63,7 @@ Subscription::Subscription(Node& node, const SubscriberConfig& config, const Top
       stamped_on_arrival_(topic.stamp == StampFrom::Arrival),
       drops_(drops),
       odd_(odd),
-      reader_(readerOf(node, config, topic, std::move(arrived))) {
+      reader_(reader(node, config, topic, std::move(arrived))) {
     node.addReader(reader_.handle());
 }
 

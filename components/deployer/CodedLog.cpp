@@ -29,7 +29,7 @@ std::vector<types::Sonar> codesOf(log::Reader& log, size_t stream) {
 }
 
 /** Reads the code of the receiver that writes a stream from the log's own deployment. */
-void takeLaw(const log::Reader& log, const std::string& stream, CodedLog& coded) {
+void readLaw(const log::Reader& log, const std::string& stream, CodedLog& coded) {
     const std::string text = log.metadatum("insonify_deployment");
     if (text.empty()) return;
     try {
@@ -45,7 +45,7 @@ void takeLaw(const log::Reader& log, const std::string& stream, CodedLog& coded)
 }
 
 /** Reads the sonar's place at each ping, as far as the log has it. */
-void takePlaces(log::Reader& log, const log::Stream& pings, CodedLog& coded) {
+void readPlaces(log::Reader& log, const log::Stream& pings, CodedLog& coded) {
     const LoggedTrack track(log, posesOfSonar(log), mountOf(meaningOf(log, pings)));
     const LoggedAltitudes altitudes(log);
     for (const types::Sonar& ping : coded.pings) {
@@ -64,8 +64,8 @@ std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
         if (!stream.holds<types::Sonar>()) continue;
         CodedLog coded{.pings = codesOf(*log, i)};
         if (coded.pings.empty()) continue;
-        takeLaw(*log, stream.name, coded);
-        takePlaces(*log, stream, coded);
+        readLaw(*log, stream.name, coded);
+        readPlaces(*log, stream, coded);
         if (const auto at = stream.metadata.find("insonify_frequency_khz"); at != stream.metadata.end())
             std::from_chars(at->second.data(), at->second.data() + at->second.size(), coded.frequency_khz);
         return coded;

@@ -17,7 +17,7 @@ using framework::DeploymentSpec;
 using recordings::FanFile, recordings::FanFrame;
 
 /** Returns what the file states of its tasks, for the metadata of a log without a deployment. */
-std::string fanTextOf(const FanFile& file) {
+std::string fanText(const FanFile& file) {
     const std::string law =
         file.dynamicRange() ? fmt::format(", law: log, dynamic_range_db: {}", *file.dynamicRange()) : "";
     return fmt::format(
@@ -31,7 +31,7 @@ std::string fanTextOf(const FanFile& file) {
 }
 
 /** Returns properties that give the deployment's pings the shape and the law of this ping. */
-std::vector<std::string> fanPropertiesOf(const FanTasks& tasks, const FanFile& file, const FanFrame& frame) {
+std::vector<std::string> fanProperties(const FanTasks& tasks, const FanFile& file, const FanFrame& frame) {
     const types::Sonar& ping = frame.ping;
     std::vector<std::string> all = tasks.propertiesOf(ping, ping.binStart(ping.bin_count),
                                                       static_cast<double>(ping.speed_of_sound), frame.frequency_khz);
@@ -53,7 +53,7 @@ public:
         : log_(log), tasks_(tasks), file_(file), begin_(first.ping.time), has_poses_(isUsable(first.sonar)) {}
 
     void write(const FanFrame& frame, double code_factor) {
-        log_.set(fanPropertiesOf(tasks_, file_, frame), frame.ping.time);
+        log_.set(fanProperties(tasks_, file_, frame), frame.ping.time);
         has_poses_ ? writePose(frame.sonar) : followTrajectories(frame.ping.time);
         if (frame.altitude > 0) {
             types::Range range;
@@ -104,7 +104,7 @@ Imported importFan(const fs::path& recording, std::optional<DeploymentSpec> spec
         tasks = FanTasks::of(*spec);
         if (!isUsable(frame->sonar)) refuseWithoutTrajectory(tasks, spec->file);
     }
-    RecordedLog log(recording, std::move(spec), fanTextOf(*file), to);
+    RecordedLog log(recording, std::move(spec), fanText(*file), to);
     FanLog written(log, tasks, *file, *frame);
     Imported imported{.stream = tasks.receiver + ".ping"};
     for (; frame; frame = file->next(), ++imported.pings) written.write(*frame, tasks.max_code / maximum);

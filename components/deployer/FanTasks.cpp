@@ -19,7 +19,7 @@ FanTasks FanTasks::of(const framework::DeploymentSpec& spec) {
     framework::Registry registry = coreTasks();
     const framework::Deployment deployment(spec, registry);
     FanTasks tasks;
-    std::tie(tasks.sonar, tasks.receiver) = recordedTasksOf<sonar::SonarTask>(deployment, "sonar::SonarTask");
+    std::tie(tasks.sonar, tasks.receiver) = recordedTasks<sonar::SonarTask>(deployment, "sonar::SonarTask");
     const receiver::ReceiverTask& receiver = codingReceiverOf(deployment, spec.file);
     tasks.max_code = std::exp2(receiver.config->code.value_or(receiver::CodeConfig{}).bits) - 1;
     const auto* sonar = dynamic_cast<const sonar::SonarTask*>(deployment.task(tasks.sonar));

@@ -74,9 +74,9 @@ std::vector<std::string> propertiesOf(const std::string& sonar, const SideScanLi
 }
 
 /** Streams of the poses of the vehicle that carries the sonar. */
-std::vector<std::string> vehiclePosesOf(const framework::Deployment& deployment, const std::string& sonar) {
+std::vector<std::string> vehiclePoses(const framework::Deployment& deployment, const std::string& sonar) {
     std::vector<std::string> streams;
-    for (const std::string& task : upstreamOf({sonar}, deployment))
+    for (const std::string& task : upstream({sonar}, deployment))
         if (dynamic_cast<const pose::TrajectoryTask*>(deployment.task(task))) streams.push_back(task + ".pose");
     return streams;
 }
@@ -88,8 +88,8 @@ Imported importSideScan(const fs::path& recording, std::optional<DeploymentSpec>
     if (spec) {
         framework::Registry registry = coreTasks();
         const framework::Deployment deployment(*spec, registry);
-        std::tie(sonar, receiver) = recordedTasksOf<sonar::SideScanTask>(deployment, "sonar::SideScanTask");
-        vehicles = vehiclePosesOf(deployment, sonar);
+        std::tie(sonar, receiver) = recordedTasks<sonar::SideScanTask>(deployment, "sonar::SideScanTask");
+        vehicles = vehiclePoses(deployment, sonar);
     }
     RecordedLog log(recording, std::move(spec), sideScanText(codes), to);
     Imported imported{.stream = receiver + ".ping"};

@@ -29,7 +29,7 @@ std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
     std::set<std::string> names;
     for (const auto& task : deployment.tasks())
         if (carriesPings(task->outputs()) && !carriesPings(task->inputs())) names.insert(task->name());
-    return upstreamOf(std::move(names), deployment);
+    return upstream(std::move(names), deployment);
 }
 
 /** Reads the samples of a port from outside of the deployment. */
@@ -70,7 +70,7 @@ receiver::ReceiverTask& codingReceiverOf(const Deployment& deployment, const std
                              "has no receiver that outputs codes, as instruments do: set output: code for one");
 }
 
-std::set<std::string> upstreamOf(std::set<std::string> names, const Deployment& deployment) {
+std::set<std::string> upstream(std::set<std::string> names, const Deployment& deployment) {
     for (size_t before = 0; before != names.size();) {
         before = names.size();
         for (const framework::Connection& connection : deployment.connections())
@@ -93,7 +93,7 @@ DeploymentSpec restrictedTo(DeploymentSpec spec, const std::set<std::string>& ke
     return spec;
 }
 
-DeploymentSpec pipelineOf(DeploymentSpec spec, framework::Registry& registry) {
+DeploymentSpec pipeline(DeploymentSpec spec, framework::Registry& registry) {
     return restrictedTo(spec, upstreamOfSonars(Deployment(spec, registry)));
 }
 
@@ -113,7 +113,7 @@ DeploymentSpec specWith(const std::string& file, const std::vector<std::string>&
 
 SonarAt sonarAt(const std::string& file, uint64_t ping, const std::vector<std::string>& settings) {
     framework::Registry registry = coreTasks();
-    Deployment deployment(pipelineOf(specWith(file, settings), registry), registry);
+    Deployment deployment(pipeline(specWith(file, settings), registry), registry);
     deployment.configure();
     const framework::RunResult result = deployment.run({.samples = ping}, stopOnSignals());
     if (result.failed()) throw std::runtime_error(result.failures.front());
@@ -134,7 +134,7 @@ PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count, const
     framework::Registry registry = coreTasks();
     const DeploymentSpec spec = specWith(file, settings);
     const Deployment whole(spec, registry);
-    const std::set<std::string> kept = upstreamOf({codingReceiverOf(whole, file).name()}, whole);
+    const std::set<std::string> kept = upstream({codingReceiverOf(whole, file).name()}, whole);
     Deployment deployment(restrictedTo(spec, kept), registry);
     receiver::ReceiverTask& receiver = codingReceiverOf(deployment, file);
     PingReader reader("reader");

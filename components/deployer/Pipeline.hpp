@@ -14,7 +14,7 @@
 namespace insonify::deployer {
 
 /** Returns the deployment reduced to its sonars and their inputs, in lockstep, so that it runs at full speed. */
-framework::DeploymentSpec pipelineOf(framework::DeploymentSpec spec, framework::Registry& registry);
+framework::DeploymentSpec pipeline(framework::DeploymentSpec spec, framework::Registry& registry);
 
 /** Returns the deployment with only these tasks, in lockstep. */
 framework::DeploymentSpec restrictedTo(framework::DeploymentSpec spec, const std::set<std::string>& kept);
@@ -26,7 +26,7 @@ std::set<std::string> pingTasks(const framework::DeploymentSpec& spec, framework
 framework::DeploymentSpec specWith(const std::string& file, const std::vector<std::string>& settings);
 
 /** Returns these tasks and all tasks that their inputs come from, directly or not. */
-std::set<std::string> upstreamOf(std::set<std::string> names, const framework::Deployment& deployment);
+std::set<std::string> upstream(std::set<std::string> names, const framework::Deployment& deployment);
 
 /** Returns assignments (`--set`) that make pings independent of whether a machine has a graphics card: sonars that
  *  would choose between ray tracing and rasterisation trace rays. A `visibility` other than `auto` stays. Sonars that

@@ -27,7 +27,7 @@ void RecordedLog::record(const std::vector<std::string>& properties, types::Time
     const std::filesystem::path file = to_.parent_path() / "properties.0.log";
     if (!properties_) {
         std::error_code none;
-        const bool is_own = std::filesystem::exists(to_, none) && log::propertyLogOf(*log::openLog(to_)) == file;
+        const bool is_own = std::filesystem::exists(to_, none) && log::propertyLog(*log::openLog(to_)) == file;
         if (std::filesystem::exists(file, none) && !is_own)
             throw types::ConfigError(file.string(), "--to", "is of another run; give the log a folder of its own");
         properties_.emplace(file);

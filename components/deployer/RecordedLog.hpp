@@ -20,10 +20,10 @@ namespace insonify::deployer {
  *  outputs codes. Throws types::ConfigError where there is no such receiver, or none of its inputs come from a
  *  Sonar. */
 template <class Sonar>
-std::pair<std::string, std::string> recordedTasksOf(const framework::Deployment& deployment, const char* sonar_type) {
+std::pair<std::string, std::string> recordedTasks(const framework::Deployment& deployment, const char* sonar_type) {
     const std::string& file = deployment.spec().file;
     const std::string receiver = codingReceiverOf(deployment, file).name();
-    for (const std::string& name : upstreamOf({receiver}, deployment))
+    for (const std::string& name : upstream({receiver}, deployment))
         if (dynamic_cast<const Sonar*>(deployment.task(name))) return {name, receiver};
     throw types::ConfigError(file, "tasks." + receiver,
                              std::string("has no input from a ") + sonar_type + ", whose pings are recorded");

@@ -124,7 +124,7 @@ struct Pings {
     std::vector<log::SampleRef> samples;
 
     Pings(const log::Reader& log, const std::string& stream, const std::string& writer)
-        : driver(poseStreamOf(log, writer)) {
+        : driver(poseStream(log, writer)) {
         log.forEachRef(stream, [&](const log::SampleRef& at) { samples.push_back(at); });
     }
     /** Returns the stamp of the first ping that the logger received at or after this time; none: there is none. */
@@ -206,7 +206,7 @@ struct Settings : RecordedSettings {
     }
     void addProperties(Deployment& deployment, const log::Reader& log, const std::map<std::string, Pings>& pings,
                        const std::set<std::string>& tasks, double from) {
-        const auto file = propertyLogOf(log);
+        const auto file = propertyLog(log);
         if (!file) {
             if (!log.metadatum("insonify_deployment").empty())
                 notice = log.path().string() +
@@ -229,7 +229,7 @@ struct Settings : RecordedSettings {
                 assignments.push_back(property + "=" + history.start);
             if (!history.changes.empty()) changed.push_back(history);
         }
-        takeOut(deployment, present, histories);
+        removeAbsent(deployment, present, histories);
     }
     /** Logs without a version were written before each task had its own seed: the default was 1. */
     void addFormerSeeds(const Deployment& deployment, const log::Reader& log, const std::set<std::string>& tasks) {
@@ -241,8 +241,8 @@ struct Settings : RecordedSettings {
         }
     }
     /** Removes properties that the deployment has and the log never had, for tasks that the log knows. */
-    void takeOut(const Deployment& deployment, const std::map<std::string, std::string>& present,
-                 const std::map<std::string, Values>& histories) {
+    void removeAbsent(const Deployment& deployment, const std::map<std::string, std::string>& present,
+                      const std::map<std::string, Values>& histories) {
         std::set<std::string> known;
         for (const auto& history : histories) known.insert(splitPort(history.first).first);
         for (const std::string& property : optionalsOf(deployment, known))
@@ -256,7 +256,7 @@ std::map<std::string, Pings> pingsByTask(const log::Reader& log, const framework
                                          const Deployment& deployment) {
     std::map<std::string, Pings> pings;
     for (const std::string& stream : pingStreams(log, spec))
-        for (const std::string& task : upstreamOf({writerOf(spec, stream)}, deployment))
+        for (const std::string& task : upstream({writerOf(spec, stream)}, deployment))
             if (!pings.contains(task)) pings.emplace(task, Pings(log, stream, writerOf(spec, stream)));
     return pings;
 }

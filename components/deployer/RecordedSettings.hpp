@@ -17,7 +17,7 @@ std::optional<uint64_t> recordedSeed(const log::Reader& log);
 struct RecordedProperty {
     std::string task, name;
     std::string start;   ///< When the replay starts, as a setter takes it.
-    std::string driver;  ///< The stream that triggers the pings, see poseStreamOf.
+    std::string driver;  ///< The stream that triggers the pings, see poseStream.
     struct Change {
         types::Time from;  ///< Stamp of the first ping with this value.
         std::string value;
@@ -32,7 +32,7 @@ struct RecordedSettings {
     std::string notice;                     ///< What is unknown; empty: nothing.
 };
 
-/** Returns the settings in the property log next to a log, see log::propertyLogOf, and each sonar's quality from its
+/** Returns the settings in the property log next to a log, see log::propertyLog, and each sonar's quality from its
  *  plan. Properties that `set` names are omitted.
  *  @param seed given for this run; none: the log's.
  *  @param from start of the replay after the log's first stamp [s]. */

@@ -48,7 +48,7 @@ std::set<std::string> replacedTasks(const log::Reader& log, const DeploymentSpec
 /** Connects each sonar to the log's poses of its pings. */
 void drivePings(DeploymentSpec& spec, const log::Reader& log, const std::string& replay) {
     for (TaskSpec& task : spec.tasks) {
-        const std::string stream = poseStreamOf(log, task.name);
+        const std::string stream = poseStream(log, task.name);
         if (stream.empty() || !task.type.starts_with("sonar::")) continue;
         ConnectionSpec connection;
         connection.from = replay + "." + stream;
@@ -182,7 +182,7 @@ std::set<std::string> outsideTasks(const DeploymentSpec& spec) {
     return names;
 }
 
-std::string poseStreamOf(const log::Reader& log, const std::string& sonar) {
+std::string poseStream(const log::Reader& log, const std::string& sonar) {
     const log::Stream* const stream = log.find(sonar + ".pose");
     return stream && isOfPort(*stream) && stream->holds<types::Pose>() && stream->count > 0 ? stream->name : "";
 }

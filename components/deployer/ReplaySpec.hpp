@@ -22,7 +22,7 @@ std::set<std::string> outsideTasks(const framework::DeploymentSpec& spec);
 
 /** Returns the stream of poses that triggers a sonar when its pings are rendered again: the pose of each recorded ping.
  *  Empty: the log has no such stream. */
-std::string poseStreamOf(const log::Reader& log, const std::string& sonar);
+std::string poseStream(const log::Reader& log, const std::string& sonar);
 
 /** Returns the deployment in lockstep on the log's time, with the log in place of the tasks that it has streams of.
  *  When rendering again, it replaces only tasks that neither write nor read pings, and each sonar pings at the log's

@@ -22,7 +22,7 @@ inline void resampleBeam(const types::Sonar& ping, size_t beam, double from, dou
 /** Puts the bins of a ping into those of a device whose protocol does not state their width, because its driver
  *  computes ranges from its own sample period. Sonars may have longer bins (`range_rounding: sample`). Returns false
  *  where the ping has bins of this width [m], or of none. */
-inline bool takeBinWidth(double width, types::Sonar& ping) {
+inline bool setBinWidth(double width, types::Sonar& ping) {
     const double own = ping.binWidth();
     if (!(own > 0 && width > 0) || std::abs(own / width - 1) * ping.bin_count < 0.01) return false;
     std::vector<float> bins(ping.bins.size());

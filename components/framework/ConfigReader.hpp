@@ -38,8 +38,8 @@ public:
                 types::Diagnostic::Kind kind = types::Diagnostic::Kind::Value);
     /** Makes null remove values: it empties an optional and resets any other value to its default. Maps of names are
      *  merged as well. */
-    void takeOutByNull() { null_takes_out_ = true; }
-    bool nullTakesOut() const { return null_takes_out_; }
+    void removeByNull() { null_removes_ = true; }
+    bool nullTakesOut() const { return null_removes_; }
     /** Sets the place for diagnostics of nodes that do not exist: the block that lacks them. */
     void setFallback(const YAML::Mark& mark) { fallback_ = mark; }
 
@@ -81,7 +81,7 @@ public:
     bool vector3(const YAML::Node& node, const std::string& path, const types::Field& field, glm::dvec3& value);
 
 private:
-    bool null_takes_out_ = false;
+    bool null_removes_ = false;
     std::string file_;
     Origins origins_;
     types::Diagnostics diagnostics_;

@@ -104,12 +104,12 @@ void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& sto
         {
             struct Turn {
                 LockstepExecutor& executor;
-                std::unique_lock<std::mutex> held = executor.takeTurn();
+                std::unique_lock<std::mutex> held = executor.acquireTurn();
                 ~Turn() { executor.giveTurn(std::move(held)); }
             } const turn{*this};
-            if (!takeStep()) continue;           // paused meanwhile
+            if (!consumeStep()) continue;        // paused meanwhile
             const types::Time now_due = next();  // may differ, if a source has advanced meanwhile
-            if (now_due >= end || !takePart(limits)) return;
+            if (now_due >= end || !joinStep(limits)) return;
             runInstant(now_due);
         }
         if (report) report(progress());
@@ -118,7 +118,7 @@ void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& sto
     }
 }
 
-bool LockstepExecutor::takePart(const RunLimits& limits) {
+bool LockstepExecutor::joinStep(const RunLimits& limits) {
     const uint64_t done = graph_.countedSamples();
     environment_.rehearsing = limits.shard && done < limits.shard->first;
     return !limits.shard || done < limits.shard->last;
@@ -156,7 +156,7 @@ std::unique_lock<std::mutex> LockstepExecutor::betweenInstants() {
     return lock;
 }
 
-std::unique_lock<std::mutex> LockstepExecutor::takeTurn() {
+std::unique_lock<std::mutex> LockstepExecutor::acquireTurn() {
     instant_due_ = true;
     return std::unique_lock(instant_mutex_);
 }
@@ -180,7 +180,7 @@ void LockstepExecutor::step() {
     ++steps_;
 }
 
-bool LockstepExecutor::takeStep() {
+bool LockstepExecutor::consumeStep() {
     if (isHalted()) return false;
     if (paused_) --steps_;
     return true;

@@ -44,7 +44,7 @@ private:
     /** Runs the due tasks in file order, then triggered tasks until no sample triggers a task. */
     void runInstant(types::Time instant);
     /** Sets whether the next instant is rehearsed; false: the instant is after the shard. */
-    bool takePart(const RunLimits& limits);
+    bool joinStep(const RunLimits& limits);
     /** Whether no source will write a further sample, or the count of samples cannot be reached any more. */
     bool sourcesAreDone(const RunLimits& limits) const;
     /** Waits until the instant is due at the given pace, or until time is paused. */
@@ -53,11 +53,11 @@ private:
     /** Waits while paused, until a step is requested. */
     void standStill(const std::atomic<bool>& stop);
     /** Returns whether an instant may begin; while paused, uses up one of the requested steps. Between instants. */
-    bool takeStep();
+    bool consumeStep();
     /** Waits until the callers that wait now have been served. */
     void letCallersIn(const std::atomic<bool>& stop) const;
     /** Returns the lock for an instant, for which later callers wait. */
-    std::unique_lock<std::mutex> takeTurn();
+    std::unique_lock<std::mutex> acquireTurn();
     void giveTurn(std::unique_lock<std::mutex> held);
 
     std::vector<Timed> timed_;

@@ -64,7 +64,7 @@ void InputPortBase::disconnectAll() {
     for (const auto& channel : channels()) channel->source().disconnect(*this);
 }
 
-std::shared_ptr<ChannelBase> InputPortBase::takeLast() {
+std::shared_ptr<ChannelBase> InputPortBase::consumeLast() {
     for (const auto& channel : channels_)
         if (channel->pop(last())) {
             has_last_ = true;
@@ -76,7 +76,7 @@ std::shared_ptr<ChannelBase> InputPortBase::takeLast() {
 
 FlowStatus InputPortBase::readFrom(std::shared_ptr<ChannelBase>* taken_from, void* sample, bool copy_old) {
     std::lock_guard lock(mutex_);
-    if (auto channel = takeLast()) {
+    if (auto channel = consumeLast()) {
         copyLast(sample);
         if (taken_from) *taken_from = std::move(channel);
         return FlowStatus::NewData;
@@ -94,7 +94,7 @@ FlowStatus InputPortBase::readNewestInto(void* sample, bool copy_old) {
     bool is_last = true;  // whether `sample` is the last one taken
     while (first == FlowStatus::NewData) {
         std::lock_guard lock(mutex_);
-        auto next = takeLast();
+        auto next = consumeLast();
         if (!next && !is_last) setLast(sample);
         if (!next) break;
         is_last = next == newest || stampOf(last()) >= stampOf(sample);
@@ -107,7 +107,7 @@ FlowStatus InputPortBase::readNewestInto(void* sample, bool copy_old) {
     return first;
 }
 
-FlowStatus InputPortBase::takeNextInto(void* sample) {
+FlowStatus InputPortBase::readNextInto(void* sample) {
     return owner().activity().realtime() ? readNewestInto(sample, false) : readInto(sample, false);
 }
 

@@ -129,7 +129,7 @@ protected:
     // Used by InputPort, with a sample of its type.
     FlowStatus readInto(void* sample, bool copy_old);
     FlowStatus readNewestInto(void* sample, bool copy_old);
-    FlowStatus takeNextInto(void* sample);
+    FlowStatus readNextInto(void* sample);
 
 private:
     virtual std::shared_ptr<ChannelBase> makeChannel(OutputPortBase& source, ConnPolicy policy) const = 0;
@@ -140,7 +140,7 @@ private:
     virtual types::Time stampOf(const void* sample) const = 0;
 
     /** Takes the next sample into last(), under the mutex. Returns its channel; null: none waits. */
-    std::shared_ptr<ChannelBase> takeLast();
+    std::shared_ptr<ChannelBase> consumeLast();
     /** Reads the next sample; sets `taken_from`, unless null, to the channel of a new sample. */
     FlowStatus readFrom(std::shared_ptr<ChannelBase>* taken_from, void* sample, bool copy_old);
 
@@ -212,7 +212,7 @@ public:
     bool readNew(T& sample) { return read(sample, false) == FlowStatus::NewData; }
     /** Reads the sample to process: the next in lockstep, the newest (see readNewest) in realtime. False: no new
      *  sample. */
-    bool takeNext(T& sample) { return takeNextInto(&sample) == FlowStatus::NewData; }
+    bool readNext(T& sample) { return readNextInto(&sample) == FlowStatus::NewData; }
 
     std::string typeName() const override { return types::typeName<T>(); }
     const std::type_info& type() const override { return typeid(T); }

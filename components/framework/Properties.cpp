@@ -83,7 +83,7 @@ void PropertiesBase::change(const std::map<std::string, std::optional<double>>& 
 }
 
 std::function<void()> PropertiesBase::apply(ConfigReader& reader, const YAML::Node& block, const std::string& names) {
-    reader.takeOutByNull();
+    reader.removeByNull();
     const auto putBack = keep();
     if (reader.diagnostics().empty()) load(reader, block, "");
     if (!reader.diagnostics().empty()) {

@@ -54,7 +54,7 @@ std::optional<Unit> powered(std::string_view text) {
 }
 
 /** Takes "3.5" from the front of "3.5.m"; false when there is no number followed by a point and a name. */
-bool takeNumber(std::string_view& text, double& number) {
+bool consumeNumber(std::string_view& text, double& number) {
     if (text.starts_with('+')) text.remove_prefix(1);
     const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || !std::isfinite(number)) return false;
@@ -79,7 +79,7 @@ std::optional<Unit> unitOf(std::string_view name) {
 
 std::optional<Quantity> Quantity::parse(std::string_view text) {
     Quantity quantity;
-    if (!takeNumber(text, quantity.number)) return std::nullopt;
+    if (!consumeNumber(text, quantity.number)) return std::nullopt;
     while (!text.empty()) {
         const size_t end = std::min(text.find('.'), text.size());
         const std::string_view word = text.substr(0, end);

@@ -28,7 +28,7 @@ std::optional<PropertyInfo> propertyOf(const TaskContext& task, const std::strin
 
 }  // namespace
 
-StreamName streamNameOf(const OutputPortBase& port) {
+StreamName streamName(const OutputPortBase& port) {
     const Deployment* const deployment = deploymentOf(port.owner());
     const DeploymentSpec* const spec = deployment ? &deployment->spec() : nullptr;
     if (const auto* const stand_in = dynamic_cast<const StandIn*>(&port.owner())) {

@@ -27,7 +27,7 @@ public:
 };
 
 /** Returns the name of the stream that the port replaces; else the first alias of the port, else its own name. */
-StreamName streamNameOf(const OutputPortBase& port);
+StreamName streamName(const OutputPortBase& port);
 
 /** Returns TaskSpec::model() of each task, by name, in the deployment of a task; empty outside of a deployment. */
 std::map<std::string, std::string> taskModels(const TaskContext& task);

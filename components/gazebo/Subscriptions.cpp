@@ -56,7 +56,7 @@ constexpr int max_burst = 200;                       ///< Max messages that are 
 constexpr std::chrono::milliseconds period{1000};    ///< Between two heartbeats, the same for all programs.
 
 /** Returns the last two parts of a topic, such as "/pose/info". */
-std::string endingOf(const std::string& topic) {
+std::string ending(const std::string& topic) {
     const size_t last = topic.rfind('/');
     const size_t before = last == std::string::npos || last == 0 ? last : topic.rfind('/', last - 1);
     return before == std::string::npos ? topic : topic.substr(before);
@@ -114,7 +114,7 @@ public:
           multicast_(options, options.topic_port),
           stop_(eventfd(0, EFD_CLOEXEC)),
           has_publisher_(topics_.size()),
-          received_(topics_.empty() ? "" : endingOf(topics_[0].name)) {
+          received_(topics_.empty() ? "" : ending(topics_[0].name)) {
         socket_.set(zmq::sockopt::linger, 0);
         socket_.set(zmq::sockopt::maxmsgsize, max_message);
         for (size_t i = 0; i < topics_.size(); ++i) {

@@ -23,7 +23,7 @@ namespace {
 
 constexpr size_t max_parts = 100'000;  ///< Max number of models, links and visuals of a world.
 
-glm::dvec3 pointOf(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+glm::dvec3 point(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /** Returns the matrix of a pose. A message omits the identity orientation. Not finite for an orientation without
  *  length. */
@@ -32,7 +32,7 @@ glm::dmat4 matrixOf(const wire::Pose& pose) {
     const glm::dquat turn =
         pose.has_orientation() ? glm::normalize(glm::dquat(q.w(), q.x(), q.y(), q.z())) : glm::dquat(1, 0, 0, 0);
     const bool has_length = !pose.has_orientation() || glm::length(glm::dquat(q.w(), q.x(), q.y(), q.z())) > 0;
-    const glm::dmat4 matrix = glm::translate(glm::dmat4(1), pointOf(pose.position())) * glm::mat4_cast(turn);
+    const glm::dmat4 matrix = glm::translate(glm::dmat4(1), point(pose.position())) * glm::mat4_cast(turn);
     return has_length ? matrix : glm::dmat4(std::nan(""));
 }
 
@@ -139,9 +139,9 @@ private:
 
     meshes::Shape shapeOf(const wire::Geometry& geometry) const {
         switch (geometry.type()) {
-            case wire::Geometry::BOX: return meshes::BoxShape{pointOf(geometry.box().size())};
+            case wire::Geometry::BOX: return meshes::BoxShape{point(geometry.box().size())};
             case wire::Geometry::SPHERE: return meshes::EllipsoidShape{glm::dvec3(geometry.sphere().radius()), true};
-            case wire::Geometry::ELLIPSOID: return meshes::EllipsoidShape{pointOf(geometry.ellipsoid().radii()), false};
+            case wire::Geometry::ELLIPSOID: return meshes::EllipsoidShape{point(geometry.ellipsoid().radii()), false};
             case wire::Geometry::CYLINDER:
                 return meshes::CylinderShape{geometry.cylinder().radius(), geometry.cylinder().length()};
             case wire::Geometry::CONE: return meshes::ConeShape{geometry.cone().radius(), geometry.cone().length()};
@@ -149,7 +149,7 @@ private:
                 return meshes::CapsuleShape{geometry.capsule().radius(), geometry.capsule().length()};
             case wire::Geometry::PLANE: {
                 const wire::Plane& plane = geometry.plane();
-                return meshes::PlaneShape{plane.has_normal() ? pointOf(plane.normal()) : glm::dvec3(0, 0, 1),
+                return meshes::PlaneShape{plane.has_normal() ? point(plane.normal()) : glm::dvec3(0, 0, 1),
                                           {plane.size().x(), plane.size().y()}};
             }
             case wire::Geometry::MESH: {
@@ -157,12 +157,12 @@ private:
                 return meshes::MeshShape{placeOf(mesh.filename()),
                                          mesh.submesh(),
                                          mesh.center_submesh(),
-                                         mesh.has_scale() ? pointOf(mesh.scale()) : glm::dvec3(1),
+                                         mesh.has_scale() ? point(mesh.scale()) : glm::dvec3(1),
                                          {}};
             }
             case wire::Geometry::HEIGHTMAP: {
                 const wire::Heightmap& map = geometry.heightmap();
-                return meshes::HeightmapShape{placeOf(map.filename()), pointOf(map.size()), pointOf(map.origin()), {}};
+                return meshes::HeightmapShape{placeOf(map.filename()), point(map.size()), point(map.origin()), {}};
             }
             default: return meshes::OtherShape{};
         }

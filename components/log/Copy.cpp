@@ -150,8 +150,8 @@ Copied copyLog(const std::vector<std::filesystem::path>& logs, const std::filesy
 
 std::string copyProperties(const std::filesystem::path& log, const std::filesystem::path& to) {
     const auto source = openLog(log, AtDamage::Skip), cut = openLog(to);
-    const auto properties = propertyLogOf(*source);
-    if (!properties || propertyLogOf(*cut)) return "";
+    const auto properties = propertyLog(*source);
+    if (!properties || propertyLog(*cut)) return "";
     const std::filesystem::path copied = to.parent_path() / properties->filename();
     if (std::filesystem::exists(copied))
         return fmt::format("{} is of another run: {} is not copied next to {}; give that a folder of its own",

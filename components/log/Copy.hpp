@@ -42,7 +42,7 @@ struct Copied {
 Copied copyLog(const std::vector<std::filesystem::path>& logs, const std::filesystem::path& to,
                const CopyOptions& options = {});
 
-/** Copies the property log of a log, see propertyLogOf, to the folder of a log cut from it, unless it exists there.
+/** Copies the property log of a log, see propertyLog, to the folder of a log cut from it, unless it exists there.
  *  Returns a notice for the user; empty: none. */
 std::string copyProperties(const std::filesystem::path& log, const std::filesystem::path& to);
 

@@ -121,7 +121,7 @@ std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_d
     return std::make_unique<pocolog::Reader>(path, at_damage);
 }
 
-std::optional<std::filesystem::path> propertyLogOf(const Reader& log) {
+std::optional<std::filesystem::path> propertyLog(const Reader& log) {
     const std::filesystem::path path = log.path().parent_path() / "properties.0.log";
     if (path == log.path() || !std::filesystem::is_regular_file(path)) return {};
     const auto properties = openLog(path);

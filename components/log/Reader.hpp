@@ -114,7 +114,7 @@ bool isMcap(const std::filesystem::path& path);
 std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop);
 
 /** Returns the property log of a log: properties.0.log next to it, if it is from the same run; none: there is none. */
-std::optional<std::filesystem::path> propertyLogOf(const Reader& log);
+std::optional<std::filesystem::path> propertyLog(const Reader& log);
 
 /** Whether the stream has pings, or beams or scans, which are read as pings. */
 bool holdsPings(const Stream& stream);

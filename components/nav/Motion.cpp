@@ -52,7 +52,7 @@ std::optional<Motion> MotionTracker::take(const types::Pose& body) {
     return is_finite ? std::optional(motion) : std::nullopt;
 }
 
-std::string MotionTracker::takeWarning() { return std::exchange(warning_, {}); }
+std::string MotionTracker::consumeWarning() { return std::exchange(warning_, {}); }
 
 Motion MotionTracker::middle() const {
     const auto& [before, now, after] = poses_;

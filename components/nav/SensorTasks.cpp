@@ -26,7 +26,7 @@ void DvlTask::updateHook() {
     if (!isUsable(body)) return error("pose: is not finite, or its orientation has no length");
     if (state() == framework::TaskState::RunTimeError) recover();
     const std::optional<Motion> motion = tracker_.take(body);
-    if (const std::string reported = tracker_.takeWarning(); !reported.empty()) warn(reported);
+    if (const std::string reported = tracker_.consumeWarning(); !reported.empty()) warn(reported);
     if (motion && cadence_.isDue(motion->time)) measure(*motion);
 }
 
@@ -70,7 +70,7 @@ void ImuTask::updateHook() {
     if (!isUsable(body)) return error("pose: is not finite, or its orientation has no length");
     if (state() == framework::TaskState::RunTimeError) recover();
     const std::optional<Motion> motion = tracker_.take(body);
-    if (const std::string reported = tracker_.takeWarning(); !reported.empty()) warn(reported);
+    if (const std::string reported = tracker_.consumeWarning(); !reported.empty()) warn(reported);
     if (!motion || !cadence_.isDue(motion->time)) return;
     const types::Imu measured = unit_->measure(*motion);
     imu.write(measured);

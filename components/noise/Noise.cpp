@@ -392,7 +392,7 @@ bool Noise::addsAmbient() const {
 }
 
 /** Sorts the beams along their arc where their neighbours matter; those of unknown bearing follow. */
-void Noise::takeOrder(const types::Sonar& ping) {
+void Noise::setOrder(const types::Sonar& ping) {
     std::vector<uint32_t>& beams = order_.beams;
     beams.clear();
     order_.is_ring = false;
@@ -412,7 +412,7 @@ void Noise::drawFiltered(const types::Sonar& ping, uint64_t seed) {
         const BeamKey key{{low(seed), high(seed)}, static_cast<uint32_t>(stream), low(time), high(time)};
         if (wanted) filter_->draw(key, order_, ping.bin_count, variates);
     };
-    takeOrder(ping);
+    setOrder(ping);
     draw(Stream::Speckle, config_.speckle.has_value(), filtered_.factor);
     draw(Stream::Ambient, addsAmbient(), filtered_.ambient);
     draw(Stream::Additive, config_.additive.has_value(), filtered_.additive);

@@ -218,7 +218,7 @@ private:
         std::vector<float> factor, ambient, additive;
     };
     bool addsAmbient() const;
-    void takeOrder(const types::Sonar& ping);
+    void setOrder(const types::Sonar& ping);
     void drawFiltered(const types::Sonar& ping, uint64_t seed);
     uint64_t addTo(const Run& run) const;
     uint64_t multiply(const Run& run) const;

@@ -14,7 +14,7 @@ namespace {
 constexpr double quarter_turn = std::numbers::pi / 2;
 
 /** Returns width and height of the picture of a fan of unit radius, as {half the width, height behind the sonar}. */
-std::pair<double, double> reachOf(const FanShape& shape) {
+std::pair<double, double> reach(const FanShape& shape) {
     const double half_angle = FanShape::halfAngle(shape.right, shape.left, 1e-3);
     if (half_angle < quarter_turn) return {std::sin(half_angle), 0};
     return {1, -std::cos(half_angle)};
@@ -48,7 +48,7 @@ types::Sonar firstLine(const types::Sonar& ping) {
 /** Joins groups that touch across the ends of a ring: cells of the last row and of the first. `number_of` turns the
  *  numbers of groups into those of joined groups, which have no gaps. */
 void joinEnds(const cv::Mat& numbers, std::vector<int32_t>& number_of) {
-    const auto rootOf = [&](int32_t group) {
+    const auto root = [&](int32_t group) {
         while (number_of[static_cast<size_t>(group)] != group) group = number_of[static_cast<size_t>(group)];
         return group;
     };
@@ -56,7 +56,7 @@ void joinEnds(const cv::Mat& numbers, std::vector<int32_t>& number_of) {
     for (int cell = 0; cell < numbers.cols; ++cell)
         for (int other = std::max(0, cell - 1); other <= std::min(cell + 1, numbers.cols - 1); ++other) {
             if (first[cell] == 0 || last[other] == 0) continue;
-            const int32_t a = rootOf(first[cell]), b = rootOf(last[other]);
+            const int32_t a = root(first[cell]), b = root(last[other]);
             number_of[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
         }
     int32_t count = 0;
@@ -123,7 +123,7 @@ void PlainPicture::take(const types::DepthMap& map, double range_max) {
 
 void PlainPicture::buildFan() {
     radius_ = config_.height;
-    const auto [half_width, depth] = reachOf(shape_);
+    const auto [half_width, depth] = reach(shape_);
     width_ = 2 * static_cast<uint32_t>(std::ceil(radius_ * half_width));
     height_ = static_cast<uint32_t>(std::ceil(radius_ * (1 + depth)));
     origin_ = {width_ / 2.0 - 0.5, radius_ - 0.5};

@@ -14,8 +14,7 @@ namespace insonify::pose {
 namespace {
 
 /** Returns the second derivatives of one column at its knots: a tridiagonal system, zero at both ends. */
-std::vector<double> curvaturesOf(const std::vector<double>& times, const std::vector<Spline::Row>& rows,
-                                 size_t column) {
+std::vector<double> curvatures(const std::vector<double>& times, const std::vector<Spline::Row>& rows, size_t column) {
     const size_t count = times.size();
     std::vector<double> curvature(count, 0), factor(count, 0);
     const auto slope = [&](size_t i) { return (rows[i + 1][column] - rows[i][column]) / (times[i + 1] - times[i]); };
@@ -85,7 +84,7 @@ std::vector<types::CsvDiagnostic> evaluate(const std::vector<double>& row, const
 Spline::Spline(std::vector<double> times, std::vector<Row> rows)
     : times_(std::move(times)), rows_(std::move(rows)), curvatures_(rows_.size()) {
     for (size_t column = 0; column < columns; ++column) {
-        const std::vector<double> curvature = curvaturesOf(times_, rows_, column);
+        const std::vector<double> curvature = curvatures(times_, rows_, column);
         for (size_t i = 0; i < curvature.size(); ++i) curvatures_[i][column] = curvature[i];
     }
 }

@@ -304,7 +304,7 @@ std::vector<std::string_view> matterIn(const std::string& name) {
     return found;
 }
 
-types::GeometryPtr takeNames(const types::GeometryPtr& geometry) {
+types::GeometryPtr applyMaterialNames(const types::GeometryPtr& geometry) {
     std::vector<std::string> taken, unclear;
     std::shared_ptr<types::Geometry> named;
     for (size_t i = 0; i < geometry->materials.size(); ++i) {

@@ -27,7 +27,7 @@ std::vector<std::string_view> matterIn(const std::string& name);
 /** Returns a geometry in which materials without acoustic values take those of the matter or sediment in their names.
  *  One notice lists these materials, and those whose names contain several, which keep the default. Returns the same
  *  pointer if no name contains any. */
-types::GeometryPtr takeNames(const types::GeometryPtr& geometry);
+types::GeometryPtr applyMaterialNames(const types::GeometryPtr& geometry);
 
 /** Seabeds with a Lambert parameter fitted to APL-UW TR 9407 at 100 kHz (ACOUSTICS.md 3.2). */
 enum class Sediment {

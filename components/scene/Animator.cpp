@@ -22,7 +22,7 @@ double looped(double time, double duration) {
     return rest < 0 ? rest + duration : rest;
 }
 
-glm::dquat quaternionOf(const std::vector<double>& xyzw) { return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]}; }
+glm::dquat quaternion(const std::vector<double>& xyzw) { return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]}; }
 glm::dvec3 vectorOf(const std::vector<double>& xyz) { return {xyz[0], xyz[1], xyz[2]}; }
 
 glm::dquat scaledBy(const glm::dquat& q, double factor) {
@@ -156,7 +156,7 @@ void Animator::findMovers(const std::vector<int>& driven) {
     places_.rate.assign(scene_->nodes.size(), glm::dmat4(0));
 }
 
-std::vector<int> Animator::moversOf(int node) const {
+std::vector<int> Animator::movers(int node) const {
     std::vector<int> all;
     for (; node >= 0; node = scene_->nodes[static_cast<size_t>(node)].parent)
         if (is_mover_[static_cast<size_t>(node)]) all.push_back(node);
@@ -167,8 +167,8 @@ std::vector<int> Animator::moversOf(int node) const {
 void Animator::findLive() {
     for (const DeformingObject& object : scene_->animations->objects) {
         const int node = nodeOf(object);
-        const std::vector<int> with_mesh = moversOf(node);
-        const bool bends = std::ranges::any_of(object.joints, [&](int joint) { return moversOf(joint) != with_mesh; });
+        const std::vector<int> with_mesh = movers(node);
+        const bool bends = std::ranges::any_of(object.joints, [&](int joint) { return movers(joint) != with_mesh; });
         const bool morphs = std::ranges::any_of(
             tracks_, [&](const Track& track) { return track.path == AnimatedPath::Weights && track.node == node; });
         if (!bends && !morphs) continue;
@@ -186,7 +186,7 @@ void Animator::forgetTimes() {
     for (Playing& playing : playing_) playing.time.reset();
 }
 
-void Animator::takeTracks(double seconds) {
+void Animator::applyTracks(double seconds) {
     for (const Track& track : tracks_) {
         const Playing& playing = playing_[track.playing];
         const AnimationConfig& config = playing.config;
@@ -210,13 +210,13 @@ void Animator::takeTracks(double seconds) {
             shape.scale = vectorOf(value_);
             shape.scale_rate = per_second * vectorOf(rate_);
         } else {
-            shape.rotation = quaternionOf(value_);
-            shape.rotation_rate = scaledBy(quaternionOf(rate_), per_second);
+            shape.rotation = quaternion(value_);
+            shape.rotation_rate = scaledBy(quaternion(rate_), per_second);
         }
     }
 }
 
-void Animator::takeNodes(const std::vector<DrivenNode>& driven) {
+void Animator::applyNodes(const std::vector<DrivenNode>& driven) {
     std::ranges::fill(driven_, nullptr);
     for (const DrivenNode& one : driven)
         if (one.world_from_node) driven_[static_cast<size_t>(one.node)] = &one;
@@ -252,8 +252,8 @@ void Animator::takeNodes(const std::vector<DrivenNode>& driven) {
 }
 
 void Animator::take(double seconds, const std::vector<DrivenNode>& driven) {
-    takeTracks(seconds);
-    takeNodes(driven);
+    applyTracks(seconds);
+    applyNodes(driven);
 }
 
 glm::dvec3 Animator::placeOf(int node, const glm::dvec3& point) const {

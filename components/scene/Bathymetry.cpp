@@ -177,8 +177,8 @@ void Bathymetry::addMap(const PostWindow& posts, const std::vector<int>& materia
         std::copy_n(read.begin() + std::ptrdiff_t{y} * known.columns, known.columns,
                     values.begin() + std::ptrdiff_t{known.row + y - texels.row} * texels.columns + known.column -
                         texels.column);
-    types::SurfaceMap map = surfaceMapOf(values, texels.columns, texels.rows, config_.map->meaning,
-                                         {materials.begin() + 1, materials.end()});
+    types::SurfaceMap map =
+        surfaceMap(values, texels.columns, texels.rows, config_.map->meaning, {materials.begin() + 1, materials.end()});
     map.repeat_u = map.repeat_v = false;
     mesh.maps.push_back({materials.front(), std::make_shared<const types::SurfaceMap>(std::move(map))});
     for (int y = 0; y < posts.rows; ++y)

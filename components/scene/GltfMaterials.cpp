@@ -267,7 +267,7 @@ private:
         if (map.Has("texcoord")) on_surface.uv_set = map.Get("texcoord").GetNumberAsInt();
         std::vector<float> values(pixels.bytes.begin(), pixels.bytes.end());
         for (const uint16_t word : pixels.words) values.push_back(static_cast<float>(word) * (255.0f / 65535));
-        types::SurfaceMap result = surfaceMapOf(values, pixels.width, pixels.height, meaning, std::move(classes));
+        types::SurfaceMap result = surfaceMap(values, pixels.width, pixels.height, meaning, std::move(classes));
         result.repeat_u = repeat_u, result.repeat_v = repeat_v;
         noteUnknown(from.name, result);
         return result;

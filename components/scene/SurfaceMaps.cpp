@@ -61,8 +61,8 @@ float MapValues::maxStrength() const {
     return decibels.empty() ? 1.0f : static_cast<float>(linear(std::max(decibels[0], decibels[1])));
 }
 
-types::SurfaceMap surfaceMapOf(std::span<const float> values, int width, int height, const MapValues& meaning,
-                               std::vector<int> materials) {
+types::SurfaceMap surfaceMap(std::span<const float> values, int width, int height, const MapValues& meaning,
+                             std::vector<int> materials) {
     types::SurfaceMap map;
     map.width = width, map.height = height;
     if (meaning.classes.empty()) {

@@ -50,8 +50,8 @@ struct MapValues {
 
 /** Returns a map of `width` x `height` values in rows from the top; NaN means the surface's own material.
  *  @param materials of each class, in the order of MapValues::classes. */
-types::SurfaceMap surfaceMapOf(std::span<const float> values, int width, int height, const MapValues& meaning,
-                               std::vector<int> materials);
+types::SurfaceMap surfaceMap(std::span<const float> values, int width, int height, const MapValues& meaning,
+                             std::vector<int> materials);
 
 /** Returns the index of each class's material. A name refers to a material of the geometry, or else to a sediment or
  *  matter, for which a material is added. Any other name is a diagnostic at `path` and the class. */

@@ -214,7 +214,7 @@ MultipathResult studyMultipath() {
     return result;
 }
 
-std::string csvOf(const MultipathResult& result) {
+std::string csv(const MultipathResult& result) {
     std::string text = "curve,x,heard,expected\n";
     for (const EchoCurve& curve : result.curves)
         for (const EchoPoint& point : curve.points)

@@ -27,6 +27,6 @@ struct MultipathResult {
  *  and turned dihedrals and trihedrals. The first echo must not change. */
 MultipathResult studyMultipath();
 
-std::string csvOf(const MultipathResult& result);  ///< Returns a row per point of each curve.
+std::string csv(const MultipathResult& result);  ///< Returns a row per point of each curve.
 
 }  // namespace insonify::study

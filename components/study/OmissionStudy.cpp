@@ -233,7 +233,7 @@ private:
         const SonarConfig& config = planned_.config;
         for (const sonar::Effect* effect : sonar::effects()) {
             Way without = planned_;
-            if (const std::string name = effect->takeOut(without.config); !name.empty()) keep(name, without);
+            if (const std::string name = effect->removeFrom(without.config); !name.empty()) keep(name, without);
         }
         Way without = planned_;
         if (config.model == sonar::Model::Physical && !planned_.snapshot.targets.empty()) {

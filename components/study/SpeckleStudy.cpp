@@ -232,7 +232,7 @@ std::vector<SpeckleFigure> figuresOf(const SpeckleSlice& slice) {
             {"noise_share", slice.next ? next.noiseShare() : NAN}};
 }
 
-std::string csvOf(const std::vector<SpeckleRow>& rows) {
+std::string csv(const std::vector<SpeckleRow>& rows) {
     std::string text = "ping,slice,loudest";
     for (const SpeckleFigure& figure : figuresOf(SpeckleSlice{})) text += std::string(",") + figure.name;
     for (const SpeckleRow& row : rows)
@@ -243,7 +243,7 @@ std::string csvOf(const std::vector<SpeckleRow>& rows) {
     return text + "\n";
 }
 
-std::string lagsCsvOf(const std::vector<SpeckleRow>& rows) {
+std::string lagsCsv(const std::vector<SpeckleRow>& rows) {
     std::string text = "ping,lag,bin_correlation,beam_correlation\n";
     for (const SpeckleRow& row : rows)
         if (const SpeckleSlice* loud = row.loudestSlice())
@@ -255,8 +255,8 @@ std::string lagsCsvOf(const std::vector<SpeckleRow>& rows) {
 
 void writeReport(const std::vector<SpeckleRow>& rows, const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
-    write(folder / "speckle.csv", csvOf(rows));
-    write(folder / "lags.csv", lagsCsvOf(rows));
+    write(folder / "speckle.csv", csv(rows));
+    write(folder / "lags.csv", lagsCsv(rows));
 }
 
 const SpeckleSlice* SpeckleRow::loudestSlice() const {

@@ -53,8 +53,8 @@ struct SpeckleFigure {
 };
 std::vector<SpeckleFigure> figuresOf(const SpeckleSlice& slice);
 
-std::string csvOf(const std::vector<SpeckleRow>& rows);      ///< Returns a line for each row and slice.
-std::string lagsCsvOf(const std::vector<SpeckleRow>& rows);  ///< Returns both correlation curves of the loudest slices.
+std::string csv(const std::vector<SpeckleRow>& rows);      ///< Returns a line for each row and slice.
+std::string lagsCsv(const std::vector<SpeckleRow>& rows);  ///< Returns both correlation curves of the loudest slices.
 
 /** Writes speckle.csv, lags.csv and speckle.svg. Throws std::runtime_error if a file cannot be written. */
 void writeReport(const std::vector<SpeckleRow>& rows, const std::filesystem::path& folder);

@@ -77,17 +77,17 @@ ParameterRequest::Kind kindOf(const Json& said) {
 }
 
 /** Formats a value for a property's setter; texts unchanged. */
-std::string yamlOf(const Json& one) {
+std::string yaml(const Json& one) {
     const Json value = one.value("value", Json());
     return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-std::pair<std::string, std::string> settingOf(const Json& one) {
+std::pair<std::string, std::string> setting(const Json& one) {
     if (!one.is_object() || !one.value("name", Json()).is_string())
         throw std::invalid_argument("sets a parameter without a name");
     if (one.value("type", Json()) == "byte_array")
         throw std::invalid_argument("sets " + one["name"].dump() + " to bytes, which no property has");
-    return {one["name"].get<std::string>(), yamlOf(one)};
+    return {one["name"].get<std::string>(), yaml(one)};
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ ParameterRequest readParameterRequest(std::string_view text) {
     if (request.kind == ParameterRequest::Kind::Other) return request;
     if (const Json id = said.value("id", Json()); id.is_string()) request.id = id.get<std::string>();
     if (request.kind == ParameterRequest::Kind::Set) {
-        for (const Json& one : listIn(said, "parameters")) request.values.push_back(settingOf(one));
+        for (const Json& one : listIn(said, "parameters")) request.values.push_back(setting(one));
         return request;
     }
     for (const Json& name : listIn(said, "parameterNames")) {

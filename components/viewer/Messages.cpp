@@ -120,8 +120,8 @@ std::string topicOf(const std::string& source) {
 namespace {
 
 /** Returns the transform of a frame in another, from a pose. */
-foxglove::FrameTransforms transformOf(const types::Pose& pose, const std::string& child,
-                                      const ros::MessageOptions& options) {
+foxglove::FrameTransforms transform(const types::Pose& pose, const std::string& child,
+                                    const ros::MessageOptions& options) {
     ros::PoseStamped placed;
     ros::toMessage(pose, options, placed);
     const auto& [position, orientation] = placed.pose;
@@ -154,11 +154,11 @@ void Messages::append(const T& sample, Form form, std::vector<char>& bytes) {
         }
     }
     if constexpr (std::is_same_v<T, types::Pose>) {
-        if (form == Form::Transforms) return ros::encode(transformOf(sample, sample.source_frame, options_), bytes);
+        if (form == Form::Transforms) return ros::encode(transform(sample, sample.source_frame, options_), bytes);
     }
     typename ShownMessage<T>::type message;
     if constexpr (std::is_same_v<T, types::Snapshot>) {
-        if (form == Form::Transforms) return ros::encode(transformOf(sample.sonar, options_.frame_id, options_), bytes);
+        if (form == Form::Transforms) return ros::encode(transform(sample.sonar, options_.frame_id, options_), bytes);
         ros::toMessage(sample.sonar, options_, message);
     } else {
         ros::toMessage(sample, options_, message);

@@ -95,7 +95,7 @@ std::vector<Messages> messagesOf(const ViewerConfig& config, size_t sources) {
 }
 
 /** Returns 0 for a time before the epoch. */
-uint64_t nanosecondsOf(types::Time stamp) {
+uint64_t nanoseconds(types::Time stamp) {
     return static_cast<uint64_t>(std::max<int64_t>(0, stamp.microseconds)) * 1000;
 }
 
@@ -253,7 +253,7 @@ ServerCounts Publisher::counts() const {
     return counts;
 }
 
-std::string Publisher::takeError() {
+std::string Publisher::consumeError() {
     std::lock_guard lock(mutex_);
     return std::exchange(diagnostic_, {});
 }
@@ -298,7 +298,7 @@ void Publisher::publishAll() {
         publishFresh(lock);
         if (ending_ || std::chrono::steady_clock::now() < next_status) continue;
         lock.unlock();
-        if (const std::string warning = server_.takeWarning(); !warning.empty()) host_.warn(warning);
+        if (const std::string warning = server_.consumeWarning(); !warning.empty()) host_.warn(warning);
         showStatus();
         next_status = std::chrono::steady_clock::now() + status_period;
         lock.lock();
@@ -322,7 +322,7 @@ void Publisher::publishFresh(std::unique_lock<std::mutex>& lock) {
 }
 
 void Publisher::sendTime(types::Time now) {
-    if (server_.foxglove() > 0) server_.timeToFoxglove(nanosecondsOf(now));
+    if (server_.foxglove() > 0) server_.timeToFoxglove(nanoseconds(now));
 }
 
 void Publisher::publish(size_t source, const Slot& slot) try {
@@ -341,7 +341,7 @@ void Publisher::showInFoxglove(size_t source, const Slot& slot) {
         if (form == Form::Scene)
             sendScene(channel, source, slot);
         else
-            server_.toFoxglove(channel, nanosecondsOf(slot.stamp), messages_[source].encode(slot.sample, form));
+            server_.toFoxglove(channel, nanoseconds(slot.stamp), messages_[source].encode(slot.sample, form));
     }
 }
 
@@ -354,9 +354,9 @@ void Publisher::sendScene(uint32_t channel, size_t source, const Slot& slot) {
     Bytes message = whole ? scene.whole(**snapshot) : scene.moved(**snapshot);
     if (!message) return;
     if (whole)
-        server_.everyToFoxglove(channel, nanosecondsOf(slot.stamp), std::move(message));
+        server_.everyToFoxglove(channel, nanoseconds(slot.stamp), std::move(message));
     else
-        server_.toFoxglove(channel, nanosecondsOf(slot.stamp), std::move(message));
+        server_.toFoxglove(channel, nanoseconds(slot.stamp), std::move(message));
 }
 
 void Publisher::showOnPages(size_t source, const Slot& slot) {

@@ -94,7 +94,7 @@ public:
     uint16_t port() const { return server_.port(); }
     ServerCounts counts() const;
     /** Returns why samples could not be encoded since the last call; empty if all could. */
-    std::string takeError();
+    std::string consumeError();
 
 private:
     struct Slot {

@@ -323,6 +323,6 @@ void Server::reply(uint64_t client, std::string text) {
     });
 }
 ServerCounts Server::counts() const { return {core_->clients, core_->refused.count(), core_->dropped}; }
-std::string Server::takeWarning() { return core_->refused.takeWarning(); }
+std::string Server::consumeWarning() { return core_->refused.consumeWarning(); }
 
 }  // namespace insonify::viewer

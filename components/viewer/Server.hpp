@@ -131,8 +131,8 @@ public:
     void parametersToFoxglove(Parameters changed);
     void reply(uint64_t client, std::string text);
     ServerCounts counts() const;
-    /** See types::ThrottledWarning::takeWarning(). */
-    std::string takeWarning();
+    /** See types::ThrottledWarning::consumeWarning(). */
+    std::string consumeWarning();
 
     class Core;
 

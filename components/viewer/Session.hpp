@@ -102,7 +102,7 @@ constexpr auto request_timeout = std::chrono::seconds(5), response_timeout = std
 
 inline std::string textOf(beast::string_view view) { return {view.data(), view.size()}; }
 
-inline AccessPolicy::Request admissionOf(const HttpRequest& request) {
+inline AccessPolicy::Request admission(const HttpRequest& request) {
     return {textOf(request.target()), textOf(request[http::field::host]), textOf(request[http::field::origin]),
             textOf(request[http::field::authorization])};
 }
@@ -169,8 +169,8 @@ private:
     void greet();
     void readMessage();
     void taken(std::string text);
-    void takeFromFoxglove(const std::string& text);
-    bool takeParameters(const std::string& text);
+    void handleFoxglove(const std::string& text);
+    bool handleParameters(const std::string& text);
     void send();
     void leave();
 
@@ -233,7 +233,7 @@ inline void Session::refuse(const AccessPolicy::Refusal& refusal) {
 inline void Session::answer() {
     asked_ = true;
     const HttpRequest& request = parser_->get();
-    const AccessPolicy::Request asked = admissionOf(request);
+    const AccessPolicy::Request asked = admission(request);
     const bool wants_socket = websocket::is_upgrade(request);
     protocol_ = protocolOf(textOf(request[http::field::sec_websocket_protocol]));
     const bool foxglove = protocol_ == foxglove_protocol || protocol_ == foxglove_sdk_protocol;
@@ -331,11 +331,11 @@ inline void Session::readMessage() {
 
 inline void Session::taken(std::string text) {
     if (kind_ == Kind::Page) return context_.handler.request(id_, std::move(text));
-    if (ws_.got_text() && !takeParameters(text)) takeFromFoxglove(text);
+    if (ws_.got_text() && !handleParameters(text)) handleFoxglove(text);
 }
 
 /** Returns false if the message is not about parameters. */
-inline bool Session::takeParameters(const std::string& text) try {
+inline bool Session::handleParameters(const std::string& text) try {
     using enum ParameterRequest::Kind;
     ParameterRequest request = readParameterRequest(text);
     if (request.kind == Other) return false;
@@ -352,7 +352,7 @@ inline bool Session::takeParameters(const std::string& text) try {
     return true;
 }
 
-inline void Session::takeFromFoxglove(const std::string& text) {
+inline void Session::handleFoxglove(const std::string& text) {
     const auto before = subscriptions_.all();
     if (const std::string diagnostic = subscriptions_.take(text); !diagnostic.empty())
         post({"", bytesOf(diagnosticText("the message " + diagnostic)), true});

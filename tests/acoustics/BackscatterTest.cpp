@@ -106,7 +106,7 @@ TEST(BackscatterTest, TheLossOfSeabedsMatchesFigure1OfTheReport) {
     // less than 0.1 dB below its critical angle of 66 deg, and 2.8 dB at the vertical.
     const auto lossDb = [](const char* name, double grazing_deg) {
         return -20 *
-               std::log10(std::abs(halfSpaceReflection(halfSpaceOf(seabedNamed(name).value()), grazing_deg * degree)));
+               std::log10(std::abs(halfSpaceReflection(halfSpace(seabedNamed(name).value()), grazing_deg * degree)));
     };
     double peak = 0, peak_deg = 0;
     for (double grazing = 1; grazing <= 90; grazing += 0.5)

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "components/sonar/multipath/TargetWays.hpp"
+#include "components/sonar/multipath/TargetPaths.hpp"
 #include "components/study/Shapes.hpp"
 
 namespace insonify {
@@ -68,7 +68,7 @@ void bench(const char* name, types::Mesh mesh, int pings) {
     const types::GeometryPtr geometry = mirrorOf(std::move(mesh));
     sonar::SonarConfig config;
     config.multipath.emplace().bounces = 2;
-    sonar::TargetWays ways(config, *geometry);
+    sonar::TargetPaths ways(config, *geometry);
     Random random(2);
     const auto place = [&] {
         return glm::dvec3(uniform(random, -2.9, 2.9), uniform(random, -2.9, 2.9), uniform(random, -2.9, 2.9));

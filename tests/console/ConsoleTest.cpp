@@ -64,7 +64,7 @@ private:
     std::string text_;
 };
 
-double secondsOf(const auto& work) {
+double seconds(const auto& work) {
     const auto begin = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -83,7 +83,7 @@ TEST(ConsoleTest, APipeThatNobodyReadsHoldsUpNoCallerAndKeepsTheOrder) {
     Replaced error(STDERR_FILENO, pipe.in());
     const uint64_t before = droppedDiagnostics();
     startPrinting();
-    EXPECT_LT(secondsOf([] {
+    EXPECT_LT(seconds([] {
                   for (int i = 0; i < count; ++i) printDiagnostic("{:<99}\n", i);
               }),
               5);

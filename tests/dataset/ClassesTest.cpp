@@ -34,13 +34,13 @@ TEST(ClassesTest, TheFirstMatchingRuleCounts) {
 
 TEST(ClassesTest, ClassesOfShadowsFollowAllOthers) {
     Sweep sweep;
-    EXPECT_EQ(Classes(sweep, objects).shadowOf(3), 0u);
+    EXPECT_EQ(Classes(sweep, objects).shadow(3), 0u);
     sweep.annotations.shadows = true;
     const Classes classes(sweep, objects);
     EXPECT_THAT(classes.names(),
                 ElementsAre("12", "hull", "pile", "rock", "12_shadow", "hull_shadow", "pile_shadow", "rock_shadow"));
-    EXPECT_EQ(classes.shadowOf(classes.of("pile_01")), 7u);
-    EXPECT_EQ(classes.shadowOf(0), 0u);
+    EXPECT_EQ(classes.shadow(classes.of("pile_01")), 7u);
+    EXPECT_EQ(classes.shadow(0), 0u);
 }
 
 TEST(ClassesTest, APatternThatMatchesNothingIsRefused) {

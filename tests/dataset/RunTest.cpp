@@ -17,7 +17,7 @@ types::SonarPtr lineOf(float level, uint32_t bins = 5) {
 
 types::SonarTruthPtr truthOf(const types::Sonar& ping, int32_t object) {
     auto truth = std::make_shared<types::SonarTruth>();
-    truth->takeGrid(ping);
+    truth->copyGrid(ping);
     truth->objects = {"floor", "rock"};
     std::ranges::fill(truth->object, object);
     std::ranges::fill(truth->shadow, uint8_t{1});

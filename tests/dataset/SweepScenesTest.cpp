@@ -61,7 +61,7 @@ TEST(SweepScenesTest, AnObjectHasItsNodesNamesUpToTheRoot) {
     scene.nodes.push_back({.name = "sea"});
     scene.nodes[2].parent = 3;
     scene.nodes[0].parent = 2;
-    EXPECT_EQ(lineagesOf(scene), (std::vector<Lineage>{{"floor_low", "frame", "sea"}, {"floor_high"}}));
+    EXPECT_EQ(lineages(scene), (std::vector<Lineage>{{"floor_low", "frame", "sea"}, {"floor_high"}}));
 }
 
 using Changes = std::vector<std::function<void(types::Geometry&)>>;

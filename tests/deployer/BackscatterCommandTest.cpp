@@ -12,14 +12,14 @@ using ::testing::IsEmpty;
 
 namespace {
 
-json backscatterOf(std::vector<std::string> options) {
+json backscatter(std::vector<std::string> options) {
     options.insert(options.begin(), "backscatter");
     return jsonOf(TestFolder(), options);
 }
 
 TEST(BackscatterCommandTest, ASeabedHasTheStrengthsOfTheReport) {
-    const json sand = backscatterOf({"--sediment", "medium_sand", "--frequency-khz", "30", "--sound-speed", "1528",
-                                     "--grazing-deg", "10", "--grazing-deg", "90"});
+    const json sand = backscatter({"--sediment", "medium_sand", "--frequency-khz", "30", "--sound-speed", "1528",
+                                   "--grazing-deg", "10", "--grazing-deg", "90"});
     EXPECT_EQ(sand["name"], "medium_sand");
     EXPECT_EQ(sand["law"], "apl_uw_tr_9407");
     EXPECT_NEAR(sand["parameters"]["density_ratio"], 1.845, 1e-3);
@@ -28,8 +28,8 @@ TEST(BackscatterCommandTest, ASeabedHasTheStrengthsOfTheReport) {
     EXPECT_NEAR(sand["strength_db"][0], -35.4, 0.6);  // APL-UW TR 9407, table 3
     EXPECT_NEAR(sand["strength_db"][1], -3.1, 0.6);
     EXPECT_THAT(sand["warnings"], IsEmpty());
-    const json grains = backscatterOf({"--grain-size-phi", "1.5", "--frequency-khz", "30", "--sound-speed", "1528",
-                                       "--grazing-deg", "10", "--grazing-deg", "90"});
+    const json grains = backscatter({"--grain-size-phi", "1.5", "--frequency-khz", "30", "--sound-speed", "1528",
+                                     "--grazing-deg", "10", "--grazing-deg", "90"});
     EXPECT_EQ(grains["strength_db"], sand["strength_db"]);
 }
 
@@ -37,7 +37,7 @@ TEST(BackscatterCommandTest, EveryNameOfASedimentHasAStrength) {
     for (const char* name : {"rough_rock", "rock", "cobble", "sandy_gravel", "coarse_sand", "medium_sand", "fine_sand",
                              "muddy_sand", "very_fine_sand", "coarse_silt", "sandy_silt", "silt", "medium_silt",
                              "fine_silt", "very_fine_silt", "clay", "mackenzie"}) {
-        const json seabed = backscatterOf({"--sediment", name, "--frequency-khz", "100"});
+        const json seabed = backscatter({"--sediment", name, "--frequency-khz", "100"});
         EXPECT_EQ(seabed["strength_db"].size(), seabed["grazing_deg"].size()) << name;
         EXPECT_GT(seabed["grazing_deg"].size(), 10u) << name;
         for (const json& strength : seabed["strength_db"]) EXPECT_TRUE(strength.is_number()) << name;
@@ -45,12 +45,12 @@ TEST(BackscatterCommandTest, EveryNameOfASedimentHasAStrength) {
 }
 
 TEST(BackscatterCommandTest, LambertAndMaterialsFollowTheCosine) {
-    const json lambert = backscatterOf({"--lambert-db", "-20", "--frequency-khz", "700", "--grazing-deg", "30"});
+    const json lambert = backscatter({"--lambert-db", "-20", "--frequency-khz", "700", "--grazing-deg", "30"});
     EXPECT_EQ(lambert["law"], "lambert");
     EXPECT_NEAR(lambert["strength_db"][0], -26.02, 0.01);
-    const json steel = backscatterOf({"--material", "steel", "--frequency-khz", "700", "--grazing-deg", "90"});
+    const json steel = backscatter({"--material", "steel", "--frequency-khz", "700", "--grazing-deg", "90"});
     EXPECT_EQ(steel["name"], "steel");
-    const json sand = backscatterOf({"--material", "sand", "--frequency-khz", "700", "--grazing-deg", "90"});
+    const json sand = backscatter({"--material", "sand", "--frequency-khz", "700", "--grazing-deg", "90"});
     EXPECT_EQ(sand["law"], "lambert") << "its relief is not known";
     EXPECT_NEAR(sand["parameters"]["reflection"], 0.355, 1e-9);
     EXPECT_NEAR(sand["strength_db"][0], -9.23 + 20 * std::log10(0.355), 1e-6);
@@ -58,8 +58,7 @@ TEST(BackscatterCommandTest, LambertAndMaterialsFollowTheCosine) {
 
 TEST(BackscatterCommandTest, AMaterialIsARoughSolidWithItsSources) {
     const auto of = [](const char* name, const char* khz) {
-        return backscatterOf(
-            {"--material", name, "--frequency-khz", khz, "--grazing-deg", "45", "--grazing-deg", "90"});
+        return backscatter({"--material", name, "--frequency-khz", khz, "--grazing-deg", "45", "--grazing-deg", "90"});
     };
     const json steel = of("steel", "900"), rock = of("rock", "900");
     EXPECT_EQ(steel["law"], "rough_solid");
@@ -85,16 +84,16 @@ TEST(BackscatterCommandTest, EveryMaterialIsFiniteAtEveryFrequency) {
     for (const char* name : {"steel", "glass", "acrylic", "pvc", "rubber", "wood", "concrete", "rock", "rope", "net",
                              "fouling", "human_body", "air", "closed_cell_foam", "natural_rubber"})
         for (const char* khz : {"10", "3000"})
-            for (const json& strength : backscatterOf({"--material", name, "--frequency-khz", khz})["strength_db"])
+            for (const json& strength : backscatter({"--material", name, "--frequency-khz", khz})["strength_db"])
                 EXPECT_TRUE(strength.is_number() && std::isfinite(strength.get<double>())) << name << " " << khz;
 }
 
 TEST(BackscatterCommandTest, AboveAHundredKilohertzAWarningNamesTheRange) {
-    const json sand = backscatterOf({"--sediment", "fine_sand", "--frequency-khz", "750", "--grazing-deg", "0"});
+    const json sand = backscatter({"--sediment", "fine_sand", "--frequency-khz", "750", "--grazing-deg", "0"});
     ASSERT_EQ(sand["warnings"].size(), 1u);
     EXPECT_THAT(sand["warnings"][0].get<std::string>(), HasSubstr("750 kHz (10 to 100)"));
     EXPECT_TRUE(sand["strength_db"][0].is_number());
-    const json coarse = backscatterOf({"--grain-size-phi", "-5", "--frequency-khz", "50"});
+    const json coarse = backscatter({"--grain-size-phi", "-5", "--frequency-khz", "50"});
     EXPECT_THAT(coarse["warnings"][0].get<std::string>(), HasSubstr("-5 phi (-1 to 9)"));
     const TestFolder folder;
     EXPECT_THAT(callInsonify(folder, {"backscatter", "--sediment", "clay", "--frequency-khz", "750"}).out,

@@ -45,7 +45,7 @@ struct PingDriverTest : testing::Test {
         run_->signal(SIGINT);
         EXPECT_THAT(run_->wait(), succeeds());
     }
-    std::string udpPortOf(const std::string& task) const {
+    std::string udpPort(const std::string& task) const {
         const std::string text = readFile(folder_ / "stderr.txt");
         return std::to_string(
             static_cast<int>(numbersIn(text, task + ": listens on UDP 127\\.0\\.0\\.1:(\\d+)").at(0)));
@@ -98,7 +98,7 @@ double bottomBelow() {
 }  // namespace
 
 TEST_F(PingDriverTest, AScanOfAllAnglesByUdpHasTheWallAtItsRange) {
-    const json reported = driven("ping360 " + udpPortOf("ping360"));
+    const json reported = driven("ping360 " + udpPort("ping360"));
     EXPECT_EQ(reported["information"]["device_type"], 2);
     ASSERT_EQ(reported["scan"].size(), 400u);
     int compared = 0;
@@ -135,7 +135,7 @@ TEST_F(PingDriverTest, TheSerialLineGivesTheSame) {
 
 TEST_F(PingDriverTest, AnEchoSounderFindsTheBottomByUdpAndBySerialLine) {
     const double bottom = bottomBelow();
-    for (const std::string& line : {udpPortOf("ping1d"), lineOf("ping1d")}) {
+    for (const std::string& line : {udpPort("ping1d"), lineOf("ping1d")}) {
         const json reported = driven("ping1d " + line);
         EXPECT_EQ(reported["information"]["device_type"], 1) << line;
         EXPECT_EQ(reported["range"]["scan_length"], 6000) << line;

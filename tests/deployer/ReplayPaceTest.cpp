@@ -75,7 +75,7 @@ TEST_F(ReplayPaceTest, StartsBehindAStepOfTheClockBySecondsAndByDates) {
             for (int i = 0; i < 6; ++i) ping.time = stampOf(i, step), log.write(stream, ping.time, ping);
             log.close();
         }
-        const auto startOf = [&](const std::string& from) {
+        const auto start = [&](const std::string& from) {
             EXPECT_THAT(
                 callInsonify(folder_, {"replay", "stepped.0.log", "wall.yml", "--out", "again", "--from", from}),
                 succeeds())
@@ -83,13 +83,13 @@ TEST_F(ReplayPaceTest, StartsBehindAStepOfTheClockBySecondsAndByDates) {
             return Time{1000 * stamps().front()} - first;
         };
         const int behind = step > 0 ? 4 + step : 4;  // a step forward is a pause
-        EXPECT_EQ(startOf("1"), Time::fromSeconds(1));
-        EXPECT_EQ(startOf(std::to_string(behind)), Time::fromSeconds(behind));
-        EXPECT_EQ(startOf(log::readable(stampOf(2, step))), Time::fromSeconds(2));
+        EXPECT_EQ(start("1"), Time::fromSeconds(1));
+        EXPECT_EQ(start(std::to_string(behind)), Time::fromSeconds(behind));
+        EXPECT_EQ(start(log::readable(stampOf(2, step))), Time::fromSeconds(2));
         if (step > 0) {
-            EXPECT_EQ(startOf(log::readable(stampOf(4, step))), Time::fromSeconds(behind));
+            EXPECT_EQ(start(log::readable(stampOf(4, step))), Time::fromSeconds(behind));
         }
-        EXPECT_EQ(startOf(std::to_string(behind + 1)), Time::fromSeconds(behind + 1)) << "the last";
+        EXPECT_EQ(start(std::to_string(behind + 1)), Time::fromSeconds(behind + 1)) << "the last";
         EXPECT_THAT(
             callInsonify(folder_, {"replay", "stepped.0.log", "wall.yml", "--from", std::to_string(behind + 2)}),
             isRefused(HasSubstr("; the log ends ")));

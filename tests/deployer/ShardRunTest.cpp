@@ -221,7 +221,7 @@ TEST(ShardRunTest, TheManifestHasEveryFileWithItsHashAndNothingOfTheMachine) {
     for (const json& file : manifest["files"]) {
         const std::string& bytes = files.at(file["file"]);
         EXPECT_EQ(file["bytes"], bytes.size());
-        EXPECT_EQ(file["sha256"], insonify::console::sha256Of(bytes));
+        EXPECT_EQ(file["sha256"], insonify::console::sha256(bytes));
     }
     EXPECT_EQ(manifest.dump().find(folder.path().string()), std::string::npos);
 }

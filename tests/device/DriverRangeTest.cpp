@@ -90,7 +90,7 @@ types::SonarSettings answered(PingDevice& device, PingBench& bench, const Case& 
     for (auto asked = bench.asked(); asked; asked = bench.asked()) {
         if (std::isnan(last.range)) range = target * asked->range * each.speed / 1500;  // requested at 1500 m/s first
         last = *asked;
-        device.takePing(answerTo(*asked, range, each), bench.now());
+        device.setPing(answerTo(*asked, range, each), bench.now());
     }
     bench.wait(1);
     return last;
@@ -197,7 +197,7 @@ TEST(DriverRangeTest, TheMicronsDriverFindsTheEchoByTheSamplingInterval) {
         device.tick(now);
         ASSERT_TRUE(asked);
         const double target = each.target * asked->range;
-        device.takePing(*answerTo(*asked, target, each));
+        device.setPing(*answerTo(*asked, target, each));
         device.tick(now + types::Time::fromSeconds(1));
         const auto beam = driver.beam();
         const double bin = beam.sampling_interval * each.speed / 2;
@@ -236,7 +236,7 @@ public:
         sonar_.update();
         types::DepthMapPtr map;
         if (!maps_.port.readNew(map)) throw std::runtime_error("no map: " + sonar_.lastError());
-        device_.takePing(*map);
+        device_.setPing(*map);
         const auto image = std::get<RangePixels>(ripMessages(packets_.at(0)).at(0));
         return image.pixels.at(4) * static_cast<double>(image.pixel_scale);
     }

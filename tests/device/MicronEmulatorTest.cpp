@@ -29,7 +29,7 @@ struct MicronEmulatorTest : ::testing::Test {
     }
     void nextBytes() {
         ping_.time = now_;
-        emulator_.takePing(ping_);
+        emulator_.setPing(ping_);
     }
     /** Advances to the next due time; the sonar answers at once. */
     void wait() {
@@ -49,7 +49,7 @@ struct MicronEmulatorTest : ::testing::Test {
         std::swap(bytes, sent_[whom]);
         return bytes;
     }
-    MicronDriver driverOf(Client whom) {
+    MicronDriver driver(Client whom) {
         return {[this, whom](const Bytes& bytes) { emulator_.received(whom, bytes, now_); },
                 [this, whom] { return readFor(whom); }};
     }
@@ -74,7 +74,7 @@ struct MicronEmulatorTest : ::testing::Test {
          },
          [this](Client to, Bytes bytes) { sent_[to].insert(sent_[to].end(), bytes.begin(), bytes.end()); },
          [this](const std::string& text) { warnings_.push_back(text); }}};
-    MicronDriver driver_ = driverOf(client);
+    MicronDriver driver_ = driver(client);
 };
 
 TEST_F(MicronEmulatorTest, ADriverCompletesItsHandshakeAndScansAllRound) {
@@ -244,7 +244,7 @@ TEST_F(MicronEmulatorTest, RefusesImpossibleCommands) {
 
 TEST_F(MicronEmulatorTest, TwoClientsShareOneHead) {
     emulator_.opened(other);
-    MicronDriver second = driverOf(other);
+    MicronDriver second = driver(other);
     driver_.configure({});
     second.configure({});
     driver_.request();
@@ -336,11 +336,11 @@ TEST_F(MicronEmulatorTest, RequestsAMissingPingAgainAndAnswersTheLineLate) {
         EXPECT_THAT(warnings_.back(), HasSubstr("a requested ping did not arrive"));
         sent_.clear();
         ping_.time = asked_.front().time - types::Time{1};
-        emulator_.takePing(ping_);
+        emulator_.setPing(ping_);
         emulator_.tick(now_);
         EXPECT_THAT(sent_[client], IsEmpty()) << "an earlier ping has another bearing";
         ping_.time = asked_.front().time;
-        emulator_.takePing(ping_);
+        emulator_.setPing(ping_);
         EXPECT_EQ(driver_.beam().bins.size(), 200u) << "the first requested ping, late";
         answers_ = true;
         driver_.request();
@@ -368,16 +368,16 @@ TEST_F(MicronEmulatorTest, ACommandEndsALineThatIsNotAnswered) {
 }
 
 TEST_F(MicronEmulatorTest, SendsAliveUntilStopAlive) {
-    const auto takePing = [&] {
+    const auto setPing = [&] {
         const size_t size = sent_[client].size();
         sent_.clear();
         return size / 22;
     };
     for (int i = 0; i < 3; ++i) advance(1);
-    EXPECT_EQ(takePing(), 3u);
+    EXPECT_EQ(setPing(), 3u);
     emulator_.received(client, seaNetRequest(SeaNetType::StopAlive).packet(), now_);
     for (int i = 0; i < 3; ++i) advance(1);
-    EXPECT_EQ(takePing(), 0u);
+    EXPECT_EQ(setPing(), 0u);
 }
 
 TEST_F(MicronEmulatorTest, IgnoresNoiseAndOtherNodes) {

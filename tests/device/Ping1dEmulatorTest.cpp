@@ -34,7 +34,7 @@ struct Ping1dEmulatorTest : ::testing::Test {
         bench_.say(PingGeneralRequest{Message::message});
         const auto asked = bench_.asked();
         EXPECT_TRUE(asked.has_value());
-        if (asked) device_.takePing(pingWithEcho(*asked, range, code), bench_.now());
+        if (asked) device_.setPing(pingWithEcho(*asked, range, code), bench_.now());
         bench_.waitForNext();
         return bench_.only<Message>();
     }
@@ -115,7 +115,7 @@ TEST_F(Ping1dEmulatorTest, AMeasurementRequestsAPingOfItsScanAndReportsItsTarget
     EXPECT_NEAR(asked->range, 15, 1e-6);
     EXPECT_EQ(asked->bin_count, 300u) << "of which the last 200 are the scan";
     EXPECT_NEAR(asked->gain_db, 20 * std::log10(5.5), 1e-12);
-    device_.takePing(pingWithEcho(*asked, 8.02), bench_.now());
+    device_.setPing(pingWithEcho(*asked, 8.02), bench_.now());
     EXPECT_THAT(bench_.received(), IsEmpty()) << "the sound is not back yet";
     EXPECT_GE(bench_.waitForNext(), 2 * 15 / 1500.0);
     const auto profile = bench_.only<Ping1dProfile>();
@@ -143,7 +143,7 @@ TEST_F(Ping1dEmulatorTest, SilenceHasNoDistance) {
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
     auto ping = pingFor(*bench_.asked());
     std::ranges::fill(ping->bins, 0.0f);
-    device_.takePing(ping, bench_.now());
+    device_.setPing(ping, bench_.now());
     bench_.wait(1);
     const auto reported = bench_.only<Ping1dDistanceSimple>();
     EXPECT_EQ(reported.distance, 0u);
@@ -157,7 +157,7 @@ TEST_F(Ping1dEmulatorTest, AWrongSpeedOfSoundMakesDistancesWrongInItsRatio) {
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
     const auto asked = bench_.asked();
     EXPECT_NEAR(asked->range, 10, 1e-6) << "the true range is half of the device's";
-    device_.takePing(pingWithEcho(*asked, 5), bench_.now());
+    device_.setPing(pingWithEcho(*asked, 5), bench_.now());
     bench_.wait(1);
     EXPECT_NEAR(bench_.only<Ping1dDistanceSimple>().distance, 10'000, 100);
 }
@@ -182,7 +182,7 @@ TEST_F(Ping1dEmulatorTest, NoReturnBeyondTheBlankedRangeIsLostAtAnySpeedOfSound)
         const double target = std::lerp(nearest, asked->range, draw.between(0, 0.999) * draw.once(2));
         const auto ping = pingWithEcho(*asked, std::max(0.0, nearest - 1.001 * bin), 60000);  // blanked
         if (nearest + 1e-6 < asked->range) ping->bins.at(static_cast<size_t>(target / bin)) = 30000;
-        device.takePing(ping, bench.now());
+        device.setPing(ping, bench.now());
         bench.wait(1);
         const double reported = 1e-3 * bench.only<Ping1dDistanceSimple>().distance / scale;
         EXPECT_NEAR(reported, target, 0.5 * bin + 0.6e-3 / scale) << seed;
@@ -219,12 +219,12 @@ TEST_F(Ping1dEmulatorTest, MessagesStreamedFromOnePingAreOnePiecePerClient) {
     const auto messages = {Ping1dDistanceSimple::message, Ping1dDistance::message, Ping1dProfile::message};
     for (const uint16_t message : messages)
         for (const PingClient client : {1, 2}) bench_.say(Ping1dContinuousStart{message}, client);
-    device_.takeOutgoing();
+    device_.consumeOutgoing();
     const auto asked = bench_.asked();
     ASSERT_TRUE(asked);
     bench_.answer(*asked);
     bench_.waitForNext();
-    const auto out = device_.takeOutgoing();
+    const auto out = device_.consumeOutgoing();
     ASSERT_EQ(out.size(), 2u);
     for (const PingOutgoing& each : out) {
         EXPECT_TRUE(each.stream);
@@ -266,7 +266,7 @@ TEST_F(Ping1dEmulatorTest, AutomaticModeFollowsItsTarget) {
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
     auto silent = pingFor(*bench_.asked());
     std::ranges::fill(silent->bins, 0.0f);
-    device_.takePing(silent, bench_.now());
+    device_.setPing(silent, bench_.now());
     bench_.wait(1);
     EXPECT_EQ(bench_.only<Ping1dDistanceSimple>().confidence, 0);
     EXPECT_GT(request<Ping1dRange>().length, 15'000u) << "its scan is longer";
@@ -289,7 +289,7 @@ TEST_F(Ping1dEmulatorTest, AMissingPingIsRefusedAndWarnedOfOnce) {
         bench_.say(PingGeneralRequest{Ping1dProfile::message});
         bench_.wait(3);
         EXPECT_EQ(bench_.only<PingNack>().nacked, 1300);
-        EXPECT_EQ(device_.takeWarnings().size(), i == 0 ? 1u : 0u);
+        EXPECT_EQ(device_.consumeWarnings().size(), i == 0 ? 1u : 0u);
     }
 }
 

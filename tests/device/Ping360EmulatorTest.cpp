@@ -266,7 +266,7 @@ TEST_F(Ping360EmulatorTest, AMissingPingIsRefusedAndWarnedOfOnce) {
         EXPECT_THAT(bench_.received(), IsEmpty());
         bench_.wait(0.2);
         EXPECT_EQ(bench_.only<PingNack>().nacked, 2601);
-        EXPECT_EQ(device_.takeWarnings().size(), i == 0 ? 1u : 0u);
+        EXPECT_EQ(device_.consumeWarnings().size(), i == 0 ? 1u : 0u);
     }
 }
 
@@ -280,7 +280,7 @@ TEST_F(Ping360EmulatorTest, IgnoresPingsOfEarlierRequestsOrOfOtherBins) {
     bench_.answer(asked);
     bench_.wait(1);
     EXPECT_THAT(bench_.received(), IsEmpty());
-    EXPECT_THAT(device_.takeWarnings(),
+    EXPECT_THAT(device_.consumeWarnings(),
                 ElementsAre(HasSubstr("1 beams of 500 bins where the driver asked for one of 600")));
     asked.bin_count = 600;
     bench_.answer(asked);

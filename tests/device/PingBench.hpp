@@ -47,13 +47,13 @@ public:
         wait(std::max(0.0, s));
         return s;
     }
-    std::optional<types::SonarSettings> asked() { return device_.takeAsked(); }
+    std::optional<types::SonarSettings> asked() { return device_.consumeRequest(); }
     void answer(const types::SonarSettings& asked, float speed_of_sound = 1500) {
-        device_.takePing(pingFor(asked, speed_of_sound), now_);
+        device_.setPing(pingFor(asked, speed_of_sound), now_);
     }
     /** Returns the bytes sent to a client since the last call. */
     std::vector<PingFrame> received(PingClient client = 1) {
-        for (const PingOutgoing& out : device_.takeOutgoing())
+        for (const PingOutgoing& out : device_.consumeOutgoing())
             for (PingFrame& frame : pingFrames(out.bytes, 4096)) inbox_[out.client].push_back(std::move(frame));
         return std::exchange(inbox_[client], {});
     }

@@ -142,8 +142,8 @@ TEST_P(SetClockTest, Ping1dStreamsAndAnswersRequests) {
     Ping1dEmulator device{{}};
     std::vector<double> profiles;
     const auto serve = [&] {
-        if (const auto asked = device.takeAsked()) bench_.ask(*asked);
-        for (const PingOutgoing& out : device.takeOutgoing())
+        if (const auto asked = device.consumeRequest()) bench_.ask(*asked);
+        for (const PingOutgoing& out : device.consumeOutgoing())
             for (const PingFrame& frame : pingFrames(out.bytes, 4096))
                 if (frame.message == Ping1dProfile::message) profiles.push_back(bench_.now());
     };
@@ -153,7 +153,7 @@ TEST_P(SetClockTest, Ping1dStreamsAndAnswersRequests) {
         return device.wakeAt();
     };
     bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time clock) {
-        device.takePing(std::make_shared<types::Sonar>(pingOf(asked, stamp, 1)), clock);
+        device.setPing(std::make_shared<types::Sonar>(pingOf(asked, stamp, 1)), clock);
     };
     device.receive(1, pingBytes(Ping1dSetModeAuto{0}, 0, 0), true, bench_.clock());
     device.receive(1, pingBytes(Ping1dSetRange{0, 5000}, 0, 0), true, bench_.clock());
@@ -162,7 +162,7 @@ TEST_P(SetClockTest, Ping1dStreamsAndAnswersRequests) {
     bench_.wake();
     bench_.run();
     bench_.expectNoGap(profiles, 0.25);
-    EXPECT_EQ(device.takeWarnings().size(), 0u);
+    EXPECT_EQ(device.consumeWarnings().size(), 0u);
 }
 
 TEST_P(SetClockTest, Ping360ScansItsSector) {
@@ -170,14 +170,14 @@ TEST_P(SetClockTest, Ping360ScansItsSector) {
     std::vector<double> lines;
     bench_.tick = [&](Time clock) {
         device.tick(clock);
-        if (const auto asked = device.takeAsked()) bench_.ask(*asked);
-        for (const PingOutgoing& out : device.takeOutgoing())
+        if (const auto asked = device.consumeRequest()) bench_.ask(*asked);
+        for (const PingOutgoing& out : device.consumeOutgoing())
             for (const PingFrame& frame : pingFrames(out.bytes, 4096))
                 if (frame.message == Ping360AutoDeviceData::message) lines.push_back(bench_.now());
         return device.wakeAt();
     };
     bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time clock) {
-        device.takePing(std::make_shared<types::Sonar>(pingOf(asked, stamp, 1)), clock);
+        device.setPing(std::make_shared<types::Sonar>(pingOf(asked, stamp, 1)), clock);
     };
     const Ping360Acoustics acoustics{1, 50, 100, 750, 600};
     device.receive(1, pingBytes(Ping360AutoTransmit{1, acoustics, {0, 399, 4, 20}}, 0, 0), true, bench_.clock());
@@ -191,9 +191,9 @@ TEST_P(SetClockTest, Ping360HearsAgainAfterARestart) {
     bench_.tick = [&](Time clock) { return device.tick(clock), device.wakeAt(); };
     device.receive(1, pingBytes(Ping360Reset{1}, 0, 0), true, bench_.clock());
     while (bench_.now() < 5.1) bench_.advance();
-    device.takeOutgoing();
+    device.consumeOutgoing();
     device.receive(1, pingBytes(PingGeneralRequest{PingProtocolVersion::message}, 0, 0), true, bench_.clock());
-    EXPECT_EQ(device.takeOutgoing().size(), 1u);
+    EXPECT_EQ(device.consumeOutgoing().size(), 1u);
 }
 
 TEST_P(SetClockTest, MicronScansLineAfterLine) {
@@ -207,7 +207,7 @@ TEST_P(SetClockTest, MicronScansLineAfterLine) {
     bench_.tick = [&](Time clock) { return device.tick(clock); };
     bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time) {
         device.follow(bench_.clock());
-        device.takePing(pingOf(asked, stamp, 1));
+        device.setPing(pingOf(asked, stamp, 1));
     };
     device.opened(client);
     test::MicronDriver driver(
@@ -277,7 +277,7 @@ TEST_P(SetClockTest, Sonar3dPingsAtItsRateAndItsClockRunsOnOnceItIsSet) {
         map.distances = {1};
         map.remissions = {1};
         device.follow(bench_.clock());
-        device.takePing(map);
+        device.setPing(map);
     };
     EXPECT_EQ(post("time/manual", R"({"now":"2030-01-01T00:00:00Z"})"), 204);
     EXPECT_EQ(post("acoustics/enabled", "true"), 204);

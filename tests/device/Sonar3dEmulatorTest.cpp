@@ -149,7 +149,7 @@ TEST_F(Sonar3dEmulatorTest, RequestsPingsAtTheRateOfItsModeOnceEnabled) {
     EXPECT_EQ(asked_[0].frequency_khz, 1200);
     EXPECT_NEAR(asked_[0].field_of_view.deg() * 255 / 256, 90, 1e-9) << "between the outermost of 256 columns";
     advance(0.1);
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     advance(0.05);
     EXPECT_EQ(asked_.size(), 1u) << "five a second";
     advance(0.05);
@@ -158,17 +158,17 @@ TEST_F(Sonar3dEmulatorTest, RequestsPingsAtTheRateOfItsModeOnceEnabled) {
     EXPECT_EQ(asked_.size(), 2u) << "one at a time";
     post("acoustics/mode", R"("high-frequency")");
     post("acoustics/range", R"({"min": 0, "max": 5})");
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     EXPECT_EQ(sent<RangePixels>(2).frequency_hz, 1'200'000u) << "of an earlier request";
     advance(0);
     EXPECT_EQ(asked_.at(2).frequency_khz, 2400);
     EXPECT_EQ(asked_[2].range, 5);
     EXPECT_NEAR(asked_[2].field_of_view.deg() * 255 / 256, 40, 1e-9);
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     advance(0.05);
     EXPECT_EQ(asked_.size(), 4u) << "twenty a second";
     post("acoustics/enabled", "false");
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     EXPECT_EQ(datagrams_.size(), 6u) << "the ping in progress is not sent";
 }
 
@@ -176,7 +176,7 @@ TEST_F(Sonar3dEmulatorTest, AnImageHasRowsFromBelowAndItsScale) {
     post("acoustics/enabled", "true");
     post("acoustics/range", R"({"min": 1.5, "max": 15})");
     advance(0);
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     ASSERT_EQ(datagrams_.size(), 2u);
     EXPECT_EQ(datagrams_[0].address, "224.0.0.96");
     EXPECT_EQ(datagrams_[0].port, 4747);
@@ -198,13 +198,13 @@ TEST_F(Sonar3dEmulatorTest, SendsToTheConfiguredAddress) {
     post("acoustics/enabled", "true");
     post("udp", R"({"mode":"unicast","unicast_destination_ip":"10.0.0.7","unicast_destination_port":4001})");
     advance(0);
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     ASSERT_EQ(datagrams_.size(), 2u);
     EXPECT_EQ(datagrams_[1].address, "10.0.0.7");
     EXPECT_EQ(datagrams_[1].port, 4001);
     post("udp", R"({"mode":"disabled","unicast_destination_ip":"","unicast_destination_port":0})");
     advance(1);
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     EXPECT_EQ(datagrams_.size(), 2u);
 }
 
@@ -213,7 +213,7 @@ TEST_F(Sonar3dEmulatorTest, TheAutomaticSpeedOfSoundIsThatOfTheWater) {
     post("acoustics/enabled", "true");
     advance(0);
     EXPECT_NEAR(asked_.at(0).speed_of_sound, 1497.0, 0.2) << "12 degrees, 35 psu (Medwin: 1496.98)";
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     post("acoustics/salinity", R"("fresh")");
     advance(1);
     EXPECT_NEAR(asked_.at(1).speed_of_sound, 1497.0 - 35 * (1.34 - 0.12), 0.2);
@@ -229,7 +229,7 @@ TEST_F(Sonar3dEmulatorTest, ClientsMaySetItsClock) {
     EXPECT_EQ(json("time/status")["system_time"], "2026-01-01T00:00:02.000000Z");
     post("acoustics/enabled", "true");
     advance(0);
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     EXPECT_EQ(sent<RangePixels>(0).time.microseconds, 1'767'225'602'000'000) << "images too";
     const Json synced = Json::parse(post("time/ntp/force-sync", R"({"timeout_seconds": 5})").body);
     EXPECT_EQ(synced["success"], true);
@@ -247,11 +247,11 @@ TEST_F(Sonar3dEmulatorTest, RequestsAMissingPingAgainAndWarnsOncePerOutage) {
     EXPECT_THAT(warnings_[0], HasSubstr("a requested ping gave no range image"));
     types::DepthMap silent;
     silent.time = now_;
-    emulator_.takePing(silent);
+    emulator_.setPing(silent);
     advance(1);
     types::DepthMap unmeasured = map();
     unmeasured.remissions.clear();
-    emulator_.takePing(unmeasured);
+    emulator_.setPing(unmeasured);
     EXPECT_EQ(datagrams_.size(), 4u) << "an empty map, and one without strengths";
     EXPECT_THAT(sent<StrengthPixels>(3).pixels, ElementsAre(1, 1, 0, 1, 1, 1));
     EXPECT_EQ(warnings_.size(), 1u);
@@ -270,13 +270,13 @@ TEST_F(Sonar3dEmulatorTest, ALateImageHasTheSettingsOfItsRequest) {
     ASSERT_EQ(asked_.size(), 2u);
     types::DepthMap earlier = first;
     earlier.time = earlier.time - types::Time{1};
-    emulator_.takePing(earlier);
+    emulator_.setPing(earlier);
     EXPECT_THAT(datagrams_, IsEmpty()) << "no request for it";
-    emulator_.takePing(first);
+    emulator_.setPing(first);
     EXPECT_EQ(sent<RangePixels>(0).frequency_hz, 1'200'000u);
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     EXPECT_EQ(sent<RangePixels>(2).frequency_hz, 2'400'000u);
-    emulator_.takePing(map());
+    emulator_.setPing(map());
     EXPECT_EQ(datagrams_.size(), 4u) << "twice the same";
 }
 

@@ -62,7 +62,7 @@ std::pair<std::vector<int32_t>, uint64_t> workedOn(bool realtime) {
     if (realtime) reader.activity().release(), reader.activity().hold();
     for (int i = 0; i < 3; ++i) writer.port.write(i);
     std::vector<int32_t> got;
-    for (int32_t value = -1; reader.port.takeNext(value);) got.push_back(value);
+    for (int32_t value = -1; reader.port.readNext(value);) got.push_back(value);
     return {got, reader.port.channels().front()->passedOver()};
 }
 

@@ -21,14 +21,14 @@ TEST(StreamNamesTest, APortIsNamedByItsAliasElseByItsOwnName) {
         "  s: {type: test::Source, activity: {period: 1}}\n"
         "  r: {type: test::Relay, aliases: {samples: s.value}}\n"
         "connections:\n  - {from: r.samples, to: r.in}\n");
-    const StreamName aliased = streamNameOf(*two.deployment.task("s")->output("value")),
-                     own = streamNameOf(*two.deployment.task("r")->output("out"));
+    const StreamName aliased = streamName(*two.deployment.task("s")->output("value")),
+                     own = streamName(*two.deployment.task("r")->output("out"));
     EXPECT_EQ(aliased.path(), "r.samples");
     EXPECT_EQ(aliased.model, "test::Relay");
     EXPECT_EQ(own.path(), "r.out");
     test::Source alone("alone");
-    EXPECT_EQ(streamNameOf(alone.value).path(), "alone.value");
-    EXPECT_EQ(streamNameOf(alone.value).model, "") << "it is in no deployment";
+    EXPECT_EQ(streamName(alone.value).path(), "alone.value");
+    EXPECT_EQ(streamName(alone.value).model, "") << "it is in no deployment";
 }
 
 TEST(StreamNamesTest, AReplacingPortHasTheNameOfTheReplacedPort) {
@@ -38,8 +38,8 @@ TEST(StreamNamesTest, AReplacingPortHasTheNameOfTheReplacedPort) {
         std::string modelOf(const std::string&) const override { return "p::Task"; }
         OutputPort<double> ping{this, "ping", ""};
     } replay;
-    EXPECT_EQ(streamNameOf(replay.ping).path(), "sonar.ping");
-    EXPECT_EQ(streamNameOf(replay.ping).model, "p::Task");
+    EXPECT_EQ(streamName(replay.ping).path(), "sonar.ping");
+    EXPECT_EQ(streamName(replay.ping).model, "p::Task");
 }
 
 TEST(StreamNamesTest, ReportsAliasesOfPropertiesWithTheirTargets) {

@@ -144,7 +144,7 @@ TEST(TimesTest, AnEventFromOutsideRunsACycle) {
     task.stop();
 }
 
-/** Reads samples as takeNext; its first cycle ends once 20 samples wait. */
+/** Reads samples as readNext; its first cycle ends once 20 samples wait. */
 struct Latest : TaskContext {
     using TaskContext::TaskContext;
     InputPort<double> in{this, "in", "of the source"};
@@ -152,7 +152,7 @@ struct Latest : TaskContext {
     std::vector<double> taken;
     void updateHook() override {
         double sample = 0;
-        if (!in.takeNext(sample)) return;
+        if (!in.readNext(sample)) return;
         taken.push_back(sample);
         while (!continues) std::this_thread::sleep_for(milliseconds(1));
     }

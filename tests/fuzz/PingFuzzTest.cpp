@@ -43,9 +43,9 @@ void readFrames(std::span<const uint8_t> bytes) {
 
 /** Expects that the device requests possible pings only, and sends only frames. */
 void expectSound(device::PingDevice& emulator, types::Time now) {
-    for (const device::PingOutgoing& out : emulator.takeOutgoing())
+    for (const device::PingOutgoing& out : emulator.consumeOutgoing())
         EXPECT_EQ(device::pingFrames(out.bytes, 4096).size(), 1u);
-    const auto asked = emulator.takeAsked();
+    const auto asked = emulator.consumeRequest();
     if (!asked) return;
     EXPECT_GT(asked->range, 0);
     EXPECT_LE(asked->range, 1e4);
@@ -55,7 +55,7 @@ void expectSound(device::PingDevice& emulator, types::Time now) {
     ping->time = now;
     ping->resize(asked->bin_count, 1);
     std::ranges::fill(ping->bins, 7.0f);
-    emulator.takePing(ping, now);
+    emulator.setPing(ping, now);
 }
 
 void drive(device::PingDevice&& emulator, std::span<const uint8_t> bytes) {

@@ -37,7 +37,7 @@ private:
         pings_.push_back(ping);
     }
     void expectPackets() {
-        for (const types::Sonar& ping : pings_) emulator_.takePing(ping);
+        for (const types::Sonar& ping : pings_) emulator_.setPing(ping);
         emulator_.tick(now_ + types::Time::fromSeconds(10));
         device::SeaNetReader reader;
         reader.add(sent_);

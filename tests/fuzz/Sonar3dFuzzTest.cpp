@@ -36,7 +36,7 @@ void readSonar3d(const Input& input) {
             sonar.tick(now);
             types::DepthMap silence;
             silence.time = now;
-            sonar.takePing(silence);
+            sonar.setPing(silence);
         }
     }
     EXPECT_TRUE(!reader.refusal() || reader.refusal()->status >= 400);

@@ -81,7 +81,7 @@ TEST_F(WorldTest, AWorldOfHarmonicIsAScene) {
 
 TEST_F(WorldTest, MaterialsAreOfTheMatterInTheNamesOfTheirScripts) {
     const World world = gazebo::worldOf(recording("scene"), folder_);
-    const auto named = scene::takeNames(world.scene.geometry);
+    const auto named = scene::applyMaterialNames(world.scene.geometry);
     EXPECT_THAT(named->notices, Contains(HasSubstr("Gazebo/Steel")));
 }
 

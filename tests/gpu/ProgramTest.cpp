@@ -48,7 +48,7 @@ TEST(ProgramTest, DefinesFollowTheVersionAndPrecedeTheText) {
 }
 
 /** Types and literals in double precision in a shader's whole text. */
-std::vector<std::string> doublesOf(std::string text) {
+std::vector<std::string> doubles(std::string text) {
     static const std::regex comments("//[^\n]*"), kinds("\\b(double|d(vec|mat)[2-4]|[\\d.]+(e-?\\d+)?lf)\\b");
     static const std::string meaning = "#define double float";
     text = std::regex_replace(text, comments, "");
@@ -64,10 +64,10 @@ TEST(ProgramTest, NoShaderNeedsDoubles) {
     for (const auto& entry : std::filesystem::directory_iterator(test::sourceFile("shaders"))) {
         const std::string name = entry.path().filename();
         if (std::ranges::count(name, '.') == 2) {
-            EXPECT_THAT(doublesOf(shaderSource(name, {})), IsEmpty()) << name;
+            EXPECT_THAT(doubles(shaderSource(name, {})), IsEmpty()) << name;
         }
     }
-    EXPECT_THAT(doublesOf("double x;\n#define double float\ndouble y; dvec3 z = 1e-3lf;  // double\n"),
+    EXPECT_THAT(doubles("double x;\n#define double float\ndouble y; dvec3 z = 1e-3lf;  // double\n"),
                 ElementsAre("double", "dvec3", "1e-3lf"));
 }
 

@@ -50,7 +50,7 @@ struct Include {
     bool ours = false;  ///< In quotes, from the root.
 };
 
-inline std::vector<Include> includesOf(const Source& source) {
+inline std::vector<Include> includes(const Source& source) {
     std::vector<Include> found;
     for (const std::string& line : source.lines) {
         if (!line.starts_with("#include ")) continue;

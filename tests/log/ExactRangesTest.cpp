@@ -26,7 +26,7 @@ Written bins(double width, double speed) {
     made.ping.setBins(width, speed);
     made.ping.resize(400, 1);
     made.ping.bearings = {types::Angle::fromDeg(3)};
-    made.truth.takeGrid(made.ping);
+    made.truth.copyGrid(made.ping);
     std::ranges::fill(made.truth.object, types::SonarTruth::no_object);
     return made;
 }

@@ -97,7 +97,7 @@ TEST(ExportTest, NumpyReadsPosesAndNumbers) {
 /** One beam of two bins: a ball at 0.5 rad, and an empty bin in its shadow. */
 types::SonarTruth truth(int64_t time) {
     types::SonarTruth sample;
-    sample.takeGrid(ping(time, 1, 2));
+    sample.copyGrid(ping(time, 1, 2));
     sample.objects = {"bottom", "ball"};
     sample.elevation = {0.5f, std::numeric_limits<float>::quiet_NaN()};
     sample.object = {1, -1};

@@ -16,7 +16,7 @@ struct Dae {
         return R"(<triangles count="2"><input semantic="VERTEX" source="#v" offset="0"/><p>)" + indices +
                "</p></triangles>";
     }
-    static std::string polygonsOf(const std::string& count, const std::string& corners) {
+    static std::string polygons(const std::string& count, const std::string& corners) {
         return "<polylist count=\"" + count + R"("><input semantic="VERTEX" source="#v" offset="0"/><vcount>)" +
                corners + "</vcount><p>0 1 2 0 2 3</p></polylist>";
     }

@@ -82,7 +82,7 @@ TEST_F(MeshProcessTest, InvalidCornersEndInAnErrorOrASoundMesh) {
     for (const char* corners : {"0 0", "0 3", "3 0", "", "3,3", "-3 3", "1 1", "3 800000000", "99999999999 3"})
         for (const char* count : {"2", "0", "-1", "800000000", "99999999999999999999"}) {
             Dae dae;
-            dae.triangles = Dae::polygonsOf(count, corners);
+            dae.triangles = Dae::polygons(count, corners);
             SCOPED_TRACE(dae.triangles);
             diagnosticOf(dae);
         }
@@ -108,7 +108,7 @@ TEST_F(MeshProcessTest, ACommaBetweenIndicesIsRefusedWithinItsMemory) {
 TEST_F(MeshProcessTest, CountsOfThreeGigabytesAreRefused) {
     Dae floats, corners;
     floats.float_count = "800000000";
-    corners.triangles = Dae::polygonsOf("800000000", "3 3");
+    corners.triangles = Dae::polygons("800000000", "3 3");
     for (const Dae& dae : {floats, corners}) {
         const std::string diagnostic = diagnosticOf(dae);
         expectPart(diagnostic, "cannot be read: ");

@@ -57,7 +57,7 @@ TEST(DvlTest, TheAltitudeOfALevelLogIsItsHeight) {
 }
 
 /** Returns the covariance of the velocities of many pings. */
-glm::dmat3 spreadOf(const Dvl& log, Motion motion, int count) {
+glm::dmat3 spread(const Dvl& log, Motion motion, int count) {
     glm::dmat3 sum{0};
     const Bottom bottom(-12.0);
     for (int i = 0; i < count; ++i) {
@@ -76,7 +76,7 @@ TEST(DvlTest, NoiseHasTheCovarianceOfJanus) {
         const double across = noise * noise / (2 * sine * sine), along = noise * noise / (4 * cosine * cosine);
         const Dvl log({.slant_deg = slant, .errors = {.velocity_noise = noise}});
         const Motion motion = moving({1, 0.5, -0.1});
-        const glm::dmat3 reported = ping(log, motion, Bottom(-12.0)).cov_velocity, found = spreadOf(log, motion, count);
+        const glm::dmat3 reported = ping(log, motion, Bottom(-12.0)).cov_velocity, found = spread(log, motion, count);
         EXPECT_NEAR(reported[0][0] / across, 1, 1e-12);
         EXPECT_NEAR(reported[1][1] / across, 1, 1e-12);
         EXPECT_NEAR(reported[2][2] / along, 1, 1e-12);

@@ -95,7 +95,7 @@ TEST(MotionTest, WarnsOnceAboutPosesTooFarApartAndAgainAfterTenInTime) {
     double time = 0;
     const auto warningAfter = [&](double seconds) {
         tracker.take(poseAt(time += seconds, {}));
-        return tracker.takeWarning();
+        return tracker.consumeWarning();
     };
     EXPECT_EQ(warningAfter(0), "") << "nothing lies before the first";
     EXPECT_THAT(warningAfter(2), testing::StartsWith("poses 2 s apart give no motion"));

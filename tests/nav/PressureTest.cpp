@@ -55,7 +55,7 @@ TEST(PressureTest, PressureIsThatOfAirAboveTheSurfaceAndClampedAtMaxDepth) {
 }
 
 /** Mean and standard deviation of readings at rest [Pa]. */
-std::pair<double, double> statisticsOf(const PressureConfig& config, int count) {
+std::pair<double, double> statistics(const PressureConfig& config, int count) {
     PressureGauge gauge(config);
     double sum = 0, squares = 0;
     for (int i = 1; i <= count; ++i) {
@@ -67,10 +67,10 @@ std::pair<double, double> statisticsOf(const PressureConfig& config, int count) 
 
 TEST(PressureTest, ErrorsHaveTheirDeviations) {
     constexpr int count = 20'000;
-    const auto [noisy_mean, noise] = statisticsOf({.errors = {.noise = 50, .offset = 300}}, count);
+    const auto [noisy_mean, noise] = statistics({.errors = {.noise = 50, .offset = 300}}, count);
     EXPECT_NEAR(noisy_mean, 300, 5 * 50 / std::sqrt(double{count}));
     EXPECT_NEAR(noise / 50, 1, 5 / std::sqrt(2.0 * count));
-    const auto [drifting_mean, drift] = statisticsOf({.errors = {.drift_deviation = 200, .drift_time = 0.1}}, count);
+    const auto [drifting_mean, drift] = statistics({.errors = {.drift_deviation = 200, .drift_time = 0.1}}, count);
     EXPECT_NEAR(drifting_mean, 0, 5 * 200 / std::sqrt(double{count}));
     EXPECT_NEAR(drift / 200, 1, 5 / std::sqrt(2.0 * count));
 }

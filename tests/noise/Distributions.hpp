@@ -30,7 +30,7 @@ inline NoiseConfig rayleigh(uint64_t seed = 1) { return withSpeckle({}, seed); }
 inline NoiseConfig gaussian(double mean, double deviation) {
     return withSpeckle({.law = SpeckleLaw::Gaussian, .mean = mean, .deviation = deviation});
 }
-inline NoiseConfig gammaOf(double looks) { return withSpeckle({.law = SpeckleLaw::Gamma, .looks = looks}); }
+inline NoiseConfig gamma(double looks) { return withSpeckle({.law = SpeckleLaw::Gamma, .looks = looks}); }
 inline NoiseConfig kOf(double shape) { return withSpeckle({.law = SpeckleLaw::K, .shape = shape}); }
 inline NoiseConfig background(double level_db) {
     NoiseConfig config;

@@ -46,7 +46,7 @@ Law rayleighLaw() {
 }
 Law gammaLaw(int looks) {
     return {"gamma " + std::to_string(looks),
-            gammaOf(looks),
+            gamma(looks),
             [looks](double x) { return gammaCdf(x, looks); },
             1.0 / looks,
             decibels_per_neper * (digamma(looks) - std::log(looks)),
@@ -142,7 +142,7 @@ TEST(LawsTest, QuotedFiguresAreCorrect) {
 }
 
 /** Returns the share of values above x times the mean. */
-double tailOf(const std::vector<float>& values, double x) {
+double tail(const std::vector<float>& values, double x) {
     return static_cast<double>(std::ranges::count_if(values, [&](float value) { return value > x; })) / count;
 }
 
@@ -151,21 +151,21 @@ TEST(LawsTest, TheTailOfKMatchesItsFormulaAndIsFarAboveTheExponential) {
         const std::vector<float> values = drawn(kOf(shape));
         for (const double x : {3.0, 6.0, 10.0}) {
             const double expected = 1 - kCdf(x, shape);
-            EXPECT_NEAR(tailOf(values, x), expected, 4 * std::sqrt(expected / count)) << shape << " beyond " << x;
+            EXPECT_NEAR(tail(values, x), expected, 4 * std::sqrt(expected / count)) << shape << " beyond " << x;
         }
-        EXPECT_GT(tailOf(values, 10), 5 * std::exp(-10.0)) << shape;
+        EXPECT_GT(tail(values, 10), 5 * std::exp(-10.0)) << shape;
     }
     const double beyond_six = std::exp(-6.0);
-    EXPECT_NEAR(tailOf(drawn(rayleigh()), 6), beyond_six, 4 * std::sqrt(beyond_six / count));
+    EXPECT_NEAR(tail(drawn(rayleigh()), 6), beyond_six, 4 * std::sqrt(beyond_six / count));
 }
 
 TEST(LawsTest, ExtremeShapesAreFiniteWithAnExtremeTailOrExponential) {
     const std::vector<float> patchy = drawn(kOf(1e-3));
     EXPECT_TRUE(std::ranges::all_of(patchy, [](float value) { return value >= 0 && std::isfinite(value); }));
     EXPECT_GT(std::ranges::max(patchy), 1e3f);
-    EXPECT_LT(tailOf(patchy, 1e-3), 0.02) << "nearly all is nothing";
+    EXPECT_LT(tail(patchy, 1e-3), 0.02) << "nearly all is nothing";
     EXPECT_LT(kolmogorovSmirnov(shares(drawn(kOf(1e6)), exponentialCdf)), ks_one_percent);
-    const std::vector<float> smooth = drawn(gammaOf(1e4));
+    const std::vector<float> smooth = drawn(gamma(1e4));
     EXPECT_NEAR(varianceOf(smooth), 1e-4, 0.02e-4);
     EXPECT_LT(kolmogorovSmirnov(shares(smooth, [](double x) { return normalCdf((x - 1) * 1e2); })), 3)
         << "a skew of 0.02 remains";

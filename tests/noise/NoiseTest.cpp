@@ -67,7 +67,7 @@ TEST(NoiseTest, UnknownBinsStayUnknownAndEmptyBinsStayEmpty) {
     types::Sonar clean = pingOf(1, 10, 0);
     clean.bins[3] = std::numeric_limits<float>::quiet_NaN();
     for (const NoiseConfig& config :
-         {rayleigh(), gammaOf(4), kOf(2), gaussian(0.4, 0.15), background(-20), withSea({}, -20)})
+         {rayleigh(), gamma(4), kOf(2), gaussian(0.4, 0.15), background(-20), withSea({}, -20)})
         EXPECT_TRUE(std::isnan(noisyOf(config, clean).bins[3]));
     EXPECT_EQ(noisyOf(rayleigh(), clean).bins[2], 0);
 }

@@ -36,7 +36,7 @@ TEST(SpeckleTest, GaussianSpeckleIsThePublishedNormalFactor) {
 
 TEST(SpeckleTest, GammaSpeckleIsTheMeanOfItsLooks) {
     for (const int looks : {1, 2, 4, 16, 100}) {
-        const types::Sonar noisy = noisyOf(gammaOf(looks), pingOf(256, 500));
+        const types::Sonar noisy = noisyOf(gamma(looks), pingOf(256, 500));
         EXPECT_NEAR(meanOf(noisy.bins), 1, 4 / std::sqrt(128000.0 * looks)) << looks;
         EXPECT_NEAR(varianceOf(noisy.bins) * looks, 1, 4 * std::sqrt((2 + 6.0 / looks) / 128000)) << looks;
         const auto all = shares(noisy.bins, [&](double x) { return gammaCdf(x, looks); });
@@ -73,7 +73,7 @@ TEST(SpeckleTest, EachLawHasOnlyItsOwnParameters) {
 }
 
 TEST(SpeckleTest, TheNoiseOfTheSeaIsExponentialAtEveryRange) {
-    for (const NoiseConfig& config : {withSea({}, -20), withSea(gammaOf(4), -20), withSea(rayleigh(), -20)}) {
+    for (const NoiseConfig& config : {withSea({}, -20), withSea(gamma(4), -20), withSea(rayleigh(), -20)}) {
         const types::Sonar noisy = noisyOf(config, pingOf(256, 500, 0));
         EXPECT_NEAR(meanOf(noisy.bins), 0.01, 4 * 0.01 / std::sqrt(128000.0));
         const auto all = shares(noisy.bins, [](double x) { return exponentialCdf(x / 0.01); });
@@ -86,7 +86,7 @@ TEST(SpeckleTest, EchoAndSeaAddAsFieldsIfTheSpeckleIsAField) {
     const types::Sonar noisy = noisyOf(withSea(rayleigh(), 0), pingOf(256, 500, 2));
     const auto all = shares(noisy.bins, [](double x) { return exponentialCdf(x / 3); });
     EXPECT_LT(kolmogorovSmirnov(all), ks_one_percent);
-    const types::Sonar looks = noisyOf(withSea(gammaOf(16), 0), pingOf(256, 500, 2));
+    const types::Sonar looks = noisyOf(withSea(gamma(16), 0), pingOf(256, 500, 2));
     EXPECT_NEAR(meanOf(looks.bins), 3, 0.02);
     EXPECT_NEAR(varianceOf(looks.bins), 4.0 / 16 + 1, 0.03) << "an echo of 16 looks, and noise of one look";
 }

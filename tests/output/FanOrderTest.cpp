@@ -109,7 +109,7 @@ TEST(FanOrderTest, EachPixelOfAPlainFanShowsTheNearestBeam) {
 TEST(FanOrderTest, ATruthPictureEqualsThatOfTheBeamsInAscendingOrder) {
     const auto paint = [](const types::Sonar& ping) {
         types::SonarTruth truth;
-        truth.takeGrid(ping);
+        truth.copyGrid(ping);
         truth.objects = {"one", "two", "three"};
         for (size_t i = 0; i < truth.object.size(); ++i)
             truth.object[i] = static_cast<int32_t>(ping.bins[i] * 1e4f) % 3;

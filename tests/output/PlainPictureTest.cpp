@@ -27,7 +27,7 @@ PlainPicture pictureOf(const types::Sonar& ping, const PlainConfig& config) {
 }
 
 /** Returns the middle of the pixels that are not black, {column, row}. */
-cv::Point2d middleOf(const types::Image& picture) {
+cv::Point2d middle(const types::Image& picture) {
     cv::Point2d sum;
     double count = 0;
     for (int y = 0; y < picture.size.height; ++y)
@@ -45,7 +45,7 @@ TEST(PlainPictureTest, AFanHasOnlyWaterAheadIsUpAndPortIsLeft) {
     EXPECT_EQ(nothing.height(), 100u);
     for (const uint32_t beam : {10u, 60u, 110u}) {
         const double bearing = empty.bearings[beam].rad;
-        const cv::Point2d at = middleOf(pictureOf(withEcho(empty, beam, 80), config).image());
+        const cv::Point2d at = middle(pictureOf(withEcho(empty, beam, 80), config).image());
         EXPECT_NEAR(at.x, nothing.width() / 2.0 - 0.5 - 80.5 * std::sin(bearing), 1) << beam;
         EXPECT_NEAR(at.y, 99.5 - 80.5 * std::cos(bearing), 1) << beam;
     }
@@ -56,7 +56,7 @@ TEST(PlainPictureTest, APolarPictureHasAPixelForEachBin) {
     const PlainPicture picture = pictureOf(withEcho(empty, 110, 80), configOf(PlainShape::Polar, 100));
     EXPECT_EQ(picture.width(), 121u);
     EXPECT_EQ(picture.height(), 100u);
-    EXPECT_EQ(middleOf(picture.image()), cv::Point2d(10, 19));
+    EXPECT_EQ(middle(picture.image()), cv::Point2d(10, 19));
     EXPECT_EQ(picture.pixelOf(110, 80), cv::Point(10, 19));
 }
 
@@ -104,7 +104,7 @@ TEST(PlainPictureTest, AWaterfallHasARowForEachLineTheNewestOnTopAndPortLeft) {
             const double bearing = beam % 2 == 0 ? first : second;
             const uint32_t line = is_pair ? beam / 2 : beam, port = is_pair || bearing > 0 ? bins : 0;
             const double column = bearing > 0 ? bins - 1 - 11 : port + 11;
-            EXPECT_EQ(middleOf(picture.image()), cv::Point2d(column, lines - 1 - line)) << first << " " << beam;
+            EXPECT_EQ(middle(picture.image()), cv::Point2d(column, lines - 1 - line)) << first << " " << beam;
             EXPECT_EQ(picture.pixelOf(beam, 11),
                       cv::Point(static_cast<int>(column), static_cast<int>(lines - 1 - line)));
         }

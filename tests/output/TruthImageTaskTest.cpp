@@ -22,7 +22,7 @@ types::Sonar truthAt(double seconds) {
 
 types::SonarTruth truthOf(const types::Sonar& ping) {
     types::SonarTruth truth;
-    truth.takeGrid(ping);
+    truth.copyGrid(ping);
     truth.objects = {"quay", "wreck", "chain"};
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
         for (uint32_t bin = 0; bin < ping.bin_count; ++bin) {

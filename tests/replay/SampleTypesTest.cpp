@@ -56,7 +56,7 @@ types::SonarScan made(std::type_identity<types::SonarScan>) {
 }
 types::SonarTruth made(std::type_identity<types::SonarTruth>) {
     types::SonarTruth truth;
-    truth.takeGrid(made(std::type_identity<types::Sonar>{}));
+    truth.copyGrid(made(std::type_identity<types::Sonar>{}));
     truth.objects = {"bottom", "a \"ball\""};
     truth.elevation = {0.5f, -0.25f, 0, 0.125f, 0, 0};
     truth.object = {1, 0, -1, 0, 0, 1};

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string contentOf(const fs::path& file) {
+std::string content(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -60,9 +60,9 @@ std::string nameOf(const T&) {
 }
 
 /** Runs a shell command; returns its output if it failed, else an empty text. */
-std::string failureOf(const std::string& command, const fs::path& output) {
+std::string failure(const std::string& command, const fs::path& output) {
     const int status = std::system((command + " > " + output.string() + " 2>&1").c_str());
-    return status == 0 ? "" : contentOf(output);
+    return status == 0 ? "" : content(output);
 }
 
 /** Makes a colcon workspace with insonify_msgs and the packages that it needs and Debian lacks. */
@@ -79,7 +79,7 @@ void makeWorkspace(const fs::path& folder) {
         fs::create_directories(made / "msg");
         std::ofstream(made / "msg" / message) << test::messageFiles(package).at(message);
         for (const char* file : {"CMakeLists.txt", "package.xml"}) {
-            std::string text = contentOf(messages / file);
+            std::string text = content(messages / file);
             for (const auto& [from, to] : {std::pair<std::string, std::string>("std_msgs", needs),
                                            std::pair<std::string, std::string>("insonify_msgs", package)})
                 for (size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
@@ -107,7 +107,7 @@ TEST(RosPackagesTest, MessageFilesMatchTheDescriptions) {
     const auto files = test::messageFiles("insonify_msgs");
     EXPECT_EQ(files.size(), 4u);
     for (const auto& [name, text] : files)
-        EXPECT_EQ(contentOf(folder / name), text) << "build/bin/ros_messages insonify_msgs ros2/insonify_msgs/msg";
+        EXPECT_EQ(content(folder / name), text) << "build/bin/ros_messages insonify_msgs ros2/insonify_msgs/msg";
     for (const auto& entry : fs::directory_iterator(folder)) EXPECT_TRUE(files.contains(entry.path().filename()));
 }
 
@@ -122,7 +122,7 @@ TEST(RosPackagesTest, RosbagsReadsTheFilesWithTheHashesOfTheTopics) {
                 std::vector<char> bytes;
                 encode(message, bytes);
                 const std::string name = nameOf(message);
-                const std::string text = contentOf(test::sourceFile("ros2/insonify_msgs/msg/" + name + ".msg"));
+                const std::string text = content(test::sourceFile("ros2/insonify_msgs/msg/" + name + ".msg"));
                 std::ofstream(folder / (name + ".msg")) << text << schemaOf<T>().substr(definitionOf<T>().size());
                 std::ofstream(folder / (name + ".cdr")).write(bytes.data(), static_cast<int64_t>(bytes.size()));
                 list << name << ' ' << T::type_name << ' ' << T::type_hash << std::endl;
@@ -146,15 +146,15 @@ TEST(RosPackagesTest, CodeGeneratedByDebiansRosidlHasTheSameFieldsAndBytes) {
     const std::string stubs =
         "-DPython3_EXECUTABLE=/usr/bin/python3 -DCMAKE_PREFIX_PATH=" + (folder / "stubs").string();
     const std::string in_folder = "cd " + folder.path().string() + " && ";
-    ASSERT_EQ(failureOf(in_folder + "colcon build --cmake-args -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=Debug " + stubs,
-                        folder / "colcon.txt"),
+    ASSERT_EQ(failure(in_folder + "colcon build --cmake-args -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=Debug " + stubs,
+                      folder / "colcon.txt"),
               "");
     const std::string in_workspace = in_folder + ". install/setup.sh && ";
     fs::create_directories(folder / "peer");
     fs::copy(test::sourceFile("tests/ros/rosidl/peer.cmake"), folder / "peer/CMakeLists.txt");
-    ASSERT_EQ(failureOf(in_workspace + "cmake -S peer -B peer/build " + stubs + " -DSOURCE=" +
-                            test::sourceFile("tests/support/RosidlPeer.cpp") + " && cmake --build peer/build",
-                        folder / "cmake.txt"),
+    ASSERT_EQ(failure(in_workspace + "cmake -S peer -B peer/build " + stubs + " -DSOURCE=" +
+                          test::sourceFile("tests/support/RosidlPeer.cpp") + " && cmake --build peer/build",
+                      folder / "cmake.txt"),
               "");
     std::string expected;
     std::apply(
@@ -169,12 +169,12 @@ TEST(RosPackagesTest, CodeGeneratedByDebiansRosidlHasTheSameFieldsAndBytes) {
             (add(sample), ...);
         },
         samples());
-    ASSERT_EQ(failureOf(in_workspace + "peer/build/rosidl_peer .", folder / "answer.txt"), "");
-    EXPECT_EQ(contentOf(folder / "answer.txt"), expected + "1700000000 sonar quay wall 0.75 0.25 -4 30.6 256\n");
+    ASSERT_EQ(failure(in_workspace + "peer/build/rosidl_peer .", folder / "answer.txt"), "");
+    EXPECT_EQ(content(folder / "answer.txt"), expected + "1700000000 sonar quay wall 0.75 0.25 -4 30.6 256\n");
     for (const char* name : {"SonarTruth", "SonarReturns", "SonarElements", "SonarSettings"}) {
-        const std::string bytes = contentOf(folder / (std::string(name) + ".cdr"));
+        const std::string bytes = content(folder / (std::string(name) + ".cdr"));
         EXPECT_GT(bytes.size(), 20u);
-        EXPECT_EQ(contentOf(folder / (std::string(name) + ".again")), bytes) << name;
+        EXPECT_EQ(content(folder / (std::string(name) + ".again")), bytes) << name;
     }
 }
 

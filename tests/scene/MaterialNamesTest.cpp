@@ -55,13 +55,13 @@ struct TakeNamesTest : ::testing::Test {
 
 TEST_F(TakeNamesTest, UnknownNamesLeaveTheSceneUnchanged) {
     const auto geometry = sceneOf({{.name = "hull"}, {.name = "steel", .lambert_db = -20, .has_acoustics = true}});
-    EXPECT_EQ(takeNames(geometry), geometry);
+    EXPECT_EQ(applyMaterialNames(geometry), geometry);
 }
 
 TEST_F(TakeNamesTest, MaterialsWithoutAcousticsAreTakenWithOneNotice) {
     const auto geometry =
         sceneOf({{.name = "Steel.001"}, {.name = "hull"}, {.name = "Sand"}, {.name = "steel_glass"}, {.name = "PVC"}});
-    const auto named = takeNames(geometry);
+    const auto named = applyMaterialNames(geometry);
     EXPECT_EQ(named->materials[0].matter, "steel");
     EXPECT_FLOAT_EQ(named->materials[0].reflection, 0.936f);
     EXPECT_TRUE(named->materials[0].has_acoustics && named->materials[0].is_named);
@@ -80,7 +80,7 @@ TEST_F(TakeNamesTest, MaterialsWithoutAcousticsAreTakenWithOneNotice) {
 TEST_F(TakeNamesTest, ANoticeOfManyMaterialsStaysShort) {
     std::vector<types::Material> materials;
     for (int i = 0; i < 500; ++i) materials.push_back({.name = "steel_" + std::to_string(i)});
-    const auto named = takeNames(sceneOf(materials));
+    const auto named = applyMaterialNames(sceneOf(materials));
     ASSERT_EQ(named->notices.size(), 1u);
     EXPECT_THAT(named->notices[0], HasSubstr("\"steel_19\" as steel and 480 more"));
 }

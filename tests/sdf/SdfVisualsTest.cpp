@@ -138,7 +138,7 @@ TEST_F(SdfVisualsTest, AScriptNameSelectsItsMatter) {
     const std::string script = "<material><script><name>Gazebo/Wood</name></script></material>";
     const Scene scene = world("<model name='pier'><link name='l'>" + visual("v", box_, script) + "</link></model>" +
                               model("rov", box_));
-    const auto geometry = takeNames(scene.geometry);
+    const auto geometry = applyMaterialNames(scene.geometry);
     EXPECT_EQ(materialOf(*geometry, 0).matter, "wood");
     EXPECT_FALSE(materialOf(*geometry, 1).has_acoustics);
 }

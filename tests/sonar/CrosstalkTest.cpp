@@ -56,7 +56,7 @@ acoustics::BeamLaw lawOf(double width_deg) {
     return law;
 }
 
-double decibelsOf(double ratio) { return 10 * std::log10(ratio); }
+double decibels(double ratio) { return 10 * std::log10(ratio); }
 
 types::Snapshot openWaterWith(types::TransmissionPtr sent) {
     types::Snapshot snapshot = test::snapshotOf(openWater());
@@ -111,10 +111,10 @@ TEST(CrosstalkTest, ADirectPulseFollowsTheOneWaySonarEquation) {
             const double power =
                 conical ? receive.power(std::asin(direction.y), bearing) : receive.power(azimuth - bearing, 0);
             if (bin >= ping.bin_count || power < 1e-4) continue;
-            const double expected = sent->source_level_db - *config.crosstalk->source_level_db + decibelsOf(0.25) +
-                                    decibelsOf(power) - 20 * std::log10(distance) -
+            const double expected = sent->source_level_db - *config.crosstalk->source_level_db + decibels(0.25) +
+                                    decibels(power) - 20 * std::log10(distance) -
                                     *config.absorption->db_per_m * distance;
-            EXPECT_NEAR(decibelsOf(double{ping.bins[beam * ping.bin_count + bin]}), expected, 0.01) << trial;
+            EXPECT_NEAR(decibels(double{ping.bins[beam * ping.bin_count + bin]}), expected, 0.01) << trial;
             ++received;
         }
         for (size_t i = 0; i < ping.bins.size(); ++i)  // in that bin alone
@@ -202,12 +202,12 @@ TEST(CrosstalkTest, AMatchedFilterPassesTheShareOfAnotherChirpByMismatchOf) {
         const double cell = 0.5 * 1500 * filteredEnergy(own, own);  // of the own pulse, in slant range
         const Mismatch mismatch = mismatchOf(own, sent, cell, 300, 1500);
         const double passed = 0.5 * 1500 * filteredEnergy(own, sent);
-        EXPECT_NEAR(decibelsOf(mismatch.intensity * mismatch.length / passed), 0, 0.5)
+        EXPECT_NEAR(decibels(mismatch.intensity * mismatch.length / passed), 0, 0.5)
             << sent.frequency_khz << " " << sent.bandwidth_khz;
     }
     EXPECT_EQ(mismatchOf(own, own, 0.02, 40, 1500).length, 0);
     const Mismatch far = mismatchOf(own, {900, 40, 1.5e-3}, 0.02, 40, 1500);
-    EXPECT_NEAR(decibelsOf(far.intensity), -40 + decibelsOf(0.02 / far.length), 1e-9);
+    EXPECT_NEAR(decibels(far.intensity), -40 + decibels(0.02 / far.length), 1e-9);
 }
 
 TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsOfItsDuration) {
@@ -299,7 +299,7 @@ TEST(CrosstalkTest, EchoesOfAnotherSonarsPulseAreTheBistaticIntegralOverTheGroun
             sum += double{both.bins[j]} - double{own.bins[j]};
             truth += expected[j];
         }
-        EXPECT_NEAR(decibelsOf(sum / truth), 0, 0.1) << k;
+        EXPECT_NEAR(decibels(sum / truth), 0, 0.1) << k;
     }
 }
 

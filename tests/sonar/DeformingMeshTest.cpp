@@ -425,7 +425,7 @@ types::Snapshot movingPlate(const glm::dmat4& place, const glm::dmat4& rate, boo
     return snapshot;
 }
 
-double centreOf(const types::Sonar& ping) {
+double centre(const types::Sonar& ping) {
     double sum = 0, at = 0;
     for (size_t i = 0; i < ping.bins.size(); ++i) {
         sum += double{ping.bins[i]};
@@ -442,9 +442,9 @@ TEST(DeformingMotionTest, AnApproachingJointEchoesLikeAnApproachingObject) {
     const types::Sonar still = pingOf(movingFan(), movingPlate(place, glm::dmat4(0), true));
     const types::Sonar joint = pingOf(movingFan(), movingPlate(place, rate, true));
     const types::Sonar object = pingOf(movingFan(), movingPlate(place, rate, false));
-    EXPECT_NEAR(centreOf(still), 200, 0.1);
-    EXPECT_NEAR(centreOf(joint), 200 / (1 + 12.0 / 1500), 0.1);
-    EXPECT_NEAR(centreOf(joint), centreOf(object), 0.01);
+    EXPECT_NEAR(centre(still), 200, 0.1);
+    EXPECT_NEAR(centre(joint), 200 / (1 + 12.0 / 1500), 0.1);
+    EXPECT_NEAR(centre(joint), centre(object), 0.01);
 }
 
 TEST(DeformingMotionTest, AJointThatTurnsEchoesAsAnObjectThatDoes) {
@@ -463,14 +463,14 @@ TEST(DeformingMotionTest, AJointThatTurnsEchoesAsAnObjectThatDoes) {
     };
     EXPECT_GT(energyOf(object), 0);
     EXPECT_NEAR(energyOf(joint) / energyOf(object), 1, 0.1);  // rays meet the joint by the mean of its velocities
-    EXPECT_NEAR(centreOf(joint), centreOf(object), 0.02);
+    EXPECT_NEAR(centre(joint), centre(object), 0.02);
     std::vector<double> by_beam;  // ranges of the echoes of each beam: the plate is turned
     for (const types::Sonar& ping : {joint, object})
         for (size_t beam = 0; beam < ping.beam_count; ++beam) {
             types::Sonar one = ping;
             one.bins.assign(ping.bins.begin() + static_cast<long>(beam * ping.bin_count),
                             ping.bins.begin() + static_cast<long>((beam + 1) * ping.bin_count));
-            if (energyOf(one) > 0) by_beam.push_back(centreOf(one));
+            if (energyOf(one) > 0) by_beam.push_back(centre(one));
         }
     ASSERT_EQ(by_beam.size() % 2, 0u);
     for (size_t i = 0; i < by_beam.size() / 2; ++i) EXPECT_NEAR(by_beam[i], by_beam[i + by_beam.size() / 2], 0.02);

@@ -76,7 +76,7 @@ struct ReceivedAt {
     double range;
     glm::dvec3 direction;
 };
-double rootOf(const auto& f, double low, double high) {
+double root(const auto& f, double low, double high) {
     for (int i = 0; i < 200; ++i) {
         const double middle = 0.5 * (low + high);
         (f(middle) < 0 ? low : high) = middle;
@@ -84,11 +84,11 @@ double rootOf(const auto& f, double low, double high) {
     return low;
 }
 ReceivedAt exactly(glm::dvec3 point, glm::dvec3 point_velocity, glm::dvec3 sonar_velocity) {
-    const double out = rootOf([&](double t) { return c * t - glm::length(point + point_velocity * t); }, 0,
-                              4 * glm::length(point) / c);
+    const double out =
+        root([&](double t) { return c * t - glm::length(point + point_velocity * t); }, 0, 4 * glm::length(point) / c);
     const glm::dvec3 met = point + point_velocity * out;
-    const double back = rootOf([&](double t) { return c * (t - out) - glm::length(sonar_velocity * t - met); }, out,
-                               8 * glm::length(point) / c);
+    const double back = root([&](double t) { return c * (t - out) - glm::length(sonar_velocity * t - met); }, out,
+                             8 * glm::length(point) / c);
     return {c * back / 2, glm::normalize(met - sonar_velocity * back)};
 }
 
@@ -123,7 +123,7 @@ TEST(MotionTest, AWallAheadOfAMovingSonarEchoesNearerInEachBeam) {
         const double edge = std::abs(ping.bearings[beam].rad) - radians(0.5);
         const double bearing = std::copysign(edge, ping.bearings[beam].rad);
         const glm::dvec3 ray(std::cos(bearing), std::sin(bearing), 0);
-        const double range = rootOf(
+        const double range = root(
             [&](double r) {
                 const glm::dvec3 there = velocity * (2 * r / c);
                 const double leg = (4 * r * r - glm::dot(there, there)) / (4 * r + 2 * glm::dot(ray, there));

@@ -7,7 +7,7 @@
 
 #include "components/scene/Clusters.hpp"
 #include "components/sonar/surfaces/NearestPoint.hpp"
-#include "components/sonar/surfaces/ObjectPlaces.hpp"
+#include "components/sonar/surfaces/ObjectPlacements.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 #include "tests/support/Scenes.hpp"
 
@@ -105,7 +105,7 @@ TEST(NearestPointTest, IsALowerBoundForVeryManyTrianglesAtSimilarDistances) {
 
 TEST(NearestPointTest, DoesNotOverestimateTheDistanceOfALargeFloor) {
     const auto scene = test::sceneOf({test::ground(-1, 20'000)});
-    ObjectPlaces places(*scene, {}, true);
+    ObjectPlacements places(*scene, {}, true);
     for (int i = 0; i < 300; ++i) {
         const double above = 0.5 + 0.01 * i;
         places.place(test::snapshotOf(scene, {7.3 * i, -3.1 * i, above - 1}, 0.02 * i, 0.003 * i, 0.001 * i));

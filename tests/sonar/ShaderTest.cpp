@@ -80,7 +80,7 @@ std::vector<gpu::Shader> allShaders() {
     gpu::EglContext context("software");
     ThreadPool threads(1);
     forEachFeatureSet([&](const RenderPlan& plan, const types::Geometry& geometry) {
-        Culler culler(geometry, {1e-3, reachOf(plan)});
+        Culler culler(geometry, {1e-3, reach(plan)});
         const SurfacePass surface(context,
                                   {.geometry = geometry,
                                    .laws = plan.laws,

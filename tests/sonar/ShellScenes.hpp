@@ -18,15 +18,15 @@ constexpr acoustics::Fluid shell_water{1025, water_speed};
 /** Returns 0.5 m apart, five bins. */
 constexpr types::Shell ringing_plate{1, 2500, 2000, 0, 0, false};
 
-inline acoustics::Plate plateOf(const types::Shell& shell) {
+inline acoustics::Plate plate(const types::Shell& shell) {
     return {shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss};
 }
 inline acoustics::PlateResponse shellResponse(const types::Shell& shell, double cosine,
                                               const acoustics::Fluid& behind = shell_water) {
-    return acoustics::plateResponse(plateOf(shell), shell_water, behind, 1000 * shell_khz, cosine);
+    return acoustics::plateResponse(plate(shell), shell_water, behind, 1000 * shell_khz, cosine);
 }
 inline acoustics::PlateReturns returnsOf(const types::Shell& shell) {
-    return acoustics::plateReturns(plateOf(shell), shell_water, shell_water, 1000 * shell_khz, WallLaw::max_returns);
+    return acoustics::plateReturns(plate(shell), shell_water, shell_water, 1000 * shell_khz, WallLaw::max_returns);
 }
 
 inline SonarConfig wallSonar(double width_deg, double height_deg, int beams, int bins = 300) {

@@ -265,22 +265,22 @@ TEST(SurfaceMapTest, LabelsAreThoseOfTheObject) {
 TEST(SurfaceMapTest, MapsApplyToPathsByMirrorsToo) {
     SonarConfig config = fanOver(8);
     config.multipath.emplace().surface.emplace();
-    const auto ghostsOf = [&](const types::GeometryPtr& geometry) {
+    const auto ghosts = [&](const types::GeometryPtr& geometry) {
         types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 0});
         snapshot.water_surface = 3;
         SonarConfig direct = config;
         direct.multipath.reset();
         return sum(test::pingOf(config, snapshot).bins) - sum(test::pingOf(direct, snapshot).bins);
     };
-    const double plain = ghostsOf(plainGround());
+    const double plain = ghosts(plainGround());
     ASSERT_GT(plain, 0);
-    EXPECT_NEAR(ghostsOf(groundWith(mapOf(1, 1, {0.1f}))) / plain, 0.1, 1e-4);
+    EXPECT_NEAR(ghosts(groundWith(mapOf(1, 1, {0.1f}))) / plain, 0.1, 1e-4);
     SurfaceMap map = mapOf(1, 1);
     map.classes = {0};
     auto geometry = groundWith(map);
     map.materials = {addMaterial(*geometry, -25)};
     geometry->meshes[0].maps[0].map = std::make_shared<const SurfaceMap>(map);
-    EXPECT_NEAR(ghostsOf(geometry) / plain, 0.1, 1e-4);
+    EXPECT_NEAR(ghosts(geometry) / plain, 0.1, 1e-4);
 }
 
 TEST(SurfaceMapTest, ExtremeCoordinatesAndValuesHaveFiniteEchoes) {

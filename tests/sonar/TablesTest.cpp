@@ -12,7 +12,7 @@
 #include "components/acoustics/Plate.hpp"
 #include "components/acoustics/Seabed.hpp"
 #include "components/sonar/bins/EchoShape.hpp"
-#include "components/sonar/multipath/WayPatterns.hpp"
+#include "components/sonar/multipath/PathPatterns.hpp"
 #include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/surfaces/WallLaws.hpp"
@@ -157,13 +157,13 @@ TEST(TablesTest, PatternsOfMirroredPathsAndOfPictures) {
         config.visibility = Visibility::Cpu;
         const auto scene = test::openWater();
         const RenderPlan plan = makeRenderPlan(config, *scene);
-        const WayPatterns patterns(plan);
-        const WayPatterns::Way ahead = patterns.wayOf({1, 0, 0});
+        const PathPatterns patterns(plan);
+        const PathPatterns::Way ahead = patterns.wayOf({1, 0, 0});
         const double reach = std::sin(types::radians(plan.sampled.beam_height_deg) / 2);
         for (int i = 0; i < 3000; ++i) {
             const double sine = random.between(-reach, reach), azimuth = random.between(-pi, pi),
                          level = std::sqrt(1 - sine * sine);
-            const WayPatterns::Way sent = patterns.wayOf({level * std::cos(azimuth), level * std::sin(azimuth), sine});
+            const PathPatterns::Way sent = patterns.wayOf({level * std::cos(azimuth), level * std::sin(azimuth), sine});
             const double exact =
                 plan.directivity->sentElevation(std::asin(sine)) * plan.directivity->sentAzimuth(azimuth);
             way.take((patterns.power(sent, ahead) - exact) / (2 * 0.0116 * exact + 2e-5));

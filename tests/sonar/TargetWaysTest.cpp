@@ -117,7 +117,7 @@ struct Case {
     bool moving = false;  ///< The second object has a new place in most pings.
 };
 
-void expectSame(const TargetWay& way, const TargetWay& tried, double tolerance) {
+void expectSame(const TargetPath& way, const TargetPath& tried, double tolerance) {
     EXPECT_EQ(way.reflections, tried.reflections);
     EXPECT_EQ(way.by_surface, tried.by_surface);
     EXPECT_NEAR(way.length, tried.length, tolerance);
@@ -128,7 +128,7 @@ void expectSame(const TargetWay& way, const TargetWay& tried, double tolerance) 
 
 /** Returns the number of paths by two mirrors. */
 size_t expectAsTried(const Case& one, Generator& random) {
-    TargetWays ways(bouncingSonar(one.surface), *one.geometry);
+    TargetPaths ways(bouncingSonar(one.surface), *one.geometry);
     size_t twice = 0;
     for (int ping = 0; ping < 6; ++ping) {
         types::Snapshot snapshot = test::snapshotOf(one.geometry, uniformVector(random, one.size), 0.7 * ping, 0.2);
@@ -138,8 +138,8 @@ size_t expectAsTried(const Case& one, Generator& random) {
         TriedWays all(snapshot, one.surface, 2 * range_max);
         for (int i = 0; i < 8; ++i) {
             const glm::dvec3 point = uniformVector(random, one.size);
-            const std::vector<TargetWay>& found = ways.waysTo(point);
-            const std::vector<TargetWay> tried = all.to(point);
+            const std::vector<TargetPath>& found = ways.waysTo(point);
+            const std::vector<TargetPath> tried = all.to(point);
             EXPECT_EQ(found.size(), tried.size()) << one.name << ", ping " << ping << ", target " << i;
             if (found.size() != tried.size()) return 0;
             for (size_t k = 0; k < found.size(); ++k) {
@@ -207,9 +207,9 @@ TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOnePath) {
             const glm::dmat4 place = turn == 0 ? glm::dmat4(1) : uniformPlace(random, 20);
             const auto inWorld = [&](const glm::dvec3& point) { return glm::dvec3(place * glm::dvec4(point, 1)); };
             const auto geometry = mirrors(wall.meshes, std::vector(wall.meshes.size(), place));
-            TargetWays ways(bouncingSonar(), *geometry);
+            TargetPaths ways(bouncingSonar(), *geometry);
             ways.place(test::snapshotOf(geometry, inWorld({0, 1, 0.5})), range_max);
-            const std::vector<TargetWay>& found = ways.waysTo(inWorld({0, -1, -0.5}));
+            const std::vector<TargetPath>& found = ways.waysTo(inWorld({0, -1, -0.5}));
             ASSERT_EQ(found.size(), 2u) << wall.name << ", turn " << turn;
             EXPECT_EQ(found[1].reflections, 1);
             EXPECT_NEAR(found[1].length, 2 * std::sqrt(16 + 1 + 0.25), 1e-9);
@@ -224,11 +224,11 @@ TEST(TargetWaysTest, TheIntersectionOfTwoMirrorsIsOnePathByBoth) {
         const glm::dmat4 place = turn == 0 ? glm::dmat4(1) : uniformPlace(random, 20);
         const auto inWorld = [&](const glm::dvec3& point) { return glm::dvec3(place * glm::dvec4(point, 1)); };
         const auto geometry = mirrors({corner}, {place});
-        TargetWays ways(bouncingSonar(), *geometry);
+        TargetPaths ways(bouncingSonar(), *geometry);
         ways.place(test::snapshotOf(geometry, inWorld({0, 0, 1})), range_max);
-        const std::vector<TargetWay>& found = ways.waysTo(inWorld({2, 2, -1}));
+        const std::vector<TargetPath>& found = ways.waysTo(inWorld({2, 2, -1}));
         ASSERT_EQ(found.size(), 4u) << turn;
-        const auto by_both = std::ranges::find(found, 2, &TargetWay::reflections);
+        const auto by_both = std::ranges::find(found, 2, &TargetPath::reflections);
         ASSERT_NE(by_both, found.end());
         EXPECT_NEAR(by_both->length, std::sqrt(6 * 6 + 6 * 6 + 2 * 2), 1e-9);
     }
@@ -240,7 +240,7 @@ TEST(TargetWaysTest, ATargetOnAMirrorHasNoPathByIt) {
         const glm::dmat4 place = uniformPlace(random, 20);
         const auto inWorld = [&](const glm::dvec3& point) { return glm::dvec3(place * glm::dvec4(point, 1)); };
         const auto geometry = mirrors({halvedWall()}, {place});
-        TargetWays ways(bouncingSonar(), *geometry);
+        TargetPaths ways(bouncingSonar(), *geometry);
         ways.place(test::snapshotOf(geometry, inWorld({0, 0, 0})), range_max);
         EXPECT_EQ(ways.waysTo(inWorld({4, 1, 0.3})).size(), 1u) << turn;
     }
@@ -249,12 +249,12 @@ TEST(TargetWaysTest, ATargetOnAMirrorHasNoPathByIt) {
 TEST(TargetWaysTest, AreInTheOrderOfTheirMirrorsInTheScene) {
     Generator random(7);
     const auto geometry = mirrors({tank(3, random)});
-    TargetWays ways(bouncingSonar(true), *geometry);
+    TargetPaths ways(bouncingSonar(true), *geometry);
     types::Snapshot snapshot = test::snapshotOf(geometry, {-3, 1, 0.5});
     snapshot.water_surface = 2.5;
     ways.place(snapshot, range_max);
-    const std::vector<TargetWay>& found = ways.waysTo({4, -2, -1});
-    EXPECT_TRUE(std::ranges::is_sorted(found, {}, &TargetWay::mirrors));
+    const std::vector<TargetPath>& found = ways.waysTo({4, -2, -1});
+    EXPECT_TRUE(std::ranges::is_sorted(found, {}, &TargetPath::mirrors));
     EXPECT_EQ(found[0].reflections, 0);
     EXPECT_THAT(found[1].mirrors, testing::ElementsAre(1u, 0u)) << "the surface before all triangles";
     EXPECT_EQ(found.size(), 1u + 6 + 18) << "two walls in one of both orders, or in both where they are opposite";
@@ -263,7 +263,7 @@ TEST(TargetWaysTest, AreInTheOrderOfTheirMirrorsInTheScene) {
 TEST(TargetWaysTest, AllocateNothingAfterTheFirstPing) {
     Generator random(8);
     for (const auto& geometry : {mirrors({tank(6, random)}), mirrors({tank(1, random), test::sphere(1, 8)})}) {
-        TargetWays ways(bouncingSonar(true), *geometry);
+        TargetPaths ways(bouncingSonar(true), *geometry);
         types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 20});
         snapshot.water_surface = 2.8;
         snapshot.moved.reserve(1);

@@ -121,7 +121,7 @@ TEST(TreesAheadTest, ASonarAtRestOrThatJumpsStartsNoThread) {
     EXPECT_EQ(threads(), before + 1);
 }
 
-TreesAhead::Objects copiesOf(const types::Mesh& mesh, int count) {
+TreesAhead::Objects copies(const types::Mesh& mesh, int count) {
     const auto shared = std::make_shared<const types::Mesh>(mesh);
     return std::make_shared<const std::vector<TreeObject>>(static_cast<size_t>(count),
                                                            TreeObject{shared, glm::dmat4(1), 0});
@@ -144,14 +144,14 @@ TEST(TreesAheadTest, TheNumberOfTrianglesInTreesIsBounded) {
     for (const auto& [count, expected] : {std::pair(1, 8), std::pair(16'000'000 / 5 / triangles, 5),
                                           std::pair(16'000'000 / 3 / triangles, 3), std::pair(900, 2)}) {
         TreesAhead ahead;
-        EXPECT_EQ(neededAtACorner(ahead, copiesOf(mesh, count)), expected) << count * triangles << " triangles";
+        EXPECT_EQ(neededAtACorner(ahead, copies(mesh, count)), expected) << count * triangles << " triangles";
         EXPECT_TRUE(ahead.needs({0, 0, 0})) << "its own, the nearest";
     }
 }
 
 TEST(TreesAheadTest, AWayAlongTheEdgeOfItsReachAsksOnce) {
     TreesAhead ahead;
-    const auto objects = copiesOf(test::hills(4), 1);
+    const auto objects = copies(test::hills(4), 1);
     int asked = 0;
     for (int i = 0; i < 100; ++i) asked += ahead.follow({256 - TreesAhead::near + (i % 2 ? 1.0 : -1.0), 0, 0}, objects);
     EXPECT_EQ(asked, 1);
@@ -165,13 +165,13 @@ TEST(TreesAheadTest, AWayAlongTheEdgeOfItsReachAsksOnce) {
 TEST(TreesAheadTest, OtherObjectsAreAskedForOnce) {
     TreesAhead ahead;
     const types::Mesh mesh = test::hills(4);
-    const auto objects = copiesOf(mesh, 2);
+    const auto objects = copies(mesh, 2);
     ahead.follow({240, 0, 0}, objects);
     EXPECT_TRUE(ahead.follow({241, 0, 0}, objects));
     const auto same = std::make_shared<const std::vector<TreeObject>>(*objects);
     EXPECT_FALSE(ahead.follow({242, 0, 0}, same)) << "an equal list, as of a scene whose tiles have changed";
-    EXPECT_TRUE(ahead.follow({243, 0, 0}, copiesOf(mesh, 3)));
-    const auto others = copiesOf(mesh, 4);
+    EXPECT_TRUE(ahead.follow({243, 0, 0}, copies(mesh, 3)));
+    const auto others = copies(mesh, 4);
     EXPECT_TRUE(ahead.follow({243, 0, 0}, others)) << "it rests, and gives up the trees of objects that are gone";
     EXPECT_FALSE(ahead.needs(originNear({243, 0, 0})));
     EXPECT_FALSE(ahead.follow({243, 0, 0}, others)) << "it rests";
@@ -181,7 +181,7 @@ TEST(TreesAheadTest, OtherObjectsAreAskedForOnce) {
 }
 
 TEST(TreesAheadTest, ATreeThatNobodyWaitsForIsGivenUp) {
-    const auto objects = copiesOf(test::hills(30), 3);
+    const auto objects = copies(test::hills(30), 3);
     const auto tree = StillTree::of(*objects);
     const std::atomic<bool> quits{true};
     EXPECT_THROW(tree->tree(&quits), std::runtime_error);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/sonar/multipath/Mirrors.hpp"
-#include "components/sonar/multipath/TargetWays.hpp"
+#include "components/sonar/multipath/TargetPaths.hpp"
 #include "types/MeshRays.hpp"
 
 namespace insonify::sonar {
@@ -20,7 +20,7 @@ public:
         for (size_t object = 0; object < snapshot.geometry->objects.size(); ++object) addObject(object);
     }
 
-    std::vector<TargetWay> to(const glm::dvec3& point) {
+    std::vector<TargetPath> to(const glm::dvec3& point) {
         ways_.clear();
         if (!mirrors_.empty() && mirrors_[0].is_surface && !(point.z < mirrors_[0].plane.distance)) return ways_;
         add(point, {});
@@ -82,7 +82,7 @@ private:
         std::vector<glm::dvec3> images(chain.size() + 1, point);
         for (size_t k = chain.size(); k-- > 0;) images[k] = chain[k]->plane.image(images[k + 1]);
         const glm::dvec3& sonar = snapshot_.sonar.position;
-        TargetWay way;
+        TargetPath way;
         way.length = glm::distance(sonar, images[0]);
         if (!(way.length > 0 && way.length <= longest_)) return;
         way.direction = glm::conjugate(snapshot_.sonar.orientation) * ((images[0] - sonar) / way.length);
@@ -107,7 +107,7 @@ private:
     double longest_;  ///< [m]
     std::vector<Mirror> mirrors_;
     std::vector<std::array<glm::dvec3, 3>> triangles_;
-    std::vector<TargetWay> ways_;
+    std::vector<TargetPath> ways_;
 };
 
 }  // namespace insonify::sonar

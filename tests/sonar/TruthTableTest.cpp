@@ -18,7 +18,7 @@ types::SonarTruth reported(const TruthTable& table, std::span<const uint64_t> wa
     ping.bin_count = 3;
     ping.bearings.resize(1);
     types::SonarTruth truth;
-    truth.takeGrid(ping);
+    truth.copyGrid(ping);
     table.report(0, 0, truth, water);
     return truth;
 }

@@ -139,7 +139,7 @@ std::vector<uint64_t> sumsOfMisses(const RenderPlan& plan, const types::Geometry
             tiles.push_back({column, row, end, &misses});
     std::vector<uint64_t> sums(plan.cells.size() * rules.sumCount());
     const NormalMapping normal_maps(geometry);
-    depositTiles(rules, view, {{}, {}, {}, normal_maps, waterViewOf({})}, tiles, {0, sums.data()});
+    depositTiles(rules, view, {{}, {}, {}, normal_maps, waterView({})}, tiles, {0, sums.data()});
     return sums;
 }
 

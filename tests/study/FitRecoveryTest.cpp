@@ -85,7 +85,7 @@ TEST_P(FitRecoveryTest, FindsThePropertiesOfASimulatedSonar) {
 }
 
 /** Returns the deviation of the grey levels of columns [from, to) of a picture. */
-double deviationOf(const types::Image& image, size_t from, size_t to) {
+double deviation(const types::Image& image, size_t from, size_t to) {
     double sum = 0, squares = 0, count = 0;
     for (size_t y = 0; y < image.size.height; ++y)
         for (size_t x = from; x < to; ++x) {
@@ -102,8 +102,8 @@ TEST(FitReportTest, ThePageHasBothPicturesAndEveryFindingAndTheDeploymentEverySe
     fit.levels.pitch_deg.emplace(), fit.levels.height_m.emplace(), fit.levels.elevation_deg.emplace();
     fit.chain.sonar.beam_pattern->transmit.elevation.emplace();
     const types::Image both = fansOf({recorded, fit.simulated_pings.front()});
-    EXPECT_GT(deviationOf(both, 0, both.size.width / 2), 10);
-    EXPECT_GT(deviationOf(both, both.size.width / 2, both.size.width), 10);
+    EXPECT_GT(deviation(both, 0, both.size.width / 2), 10);
+    EXPECT_GT(deviation(both, both.size.width / 2, both.size.width), 10);
     const std::string page = pageOf(fit, {recorded}, "picture.png");
     for (const Finding& finding : fit.findings) EXPECT_NE(page.find("<td>" + finding.name), std::string::npos);
     EXPECT_NE(page.find("src=\"picture.png\""), std::string::npos);
@@ -124,14 +124,14 @@ TEST(FitSpeckleTest, MeasuresSidelobesOfIsolatedTargetsButNotOfSpeckle) {
     truth.chain.receiver.code->bits = 16;
     truth.chain.receiver.code->dynamic_range_db = 200;
     const double width_beams = truth.beam_width_deg / (fan_deg / beams);
-    EXPECT_FALSE(sidelobesOf(simulatedPings(truth.chain, 1), width_beams).isKnown()) << "speckle is not a target";
+    EXPECT_FALSE(sidelobes(simulatedPings(truth.chain, 1), width_beams).isKnown()) << "speckle is not a target";
     for (const double bearing : {-0.2, 0.0, 0.25})
         truth.chain.snapshot.targets.push_back(
             {.position = 1.6 * glm::dvec3(std::cos(bearing) * std::cos(0.45), std::sin(bearing),
                                           -std::cos(bearing) * std::sin(0.45)),
              .strength_db = -30});
     truth.chain.receiver.code->full_scale_db += 60;
-    const Measured found = sidelobesOf(simulatedPings(truth.chain, 1), width_beams);
+    const Measured found = sidelobes(simulatedPings(truth.chain, 1), width_beams);
     ASSERT_TRUE(found.isKnown());
     EXPECT_NEAR(found.value, -25, 1.5);
 }

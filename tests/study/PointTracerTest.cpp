@@ -26,7 +26,7 @@ struct Errors {
 };
 
 /** Returns the errors of the mean of two halves: from the truth, and estimated from the halves. */
-Errors errorsOf(const StudyScene& scene, int up, int across) {
+Errors errors(const StudyScene& scene, int up, int across) {
     PointTracer tracer(scene.snapshot);
     std::vector<double> mean = tracer.render(scene.snapshot.sonar, scene.config, up, across, 1);
     const std::vector<double> second = tracer.render(scene.snapshot.sonar, scene.config, up, across, 2);
@@ -49,7 +49,7 @@ class PointTracerTest : public testing::TestWithParam<const char*> {};
 TEST_P(PointTracerTest, ItsErrorIsThatEstimatedFromItsHalvesAndFallsWithRays) {
     const StudyScene scene = studyNamed(GetParam());
     const int across = std::max(1, 8 / scene.config.beam_count);
-    const Errors coarse = errorsOf(scene, 8, across), fine = errorsOf(scene, 32, 4 * across);
+    const Errors coarse = errors(scene, 8, across), fine = errors(scene, 32, 4 * across);
     EXPECT_LT(fine.estimated, coarse.estimated / 3) << "16 times the tiles: 8 with independent tiles, 4 without";
     const double facets = 1.5e-3;  // of the ball, which approximates a sphere
     EXPECT_LT(fine.true_error, 1.3 * fine.estimated + facets);

@@ -37,7 +37,7 @@ TEST(RangeBinsTest, AnyWidthIsExactInMemoryAndForReadersOfRocksFields) {
         const double rocks = ping.bin_duration.seconds() * static_cast<double>(describedSpeed(ping));
         EXPECT_NEAR(rocks, ping.binWidth(), of_float * width) << width << " m at " << c << " m/s";
         SonarTruth truth;
-        truth.takeGrid(ping);
+        truth.copyGrid(ping);
         EXPECT_TRUE(truth.sameBins(ping));
         EXPECT_EQ(describedSpeed(truth), describedSpeed(ping));
     }

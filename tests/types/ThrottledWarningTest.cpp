@@ -11,14 +11,15 @@ using std::chrono::seconds;
 TEST(ThrottledWarningTest, WarnsAtOnceAndThenEveryTenSeconds) {
     const auto start = ThrottledWarning::Clock::now();
     ThrottledWarning refused("connection", "refused");
-    EXPECT_EQ(refused.takeWarning(start), "");
+    EXPECT_EQ(refused.consumeWarning(start), "");
     refused.add("no HTTP");
-    EXPECT_EQ(refused.takeWarning(start), "1 connection refused; the last: no HTTP");
+    EXPECT_EQ(refused.consumeWarning(start), "1 connection refused; the last: no HTTP");
     refused.add("no HTTP");
     refused.add("a wrong token", " from 10.0.0.1");
-    EXPECT_EQ(refused.takeWarning(start + seconds(9)), "");
-    EXPECT_EQ(refused.takeWarning(start + seconds(10)), "3 connections refused; the last: a wrong token from 10.0.0.1");
-    EXPECT_EQ(refused.takeWarning(start + seconds(30)), "");
+    EXPECT_EQ(refused.consumeWarning(start + seconds(9)), "");
+    EXPECT_EQ(refused.consumeWarning(start + seconds(10)),
+              "3 connections refused; the last: a wrong token from 10.0.0.1");
+    EXPECT_EQ(refused.consumeWarning(start + seconds(30)), "");
     EXPECT_THAT(refused.summary(),
                 testing::ElementsAre("1 connection refused: a wrong token", "2 connections refused: no HTTP"));
     refused.reset();

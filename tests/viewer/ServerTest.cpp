@@ -27,7 +27,7 @@ TEST(ServerTest, AnErrorClosesOnlyItsSession) {
     Throwing throwing;
     Server server({}, throwing);
     EXPECT_EQ(Client(server.port()).get("/"), "");
-    EXPECT_EQ(server.takeWarning(), "1 connection refused; the last: an error in this server: no files today");
+    EXPECT_EQ(server.consumeWarning(), "1 connection refused; the last: an error in this server: no files today");
     Client asks(server.port()), silent(server.port());
     for (Client* client : {&asks, &silent}) ASSERT_THAT(client->upgrade(page_protocol), testing::HasSubstr("101"));
     asks.say("{}");

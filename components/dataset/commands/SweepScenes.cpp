@@ -129,7 +129,7 @@ SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene) {
     return parts;
 }
 
-std::vector<Lineage> lineagesOf(const scene::Scene& scene) {
+std::vector<Lineage> lineages(const scene::Scene& scene) {
     std::vector<Lineage> all;
     for (size_t i = 0; i < scene.geometry->objects.size(); ++i) {
         Lineage& names = all.emplace_back(Lineage{scene.geometry->objects[i].name});

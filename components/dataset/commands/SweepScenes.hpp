@@ -13,7 +13,7 @@ namespace insonify::dataset {
 SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene);
 
 /** Returns the names of each object of a scene, and of the nodes above it. */
-std::vector<Lineage> lineagesOf(const scene::Scene& scene);
+std::vector<Lineage> lineages(const scene::Scene& scene);
 
 /** Returns the SHA-256 of all triangles, objects' places and materials of a scene. */
 std::string digestOf(const types::Geometry& geometry);

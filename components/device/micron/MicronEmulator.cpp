@@ -162,12 +162,12 @@ Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
     return data;
 }
 
-void MicronEmulator::takePing(const types::Sonar& ping) {
+void MicronEmulator::setPing(const types::Sonar& ping) {
     if (!line_ || !line_->asked.take(steady_.steady(ping.time))) return;
     warned_ = false;
     types::Sonar scaled = ping;
     const bool is_other = ping.bin_count == command_.bins &&
-                          takeBinWidth(listening() * device_.speed_of_sound / 2 / command_.bins, scaled);
+                          setBinWidth(listening() * device_.speed_of_sound / 2 / command_.bins, scaled);
     line_->data = dataOf(is_other ? scaled : ping);
 }
 

@@ -57,7 +57,7 @@ public:
     types::Time follow(types::Time clock);
     /** Takes a requested ping, in codes on a scale of 80 dB from the smallest to the max code. Ignores pings of earlier
      *  requests. */
-    void takePing(const types::Sonar& ping);
+    void setPing(const types::Sonar& ping);
     /** Does the due work; returns when the next is due. */
     std::optional<types::Time> tick(types::Time clock);
 

@@ -49,8 +49,8 @@ private:
     void received(Client client, std::span<const uint8_t> bytes) override { emulator_->received(client, bytes, now()); }
     void closed(Client client) override { emulator_->closed(client); }
     void follow(types::Time clock) override { emulator_->follow(clock); }
-    void takePings() override {
-        for (types::SonarPtr sample; ping.readNew(sample);) emulator_->takePing(*sample);
+    void readPings() override {
+        for (types::SonarPtr sample; ping.readNew(sample);) emulator_->setPing(*sample);
     }
     std::optional<types::Time> tick(types::Time now) override { return emulator_->tick(now); }
 

@@ -10,14 +10,14 @@ using types::Time;
 
 const Time second{1'000'000}, dummy_period{100'000};
 
-Time periodOf(const OculusFire& fire) { return Time::fromSeconds(1 / fire.rateHz()); }
+Time period(const OculusFire& fire) { return Time::fromSeconds(1 / fire.rateHz()); }
 
 /** In high frequency the device's gain is at least 40 %; a driver's 0 to 100 % are mapped to the rest. */
 double usedGain(const OculusFire& fire) { return fire.mode == 2 ? 40 + 0.6 * fire.gain_percent : fire.gain_percent; }
 
 }  // namespace
 
-const OculusCapabilities& capabilitiesOf(OculusModel model) {
+const OculusCapabilities& capabilities(OculusModel model) {
     static const OculusCapabilities all[] = {
         {1041, {375, 0.2, 200, 130, 20, 8e-3}, std::nullopt},
         {1032, {750, 0.1, 120, 130, 20, 4e-3}, OculusMode{1200, 0.1, 40, 70, 12, 2.5e-3}},
@@ -27,15 +27,15 @@ const OculusCapabilities& capabilitiesOf(OculusModel model) {
     return all[static_cast<size_t>(model)];
 }
 
-std::optional<OculusModel> oculusModelOf(uint16_t part) {
+std::optional<OculusModel> oculusModel(uint16_t part) {
     for (const OculusModel model : {OculusModel::M370s, OculusModel::M750d, OculusModel::M1200d, OculusModel::M3000d})
-        if (capabilitiesOf(model).part == part) return model;
+        if (capabilities(model).part == part) return model;
     return std::nullopt;
 }
 
 OculusEmulator::OculusEmulator(const OculusConfig& config, Time started)
     : config_(config),
-      capabilities_(capabilitiesOf(config.model)),
+      capabilities_(capabilities(config.model)),
       encoder_(config.code_bits),
       started_(steady_.read(started)) {
     fire_.rate = OculusFire::standby;
@@ -101,7 +101,7 @@ bool OculusEmulator::isDue(Time now) {
         if (now < asked_.deadline(2.0 * static_cast<double>(asked_.size()))) return false;
         ++lost_;
     }
-    return now >= last_ping_ + periodOf(fire_);
+    return now >= last_ping_ + period(fire_);
 }
 
 Time OculusEmulator::follow(Time clock) {
@@ -136,10 +136,10 @@ OculusEmulator::Due OculusEmulator::workAt(Time now, Time clock) {
     if (isDue(now)) {
         due.ask = settingsOf(fire_, clock);
         asked_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {now, *due.ask, fire_});
-        const Time planned = last_ping_ + periodOf(fire_);  // keeps the rate even if a cycle is late
-        last_ping_ = now - planned < periodOf(fire_) ? planned : now;
+        const Time planned = last_ping_ + period(fire_);  // keeps the rate even if a cycle is late
+        last_ping_ = now - planned < period(fire_) ? planned : now;
     }
-    due.next = std::min(due.next, asked_.empty() ? last_ping_ + periodOf(fire_) : now + second);
+    due.next = std::min(due.next, asked_.empty() ? last_ping_ + period(fire_) : now + second);
     return due;
 }
 

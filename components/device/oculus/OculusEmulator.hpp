@@ -39,9 +39,9 @@ struct OculusCapabilities {
     const OculusMode& mode(uint8_t number) const { return number == 2 && high ? *high : low; }
 };
 
-const OculusCapabilities& capabilitiesOf(OculusModel model);
+const OculusCapabilities& capabilities(OculusModel model);
 /** Returns the model of a part number; none: unknown. */
-std::optional<OculusModel> oculusModelOf(uint16_t part);
+std::optional<OculusModel> oculusModel(uint16_t part);
 
 /** Properties of an Oculus that drivers do not set. */
 struct OculusConfig {

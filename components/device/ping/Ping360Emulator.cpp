@@ -88,9 +88,9 @@ double Ping360Emulator::listens() const { return state_.acoustics.samples * stat
 void Ping360Emulator::command(PingClient client, const PingFrame& frame, types::Time now) {
     switch (frame.message) {
         case Ping360Transducer::message:
-            return with<Ping360Transducer>(client, frame, [&](const auto& m) { takeTransducer(client, m); });
+            return with<Ping360Transducer>(client, frame, [&](const auto& m) { applyTransducer(client, m); });
         case Ping360AutoTransmit::message:
-            return with<Ping360AutoTransmit>(client, frame, [&](const auto& m) { takeAutoTransmit(client, m); });
+            return with<Ping360AutoTransmit>(client, frame, [&](const auto& m) { applyAutoTransmit(client, m); });
         case Ping360MotorOff::message: scan_.reset(); return acknowledge(client, frame.message);
         case Ping360SetDeviceId::message:
             return with<Ping360SetDeviceId>(client, frame,
@@ -114,14 +114,14 @@ bool Ping360Emulator::answer(PingClient client, uint16_t requested, types::Time 
     return requested == Ping360DeviceData::message || requested == Ping360AutoDeviceData::message;
 }
 
-void Ping360Emulator::takeTransducer(PingClient client, const Ping360Transducer& asked) {
+void Ping360Emulator::applyTransducer(PingClient client, const Ping360Transducer& asked) {
     if (const std::string why = whyNot(asked); !why.empty()) return refuse(client, asked.message, why);
     if (commands_.size() >= max_commands) return refuse(client, asked.message, "too many commands wait already");
     scan_.reset();
     commands_.push_back({client, asked});
 }
 
-void Ping360Emulator::takeAutoTransmit(PingClient client, const Ping360AutoTransmit& asked) {
+void Ping360Emulator::applyAutoTransmit(PingClient client, const Ping360AutoTransmit& asked) {
     if (const std::string why = whyNot(asked); !why.empty()) return refuse(client, asked.message, why);
     scan_ = Scan{client, asked, ++scans_};
     if (phase_ == Phase::Idle) ready_ = {};

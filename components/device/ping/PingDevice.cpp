@@ -65,7 +65,7 @@ bool PingTurn::take(const types::SonarPtr& ping, types::Time stamp, types::Time 
         return true;
     }
     auto scaled = std::make_shared<types::Sonar>(*ping);
-    ping_ = takeBinWidth(speed_of_sound_ * listens_ / 2 / ping->bin_count, *scaled) ? scaled : ping;
+    ping_ = setBinWidth(speed_of_sound_ * listens_ / 2 / ping->bin_count, *scaled) ? scaled : ping;
     return true;
 }
 
@@ -92,8 +92,8 @@ std::optional<types::Time> PingDevice::wakeAt() const {
     return next ? std::optional(steady_.clock(*next)) : std::nullopt;
 }
 
-std::optional<types::SonarSettings> PingDevice::takeAsked() {
-    auto asked = turn_.takeAsked();
+std::optional<types::SonarSettings> PingDevice::consumeRequest() {
+    auto asked = turn_.consumeRequest();
     if (asked) asked->time = steady_.clock(asked->time);
     return asked;
 }
@@ -116,10 +116,10 @@ void PingDevice::close(PingClient client) {
     forget(client);
 }
 
-void PingDevice::takePing(const types::SonarPtr& ping, types::Time clock) {
+void PingDevice::setPing(const types::SonarPtr& ping, types::Time clock) {
     const types::Time now = follow(clock);
     turn_.take(ping, steady_.steady(ping->time), now);
-    if (std::string warning = turn_.takeWarning(); !warning.empty() && !std::exchange(silent_, true))
+    if (std::string warning = turn_.consumeWarning(); !warning.empty() && !std::exchange(silent_, true))
         warnings_.push_back(std::move(warning));
     proceed(now);
 }

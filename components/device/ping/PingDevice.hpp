@@ -63,10 +63,10 @@ public:
     /** The next time at which due() or failed() can succeed, during a request. */
     types::Time next() const { return ping_ ? due_ : asked_.deadline(); }
     /** Returns the request to send to the sonar, once. */
-    std::optional<types::SonarSettings> takeAsked() { return std::exchange(unsent_, {}); }
+    std::optional<types::SonarSettings> consumeRequest() { return std::exchange(unsent_, {}); }
     double speedOfSound() const { return speed_of_sound_; }  ///< Speed of sound in the water [m/s].
     /** Returns why the last ping was refused, once; empty: none was refused. */
-    std::string takeWarning() { return std::exchange(warning_, {}); }
+    std::string consumeWarning() { return std::exchange(warning_, {}); }
 
 private:
     void ask(types::Time now);
@@ -95,16 +95,16 @@ public:
     /** Forgets a client: nothing is sent to it any more, and its requests are dropped. */
     void close(PingClient client);
     /** Takes a ping of the simulated sonar, in codes. */
-    void takePing(const types::SonarPtr& ping, types::Time clock);
+    void setPing(const types::SonarPtr& ping, types::Time clock);
     /** Does the due work. */
     void tick(types::Time clock) { proceed(follow(clock)); }
     /** Returns when tick is needed next, also to see the clock while messages are ignored; none: not before an input.
      */
     std::optional<types::Time> wakeAt() const;
 
-    std::vector<PingOutgoing> takeOutgoing() { return std::exchange(outgoing_, {}); }
-    std::optional<types::SonarSettings> takeAsked();
-    std::vector<std::string> takeWarnings() { return std::exchange(warnings_, {}); }
+    std::vector<PingOutgoing> consumeOutgoing() { return std::exchange(outgoing_, {}); }
+    std::optional<types::SonarSettings> consumeRequest();
+    std::vector<std::string> consumeWarnings() { return std::exchange(warnings_, {}); }
     uint8_t id() const { return id_; }
 
 protected:

@@ -17,8 +17,8 @@ void PingDeviceTask::received(Client client, std::span<const uint8_t> bytes) {
 
 void PingDeviceTask::closed(Client client) { device_->close(numberOf(client)); }
 
-void PingDeviceTask::takePings() {
-    for (types::SonarPtr sample; ping.readNew(sample);) device_->takePing(sample, now());
+void PingDeviceTask::readPings() {
+    for (types::SonarPtr sample; ping.readNew(sample);) device_->setPing(sample, now());
 }
 
 std::optional<types::Time> PingDeviceTask::tick(types::Time now) {
@@ -35,9 +35,9 @@ void PingDeviceTask::send(Client client, PingOutgoing out) {
 }
 
 void PingDeviceTask::sendWhatIsWanted() {
-    for (PingOutgoing& out : device_->takeOutgoing()) send(clientOf(out.client), std::move(out));
-    if (const auto asked = device_->takeAsked()) settings.write(*asked);
-    for (const std::string& warning : device_->takeWarnings()) warn(warning);
+    for (PingOutgoing& out : device_->consumeOutgoing()) send(clientOf(out.client), std::move(out));
+    if (const auto asked = device_->consumeRequest()) settings.write(*asked);
+    for (const std::string& warning : device_->consumeWarnings()) warn(warning);
 }
 
 }  // namespace insonify::device

@@ -44,7 +44,7 @@ protected:
     void listen(Network& network) override;
     void received(Client client, std::span<const uint8_t> bytes) override;
     void closed(Client client) override;
-    void takePings() override;
+    void readPings() override;
     std::optional<types::Time> tick(types::Time now) override;
 
 private:

@@ -28,7 +28,7 @@ struct Fields {
 constexpr Fields range_fields{0, 5, 6, 7, 8, 9, 10}, strength_fields{5, 6, 7, 8, 9, 0, 10};
 constexpr uint32_t header_field = 1, speed_field = 2, range_field = 3, frequency_field = 4;
 
-uint32_t crcOf(std::span<const uint8_t> bytes) {
+uint32_t crc(std::span<const uint8_t> bytes) {
     return static_cast<uint32_t>(crc32(0, bytes.data(), static_cast<uInt>(bytes.size())));
 }
 
@@ -70,7 +70,7 @@ Bytes packet(std::string_view name, const Bytes& message, RipVersion version) {
     Bytes bytes(magic.begin(), magic.end());
     append(bytes, static_cast<uint32_t>(packet_header_size + payload.size() + crc_size));
     bytes.insert(bytes.end(), payload.begin(), payload.end());
-    append(bytes, crcOf(bytes));
+    append(bytes, crc(bytes));
     return bytes;
 }
 
@@ -190,7 +190,7 @@ std::string payloadOf(std::span<const uint8_t> packet) {
 RipMessage readPacket(std::span<const uint8_t> rest, size_t length) {
     if (length > rest.size()) throw BadPacket(fmt::format("is cut off after {} of {} bytes", rest.size(), length));
     const auto packet = rest.first(length);
-    if (read<uint32_t>(packet, length - crc_size) != crcOf(packet.first(length - crc_size)))
+    if (read<uint32_t>(packet, length - crc_size) != crc(packet.first(length - crc_size)))
         throw BadPacket("has a wrong checksum");
     const std::string payload = payloadOf(packet);
     ProtobufReader reader({reinterpret_cast<const uint8_t*>(payload.data()), payload.size()});

@@ -57,8 +57,8 @@ private:
     }
     void closed(Client client) override { clients_.erase(client); }
     void follow(types::Time clock) override { emulator_->follow(clock); }
-    void takePings() override {
-        for (types::DepthMapPtr map; range_image.readNew(map);) emulator_->takePing(*map);
+    void readPings() override {
+        for (types::DepthMapPtr map; range_image.readNew(map);) emulator_->setPing(*map);
     }
     std::optional<types::Time> tick(types::Time now) override { return emulator_->tick(now); }
 

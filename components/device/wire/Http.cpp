@@ -151,11 +151,11 @@ std::optional<types::Time> isoTime(const std::string& text) {
     std::tm day{};
     double second = 0;
     std::string_view rest = text;
-    const auto takePart = [&](int& part, size_t digits, char end) {
+    const auto readPart = [&](int& part, size_t digits, char end) {
         return take(rest, part, digits) && take(rest, end);
     };
-    if (text.size() > 64 || !takePart(day.tm_year, 4, '-') || !takePart(day.tm_mon, 2, '-') ||
-        !takePart(day.tm_mday, 2, 'T') || !takePart(day.tm_hour, 2, ':') || !takePart(day.tm_min, 2, ':') ||
+    if (text.size() > 64 || !readPart(day.tm_year, 4, '-') || !readPart(day.tm_mon, 2, '-') ||
+        !readPart(day.tm_mday, 2, 'T') || !readPart(day.tm_hour, 2, ':') || !readPart(day.tm_min, 2, ':') ||
         !take(rest, second, 20))
         return std::nullopt;
     const auto zone = zoneSeconds(rest);

@@ -13,7 +13,7 @@ namespace insonify::log::pocolog {
 namespace {
 
 /** Reads a text of a declaration and returns its position. */
-uint64_t takeText(Decoder& decoder, uint64_t payload, const char* what, std::string& text) {
+uint64_t readText(Decoder& decoder, uint64_t payload, const char* what, std::string& text) {
     const uint64_t count_at = payload + decoder.taken();
     uint32_t size = 0;
     if (decoder.left() < sizeof size)
@@ -61,10 +61,10 @@ Declaration BlockFile::declaration(uint64_t block, const BlockHeader& header) co
         throw FormatError(payload, "the declaration of a stream is damaged: its kind may be 1 (of samples)");
     Decoder decoder(std::span<const char>(bytes).subspan(1));
     Declaration found;
-    found.name_at = takeText(decoder, payload + 1, "name", found.name);
-    found.type_at = takeText(decoder, payload + 1, "type", found.type);
-    found.registry_at = takeText(decoder, payload + 1, "registry", found.registry);
-    found.yaml_at = takeText(decoder, payload + 1, "metadata", found.yaml);
+    found.name_at = readText(decoder, payload + 1, "name", found.name);
+    found.type_at = readText(decoder, payload + 1, "type", found.type);
+    found.registry_at = readText(decoder, payload + 1, "registry", found.registry);
+    found.yaml_at = readText(decoder, payload + 1, "metadata", found.yaml);
     return found;
 }
 

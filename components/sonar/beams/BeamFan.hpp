@@ -74,14 +74,14 @@ struct BeamAngles {
 };
 
 /** Returns the azimuth of a unit direction in the sonar's axes; for a conical fan the bearing of its cone [rad]. */
-inline double beamAzimuthOf(const glm::dvec3& direction, bool conical) {
+inline double beamAzimuth(const glm::dvec3& direction, bool conical) {
     return conical ? std::asin(std::clamp(direction.y, -1.0, 1.0)) : std::atan2(direction.y, direction.x);
 }
 
 /** Returns the angles of a point in the sonar's axes [m]; 0, 0 for the sonar's own place. */
-inline BeamAngles beamAnglesOf(const glm::dvec3& at, bool conical) {
+inline BeamAngles beamAngles(const glm::dvec3& at, bool conical) {
     const glm::dvec3 direction = at / std::max(glm::length(at), 1e-12);
-    return {beamAzimuthOf(direction, conical), std::asin(std::clamp(direction.z, -1.0, 1.0))};
+    return {beamAzimuth(direction, conical), std::asin(std::clamp(direction.z, -1.0, 1.0))};
 }
 
 }  // namespace insonify::sonar

@@ -31,6 +31,6 @@ private:
 bool isShort(const acoustics::Pulse& pulse, const BinGrid& grid);
 
 /** Returns the range resolution of a sonar: a bin, or that of its pulse where it is longer [m]. */
-double rangeCellOf(const SonarConfig& config);
+double rangeCell(const SonarConfig& config);
 
 }  // namespace insonify::sonar

@@ -4,7 +4,7 @@
 
 namespace insonify::sonar {
 
-WaterView waterViewOf(const types::Snapshot& snapshot) {
+WaterView waterView(const types::Snapshot& snapshot) {
     const glm::dvec3 up = glm::inverse(glm::normalize(snapshot.sonar.orientation)) * glm::dvec3(0, 0, 1);
     return {up, snapshot.sonar.position.z - snapshot.water_surface.value_or(0)};
 }

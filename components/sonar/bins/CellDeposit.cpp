@@ -44,7 +44,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void coverAll(const Cells& cells
 }
 
 /** Returns the estimator with the features of a plan. */
-const EstimatorEntry& estimatorOf(const Features& features) {
+const EstimatorEntry& estimator(const Features& features) {
     Features known;
     for (const EstimatorEntry& entry : estimators()) known = known | entry.features;
     for (const EstimatorEntry& entry : estimators())
@@ -161,7 +161,7 @@ LobeSlopes CellDeposit::lobeSlopes(int i) const {
 }
 
 CellDeposit::CellDeposit(const EchoRules& rules, const WaterView& water, bool bent, const EchoSums& to)
-    : rules_(rules), water_(water), bent_(bent), to_(to), estimator_(estimatorOf(rules.features)) {}
+    : rules_(rules), water_(water), bent_(bent), to_(to), estimator_(estimator(rules.features)) {}
 
 void CellDeposit::finish() {
     for (size_t i = 0; i < rules_.own.size() && !to_.behind_walls; ++i)

@@ -22,7 +22,7 @@ INSONIFY_VECTOR_CLONES void addScaled(const float* from, float weight, float* __
 
 /** fields[j] += sum of weights[i] * from[i][j]. */
 INSONIFY_VECTOR_CLONES void addFourScaled(const std::array<const float*, 4>& from, const std::array<float, 4>& weights,
-                                    float* __restrict fields, size_t count) {
+                                          float* __restrict fields, size_t count) {
     const float *const a = from[0], *const b = from[1], *const c = from[2], *const d = from[3];
     for (size_t j = 0; j < count; ++j)
         fields[j] += (weights[0] * a[j] + weights[1] * b[j]) + (weights[2] * c[j] + weights[3] * d[j]);
@@ -103,7 +103,7 @@ INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* inte
 }  // namespace
 
 FieldResponse::FieldResponse(const RenderPlan& plan) {
-    const FieldSampling sampling = fieldSamplingOf(plan);
+    const FieldSampling sampling = fieldSampling(plan);
     samples_ = static_cast<size_t>(plan.grid.bin_count * sampling.samples);
     stride_ = static_cast<size_t>(sampling.parts / sampling.samples);
     sample_width_ = plan.grid.bin_width / sampling.samples;

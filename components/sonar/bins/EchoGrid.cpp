@@ -13,7 +13,7 @@ Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, boo
     return {std::move(sent), half, of_fields ? std::sqrt(floor) : floor, of_fields, half};
 }
 
-Beamformer beamformerOf(const RenderPlan& plan) {
+Beamformer beamformer(const RenderPlan& plan) {
     const Directivity& directivity = *plan.directivity;
     const auto zoneRules = [&](size_t zone) {
         if (directivity.hasBoxes()) return boxRules([&](double a, double) { return directivity.sentAzimuth(a); }, plan);
@@ -51,7 +51,7 @@ EchoGrid::EchoGrid(const RenderPlan& plan, int threads)
 }
 
 void EchoGrid::setQuality(const RenderPlan& plan) {
-    if (plan.has(Pass::Beamform)) beamformer_ = beamformerOf(plan);
+    if (plan.has(Pass::Beamform)) beamformer_ = beamformer(plan);
     if (!passes()) echoes_.resize(plan.cells.size() * bin_count_);
 }
 

@@ -12,7 +12,7 @@
 namespace insonify::sonar {
 
 /** Returns the beamformer of a plan that forms beams. */
-Beamformer beamformerOf(const RenderPlan& plan);
+Beamformer beamformer(const RenderPlan& plan);
 
 /** Returns the rules of beams that receive their boxes, times what is sent. `sent`: power, or field. */
 Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, bool of_fields = false);
@@ -21,8 +21,8 @@ Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, boo
 Beamformer::Rules rulesOfZones(const RenderPlan& plan, size_t samples,
                                const std::function<Beamformer::Rules(size_t zone)>& zoneRules);
 
-/** Energies of azimuth cells, of which beams are formed, and which the pulse spreads in range. In a plan without either,
- *  cells are the ping's beams, and are filled in place. */
+/** Energies of azimuth cells, of which beams are formed, and which the pulse spreads in range. In a plan without
+ * either, cells are the ping's beams, and are filled in place. */
 class EchoGrid final : public Accumulator {
 public:
     EchoGrid(const RenderPlan& plan, int threads);

@@ -39,7 +39,7 @@ double EchoShape::mean(double low, double high) const {
     return (integralTo(high) - integralTo(low)) / (high - low);
 }
 
-std::optional<EchoShape> echoShapeOf(const RenderPlan& plan) {
+std::optional<EchoShape> echoShape(const RenderPlan& plan) {
     if (!plan.has(Pass::Pulse)) return {};
     return EchoShape(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound));
 }

@@ -26,6 +26,6 @@ private:
 };
 
 /** Returns the shape of the plan's pulse; none where the plan omits the pulse. */
-std::optional<EchoShape> echoShapeOf(const RenderPlan& plan);
+std::optional<EchoShape> echoShape(const RenderPlan& plan);
 
 }  // namespace insonify::sonar

@@ -132,15 +132,15 @@ std::vector<Cone> conesOf(const Fan& beams) {
     return cones;
 }
 
-LineArray lineArrayOf(const SonarConfig& config) {
+LineArray lineArray(const SonarConfig& config) {
     const double wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
     const acoustics::BeamPattern pattern(*config.beam_pattern->receive.azimuth, wavelength);
     const ElementsConfig::Array array = config.elements->arrayOf(pattern.aperture() * wavelength, wavelength);
     return {array.count, array.spacing, wavelength, pattern.taper()};
 }
 
-void takeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array,
-                 types::SonarElements& signals) {
+void computeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array,
+                    types::SonarElements& signals) {
     ComplexRows element_rows = array.elementSignals(sentField(plan, field), conesOf(plan.cells));
     if (plan.config.imperfections) multiplyRows(element_rows, plan.config.imperfections->elementFactors(array.count()));
     signals.speed_of_sound = plan.grid.speed_of_sound;

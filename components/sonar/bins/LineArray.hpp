@@ -65,12 +65,13 @@ private:
 };
 
 /** Returns the array of a sonar with `elements`, with the aperture of its receiver's law in azimuth. */
-LineArray lineArrayOf(const SonarConfig& config);
+LineArray lineArray(const SonarConfig& config);
 
 /** Returns the beams of a plan as cones about the array. */
 std::vector<Cone> conesOf(const Fan& beams);
 
 /** Fills `signals`, except its time, with the elements' signals for a field whose cells are filled. Allocates. */
-void takeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array, types::SonarElements& signals);
+void computeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array,
+                    types::SonarElements& signals);
 
 }  // namespace insonify::sonar

@@ -25,8 +25,8 @@ public:
     EdgesInPings(const RenderPlan& plan, const types::Geometry& geometry)
         : plan_(plan), edges_(std::make_unique<EdgeEchoes>(plan, geometry)) {}
 
-    void takeShapes(const types::Snapshot& snapshot) override { edges_->takeShapes(snapshot); }
-    void takeScene(const types::Geometry& geometry) override { edges_ = std::make_unique<EdgeEchoes>(plan_, geometry); }
+    void updateShapes(const types::Snapshot& snapshot) override { edges_->updateShapes(snapshot); }
+    void setScene(const types::Geometry& geometry) override { edges_ = std::make_unique<EdgeEchoes>(plan_, geometry); }
     void addEchoes(PingInMaking& ping) override {
         received_ = edges_->add(ping);
         count(Counter::Edges, received_);
@@ -78,7 +78,7 @@ public:
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& geometry) const override {
         return std::make_unique<EdgesInPings>(plan, geometry);
     }
-    std::string takeOut(SonarConfig& config) const override {
+    std::string removeFrom(SonarConfig& config) const override {
         return config.effects.erase(own_key) > 0 ? edges_name : "";
     }
 };

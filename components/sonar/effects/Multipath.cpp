@@ -34,7 +34,7 @@ public:
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& geometry) const override {
         return plan.traces_rays ? makePathEchoes(plan, geometry) : nullptr;
     }
-    std::string takeOut(SonarConfig& config) const override {
+    std::string removeFrom(SonarConfig& config) const override {
         if (!config.tracesPaths()) return {};
         config.multipath.reset();
         return "multipath";

@@ -19,9 +19,9 @@ class TargetsInPings final : public PingEffect {
 public:
     TargetsInPings(const RenderPlan& plan, const types::Geometry& geometry) : plan_(plan), geometry_(&geometry) {}
 
-    void takeScene(const types::Geometry& geometry) override {
+    void setScene(const types::Geometry& geometry) override {
         geometry_ = &geometry;
-        if (targets_) targets_->takeScene(geometry);
+        if (targets_) targets_->setScene(geometry);
     }
     void addEchoes(PingInMaking& ping) override {
         all_ = ping.snapshot.targets.size();

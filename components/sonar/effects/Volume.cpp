@@ -77,7 +77,7 @@ struct LayeredVolume : VolumeChanges {
 #undef HAVE_VOLUME_LAYERS
 
 /** Returns the metres up in the world per metre along the middle of cell i. */
-double riseOf(const WaterView& water, const Cells& cells, int i) {
+double rise(const WaterView& water, const Cells& cells, int i) {
     return cells.cos_el[i] * (water.up.x * cells.cos_az[i] + water.up.y * cells.sin_az[i]) +
            water.up.z * cells.sin_el[i];
 }
@@ -89,9 +89,9 @@ void hideVolumeBy(const CellBatch& batch) {
     for (int i = 0; i < cells.count; ++i) {
         const auto beam = static_cast<uint>(cells.beam[i] - batch.first_beam);
         if (batch.covered.pixel[i] > 0)
-            water.hideVolume(footprintOf(batch.covered, i), beam, riseOf(batch.water, cells, i), cells.size[i]);
+            water.hideVolume(footprintOf(batch.covered, i), beam, rise(batch.water, cells, i), cells.size[i]);
         else if constexpr (Water::echoes_from_misses)
-            water.addLayers(beam, riseOf(batch.water, cells, i), batch.rules.bins.range_max, cells.size[i]);
+            water.addLayers(beam, rise(batch.water, cells, i), batch.rules.bins.range_max, cells.size[i]);
     }
 }
 
@@ -133,9 +133,9 @@ double waterBetween(const BinGrid& grid, int j, double strength) {
 /** Intensity of the water itself, from the solid angle that receives its echo. */
 class VolumeInPings final : public PingEffect {
 public:
-    explicit VolumeInPings(const RenderPlan& plan) : plan_(plan), layers_(layersOf(plan.config)) { takeQuality(); }
+    explicit VolumeInPings(const RenderPlan& plan) : plan_(plan), layers_(layersOf(plan.config)) { updateQuality(); }
 
-    void takeQuality() override;
+    void updateQuality() override;
     void giveRules(EchoRules& rules) const override { rules.layers = layers_; }
     bool hasSums() const override { return true; }
     bool isOnDevice() const override { return true; }
@@ -154,7 +154,7 @@ private:
     std::vector<double> intensity_;  ///< Intensity of each bin for a steradian [1/sr].
 };
 
-void VolumeInPings::takeQuality() {
+void VolumeInPings::updateQuality() {
     const BinGrid& grid = plan_.summed;
     open_.assign(plan_.cells.size(), 0.0);
     if (layers_.empty()) open_ = openSolidAngles(plan_);
@@ -221,7 +221,7 @@ public:
         return std::make_unique<VolumeInPings>(plan);
     }
     std::vector<float> withoutSurfaces(const RenderPlan& plan) const override { return openWater(plan); }
-    std::string takeOut(SonarConfig& config) const override {
+    std::string removeFrom(SonarConfig& config) const override {
         if (config.volume.empty()) return {};
         config.volume.clear();
         return "volume reverberation";

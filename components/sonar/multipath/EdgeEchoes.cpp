@@ -133,7 +133,7 @@ EdgeEchoes::EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry)
     echoes_.reserve(max_pieces + 2);
 }
 
-void EdgeEchoes::takeShapes(const types::Snapshot& snapshot) {
+void EdgeEchoes::updateShapes(const types::Snapshot& snapshot) {
     const auto deforms = [&](const OwnEdge& own) {
         return std::ranges::binary_search(snapshot.deformed, own.object, {}, &types::DeformedObject::object);
     };
@@ -195,7 +195,7 @@ size_t EdgeEchoes::add(PingInMaking& to) {
         appendEdgeEchoes(edge, sonar, spacing_, echoes_);
         bool any = false;
         for (const EdgeEcho& echo : echoes_) {
-            TargetWay way;
+            TargetPath way;
             way.length = glm::distance(sonar, echo.at);
             if (!(echo.section > min_section && way.length > 0 && way.length < plan_.grid.range_max)) continue;
             way.direction = sonar_from_world * ((echo.at - sonar) / way.length);

@@ -42,7 +42,7 @@ public:
     EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry);
 
     /** Finds the edges of the objects that the snapshot deforms. */
-    void takeShapes(const types::Snapshot& snapshot);
+    void updateShapes(const types::Snapshot& snapshot);
     /** Adds the echoes once the bins, or `field` if there is one, are filled. Returns the number of edges with an echo
      *  in any beam. */
     size_t add(PingInMaking& to);

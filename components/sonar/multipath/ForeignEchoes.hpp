@@ -13,7 +13,7 @@ namespace insonify::sonar {
 class ForeignEchoes {
 public:
     virtual ~ForeignEchoes() = default;
-    virtual void takeQuality() = 0;
+    virtual void updateQuality() = 0;
     /** Begins a ping. The snapshot must outlive the ping. */
     virtual void begin(const types::Snapshot& snapshot) = 0;
     /** Adds the hits of the rays of tiles. Several threads call it, each with its own tiles. */

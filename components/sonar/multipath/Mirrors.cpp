@@ -52,7 +52,7 @@ WaterMirror::WaterMirror(const SonarConfig& config)
       slope_(wanted_ ? std::sqrt(slopeOfSea(config.multipath->surface->wind_m_s) / 2) : 0) {}
 
 void WaterMirror::place(const types::Snapshot& snapshot, double range_max) {
-    const WaterView water = waterViewOf(snapshot);
+    const WaterView water = waterView(snapshot);
     ping_ = static_cast<uint64_t>(snapshot.time.microseconds);
     plane_ = {water.up, -water.height};
     omitted_.reset();

@@ -34,14 +34,14 @@ SentPower::SentPower(const SonarConfig& config)
 
 double SentPower::towards(const glm::dvec3& direction) const {
     if (conical_ && direction.x < 0) return 0;
-    const BeamAngles at = beamAnglesOf(direction, conical_);
+    const BeamAngles at = beamAngles(direction, conical_);
     const double across = has_azimuth_ ? pattern_->sentAzimuth(at.azimuth) : beams_.spans(at.azimuth);
     const double along =
         has_elevation_ ? pattern_->sentElevation(at.elevation) : std::abs(at.elevation) <= half_height_;
     return across * along;
 }
 
-Waveform waveformOf(const SonarConfig& config, const BinGrid& grid) {
+Waveform waveform(const SonarConfig& config, const BinGrid& grid) {
     Waveform form;
     if (config.frequency_khz) form.frequency_khz = *config.frequency_khz;
     form.duration = 2 * grid.bin_width / grid.speed_of_sound;
@@ -56,7 +56,7 @@ Waveform waveformOf(const SonarConfig& config, const BinGrid& grid) {
     return form;
 }
 
-Waveform waveformOf(const types::Transmission& sent, const Waveform& own) {
+Waveform waveform(const types::Transmission& sent, const Waveform& own) {
     const auto known = [](double value, double otherwise) { return std::isfinite(value) ? value : otherwise; };
     return {known(sent.frequency_khz, own.frequency_khz), known(sent.bandwidth_khz, own.bandwidth_khz),
             known(sent.duration, own.duration)};
@@ -77,16 +77,16 @@ Mismatch mismatchOf(const Waveform& own, const Waveform& sent, double cell, doub
 
 Receiver::Receiver(const RenderPlan& plan)
     : plan_(plan),
-      own_(waveformOf(plan.config, plan.grid)),
+      own_(waveform(plan.config, plan.grid)),
       cell_(hasPulse(plan.config) ? acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound).cellLength()
                                   : plan.grid.bin_width),
       summed_cell_(plan.has(Pass::Pulse) ? cell_ : plan.grid.bin_width),
       loss_(makeAbsorption(plan.config).intensityPerMetre() / 2) {}
 
-Reception Receiver::receptionOf(const types::Transmission& sent, const types::Time& own_time) const {
+Reception Receiver::reception(const types::Transmission& sent, const types::Time& own_time) const {
     const CrosstalkConfig& config = *plan_.config.crosstalk;
     const Mismatch mismatch =
-        mismatchOf(own_, waveformOf(sent, own_), cell_, config.rejection_db, plan_.grid.speed_of_sound);
+        mismatchOf(own_, waveform(sent, own_), cell_, config.rejection_db, plan_.grid.speed_of_sound);
     const bool knows_levels = config.source_level_db && std::isfinite(sent.source_level_db);
     const double louder_db = knows_levels ? sent.source_level_db - *config.source_level_db : 0;
     return {std::pow(10, louder_db / 10) * mismatch.intensity, mismatch.length, loss_,
@@ -94,11 +94,11 @@ Reception Receiver::receptionOf(const types::Transmission& sent, const types::Ti
 }
 
 DirectSound::DirectSound(const RenderPlan& plan, const types::Geometry& geometry)
-    : plan_(plan), receiver_(plan), shape_(echoShapeOf(plan)) {
-    takeScene(geometry);
+    : plan_(plan), receiver_(plan), shape_(echoShape(plan)) {
+    setScene(geometry);
 }
 
-void DirectSound::takeScene(const types::Geometry& geometry) { ways_.emplace(plan_.config, geometry); }
+void DirectSound::setScene(const types::Geometry& geometry) { ways_.emplace(plan_.config, geometry); }
 
 double DirectSound::receivedBy(const Beam& beam, const BeamAngles& from, double range) const {
     const auto& pattern = plan_.directivity;
@@ -130,7 +130,7 @@ bool DirectSound::spread(double range, double length) {
     return true;
 }
 
-bool DirectSound::addWay(const types::Transmission& sent, const Reception& received, const TargetWay& way,
+bool DirectSound::addWay(const types::Transmission& sent, const Reception& received, const TargetPath& way,
                          types::Sonar& ping) {
     const double range = received.offset + way.length / 2;
     if (!(range >= plan_.grid.range_min) || !spread(range, received.length)) return false;
@@ -139,7 +139,7 @@ bool DirectSound::addWay(const types::Transmission& sent, const Reception& recei
     const double power = sent.radiation->towards(glm::conjugate(sent.sonar.orientation) * way.from_point);
     const double intensity =
         received.level * power * way.power * std::exp(-received.loss * way.length) / (way.length * way.length);
-    const BeamAngles from = beamAnglesOf(way.direction, conical);
+    const BeamAngles from = beamAngles(way.direction, conical);
     bool has_echo = false;
     for (size_t beam = 0; intensity > 0 && beam < plan_.beams.size(); ++beam) {
         const double gain = receivedBy(plan_.beams[beam], from, way.length);
@@ -158,7 +158,7 @@ size_t DirectSound::add(const types::Snapshot& snapshot, types::Sonar& ping) {
     received_.clear();
     double earliest = 0;
     for (const auto& sent : snapshot.transmissions) {
-        received_.push_back(receiver_.receptionOf(*sent, snapshot.time));
+        received_.push_back(receiver_.reception(*sent, snapshot.time));
         earliest = std::max(earliest, -received_.back().offset);
     }
     ways_->place(snapshot, plan_.grid.range_max + earliest);
@@ -166,7 +166,7 @@ size_t DirectSound::add(const types::Snapshot& snapshot, types::Sonar& ping) {
     for (size_t i = 0; i < received_.size(); ++i) {
         const auto& sent = snapshot.transmissions[i];
         bool any = false;
-        for (const TargetWay& way : ways_->waysTo(sent->sonar.position)) any |= addWay(*sent, received_[i], way, ping);
+        for (const TargetPath& way : ways_->waysTo(sent->sonar.position)) any |= addWay(*sent, received_[i], way, ping);
         has_echo += any ? 1 : 0;
     }
     return has_echo;

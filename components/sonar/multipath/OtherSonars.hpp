@@ -7,7 +7,7 @@
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/beams/Directivity.hpp"
 #include "components/sonar/bins/EchoShape.hpp"
-#include "components/sonar/multipath/TargetWays.hpp"
+#include "components/sonar/multipath/TargetPaths.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
@@ -40,9 +40,9 @@ struct Waveform {
 
 /** Returns the waveform of a configured sonar. A sonar without `pulse` sends a tone as long as a bin. A chirp without
  *  `chirp_us` lasts 50 / bandwidth. */
-Waveform waveformOf(const SonarConfig& config, const BinGrid& grid);
+Waveform waveform(const SonarConfig& config, const BinGrid& grid);
 /** Returns the waveform of a transmission; missing values are taken from `own`. */
-Waveform waveformOf(const types::Transmission& sent, const Waveform& own);
+Waveform waveform(const types::Transmission& sent, const Waveform& own);
 
 /** Output of a matched filter for a foreign pulse: a box in slant range (ACOUSTICS.md 5.29). */
 struct Mismatch {
@@ -72,7 +72,7 @@ public:
     /** Returns the integral over slant range of an echo in one bin after all processing: of the pulse's response, or
      *  the bin where the plan omits the pulse [m]. */
     double summedCell() const { return summed_cell_; }
-    Reception receptionOf(const types::Transmission& sent, const types::Time& own_time) const;
+    Reception reception(const types::Transmission& sent, const types::Time& own_time) const;
 
 private:
     const RenderPlan& plan_;
@@ -87,14 +87,14 @@ class DirectSound {
 public:
     /** Plan and geometry outlive it; the plan has `crosstalk`. */
     DirectSound(const RenderPlan& plan, const types::Geometry& geometry);
-    void takeScene(const types::Geometry& geometry);
+    void setScene(const types::Geometry& geometry);
 
     /** Adds the snapshot's transmissions to a ping whose beams are sorted. Returns the number of transmissions that any
      *  beam receives. */
     size_t add(const types::Snapshot& snapshot, types::Sonar& ping);
 
 private:
-    bool addWay(const types::Transmission& sent, const Reception& received, const TargetWay& way, types::Sonar& ping);
+    bool addWay(const types::Transmission& sent, const Reception& received, const TargetPath& way, types::Sonar& ping);
     /** Fills shares_ for bins from first_bin_. Returns whether there are any. */
     bool spread(double range, double length);
     /** Returns the receive power of a beam in a direction of the sonar's axes [1]. */
@@ -102,7 +102,7 @@ private:
 
     const RenderPlan& plan_;
     Receiver receiver_;
-    std::optional<TargetWays> ways_;
+    std::optional<TargetPaths> ways_;
     std::optional<EchoShape> shape_;
     std::vector<Reception> received_;  ///< Receptions of the ping's transmissions.
     std::vector<double> shares_;       ///< Mean of the response in each bin [1].

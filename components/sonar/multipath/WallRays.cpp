@@ -18,7 +18,7 @@ double mirroredBy(const MaterialLaws& laws, size_t material) {
                square_slope = static_cast<double>(laws.records[material].law.z);
     if (!(strength > 0) || !(square_slope < steepest * steepest)) return 0;
     const WallLaw& wall = laws.walls[material];
-    const double first = wall.rings() ? static_cast<double>(wall.outside.front()) : 1;  // takeReturnsApart()
+    const double first = wall.rings() ? static_cast<double>(wall.outside.front()) : 1;  // separateReturns()
     return std::min(4 * std::numbers::pi * strength / first, 1.0);
 }
 

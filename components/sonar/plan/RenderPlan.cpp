@@ -72,14 +72,14 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     plan.setQuality(config.rows(), config.columnsPerBeam());
     for (const Effect* effect : effects())
         if (effect->plan(geometry, plan)) plan.effects.push_back(effect);
-    const int parts = fieldSamplingOf(plan).parts;
+    const int parts = fieldSampling(plan).parts;
     plan.summed = plan.grid;
     plan.summed.bin_count *= parts;
     plan.summed.bin_width /= parts;
     return plan;
 }
 
-Reach reachOf(const RenderPlan& plan) {
+Reach reach(const RenderPlan& plan) {
     const double half_elevation = types::radians(plan.sampled.beam_height_deg) / 2;
     double half_azimuth = plan.cells.farthestAside();
     if (plan.features.has(Feature::Conical)) half_azimuth = coneAzimuth(half_azimuth, half_elevation);

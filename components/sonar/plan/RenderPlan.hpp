@@ -14,7 +14,7 @@
 #include "components/sonar/beams/Directivity.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
-#include "components/sonar/surfaces/ObjectPlaces.hpp"
+#include "components/sonar/surfaces/ObjectPlacements.hpp"
 #include "types/Geometry.hpp"
 #include "types/ReturnLevels.hpp"
 
@@ -133,7 +133,7 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
                           const RenderOptions& options = {});
 
 /** Returns the part of space that the sonar of a plan covers. */
-Reach reachOf(const RenderPlan& plan);
+Reach reach(const RenderPlan& plan);
 
 /** Returns the configured absorption; none when the block is absent. A law needs `water`. */
 acoustics::Absorption makeAbsorption(const SonarConfig& config);

@@ -22,19 +22,19 @@ acoustics::Pulse pulseOf(const RenderPlan& plan) {
 
 }  // namespace
 
-double beamWidthOf(const RenderPlan& plan) {
+double beamWidth(const RenderPlan& plan) {
     if (plan.has(Pass::Beamform)) return plan.directivity->halfPowerAzimuth();
     const auto widthOf = [](const Beam& beam) { return beam.high - beam.low; };
     return widthOf(*std::ranges::min_element(plan.beams, {}, widthOf));
 }
 
-double rangeResolutionOf(const RenderPlan& plan) {
+double rangeResolution(const RenderPlan& plan) {
     return plan.has(Pass::Pulse) ? pulseOf(plan).resolution() : plan.grid.bin_width;
 }
 
-FieldSampling fieldSamplingOf(const RenderPlan& plan) {
+FieldSampling fieldSampling(const RenderPlan& plan) {
     if (!plan.features.has(Feature::Speckle) || !plan.has(Pass::Pulse)) return {};
-    const double cells = plan.grid.bin_width / rangeResolutionOf(plan);
+    const double cells = plan.grid.bin_width / rangeResolution(plan);
     const int samples = std::max(1, static_cast<int>(std::ceil(cells - 0.25)));
     const int half = static_cast<int>(std::ceil((parts_of_resolution * cells / samples - 1) / 2));
     return {samples, samples * (2 * std::max(0, half) + 1)};
@@ -45,8 +45,8 @@ std::vector<LatticeLevel> scattererLattice(const RenderPlan& plan) {
     const SpeckleConfig& speckle = *plan.config.speckle;
     const double density = speckle.scatterers_per_m2.value_or(0);
     // A side-scan is a fan across its track: along the track, its beam is narrower than the fan's.
-    const double width = std::min(beamWidthOf(plan), types::radians(plan.config.beam_height_deg));
-    const double area_per_metre = width * rangeResolutionOf(plan) / speckle.scatterers_per_cell;
+    const double width = std::min(beamWidth(plan), types::radians(plan.config.beam_height_deg));
+    const double area_per_metre = width * rangeResolution(plan) / speckle.scatterers_per_cell;
     std::vector<LatticeLevel> levels;
     for (int level = lowest_level; level <= highest_level; ++level) {
         const double square = std::exp2(level);  // [m^2]

@@ -21,10 +21,10 @@ struct FieldSampling {
 };
 
 /** Returns the width of the beams in azimuth, between the half-power points [rad]. */
-double beamWidthOf(const RenderPlan& plan);
+double beamWidth(const RenderPlan& plan);
 /** Returns the range resolution: of the pulse, or of the bins where they determine it [m]. */
-double rangeResolutionOf(const RenderPlan& plan);
-FieldSampling fieldSamplingOf(const RenderPlan& plan);
+double rangeResolution(const RenderPlan& plan);
+FieldSampling fieldSampling(const RenderPlan& plan);
 
 /** Returns the lattices from the nearest range to the far edge of the last bin. Neighbouring spacings differ by the
  *  square root of 2, so that a resolution cell has the configured number of scatterers, and at most twice that. */

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/sonar/beams/BeamFan.hpp"
-#include "components/sonar/surfaces/ObjectPlaces.hpp"
+#include "components/sonar/surfaces/ObjectPlacements.hpp"
 
 namespace insonify::sonar {
 
@@ -66,7 +66,7 @@ private:
 
     const types::Geometry& geometry_;
     CullRules rules_;
-    std::optional<ObjectPlaces> places_;
+    std::optional<ObjectPlacements> places_;
     float range_max_;
     size_t draw_range_limit_ = 0;
 };

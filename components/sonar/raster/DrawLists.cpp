@@ -78,7 +78,7 @@ void ProcessorLists::add(Listed& listed, const Culler::DrawRange& range, const V
     listed.clips.push_back(clipOf(object, view));
     const int map = setup_.scene.withNormalMaps() ? material.normal_map : -1;
     if (setup_.scene.withNormalMaps())
-        listed.normal_transforms.push_back(normalTransformOf(object, view, material.normal_scale));
+        listed.normal_transforms.push_back(normalTransform(object, view, material.normal_scale));
     if (listed.groups.empty() || listed.groups.back().normal_map != map) listed.groups.push_back({at, at, map});
     listed.groups.back().last = at + 1;
 }
@@ -120,7 +120,7 @@ public:
     DeviceLists(const Setup& setup, gpu::EglContext& context);
     void list(size_t frustum, const ViewFrustum& view) override;
     bool mayShow(size_t frustum) const override { return views_[frustum].any; }
-    void takeShape(uint32_t object) override;
+    void updateShape(uint32_t object) override;
     void prepare(std::span<const ViewFrustum> views) override;
     Draws draws(size_t frustum) const override;
     std::span<const CommandRecord> commands(size_t) const override { return commands_; }
@@ -160,14 +160,14 @@ private:
     mutable gpu::ReadBack asked_;
 };
 
-std::vector<std::string> definesOf(const SurfaceScene& scene) {
+std::vector<std::string> defines(const SurfaceScene& scene) {
     return scene.withNormalMaps() ? std::vector<std::string>{"HAVE_NORMAL_MAP"} : std::vector<std::string>{};
 }
 
 DeviceLists::DeviceLists(const Setup& setup, gpu::EglContext& context)
     : DrawLists(setup),
       context_(context),
-      program_(context.programs().compute("cull.comp.glsl", definesOf(setup.scene))) {
+      program_(context.programs().compute("cull.comp.glsl", defines(setup.scene))) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {at("cluster_count"), at("frustum"), at("frustum_count"), at("outward"), at("range_max")};
     std::vector<ClusterRecord> clusters;
@@ -214,7 +214,7 @@ void DeviceLists::addCommands(uint32_t object) {
     }
 }
 
-void DeviceLists::takeShape(uint32_t object) {
+void DeviceLists::updateShape(uint32_t object) {
     std::vector<ClusterRecord> clusters;
     addClusters(clusters, object);
     clusters_.write(clusters.data(), clusters.size() * sizeof(ClusterRecord),
@@ -244,7 +244,7 @@ ViewedObject DeviceLists::viewedObject(size_t object, const ViewFrustum& view, u
     viewed.clip_y = clip.y;
     viewed.clip_w = clip.w;
     if (!setup_.scene.withNormalMaps()) return viewed;
-    const NormalTransform rows = normalTransformOf(record, view, 1);
+    const NormalTransform rows = normalTransform(record, view, 1);
     viewed.normal_x = rows.normal[0];
     viewed.normal_y = rows.normal[1];
     viewed.normal_z = rows.normal[2];
@@ -327,7 +327,7 @@ Clip clipOf(const ObjectRecord& object, const ViewFrustum& frustum) {
     return {vec4((cosine * y - sine * x) / frustum.extent_u), vec4(z / frustum.extent_v), vec4(cosine * x + sine * y)};
 }
 
-NormalTransform normalTransformOf(const ObjectRecord& object, const ViewFrustum& frustum, float normal_scale) {
+NormalTransform normalTransform(const ObjectRecord& object, const ViewFrustum& frustum, float normal_scale) {
     const auto cosine = static_cast<float>(std::cos(frustum.azimuth)),
                sine = static_cast<float>(std::sin(frustum.azimuth));
     NormalTransform rows{

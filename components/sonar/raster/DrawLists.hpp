@@ -24,7 +24,7 @@ Clip clipOf(const ObjectRecord& object, const ViewFrustum& frustum);
 struct NormalTransform {
     vec4 normal[3], tangent[3];
 };
-NormalTransform normalTransformOf(const ObjectRecord& object, const ViewFrustum& frustum, float normal_scale);
+NormalTransform normalTransform(const ObjectRecord& object, const ViewFrustum& frustum, float normal_scale);
 
 /** One indirect draw, in OpenGL's layout. */
 struct DrawCommand {
@@ -72,7 +72,7 @@ public:
     /** Returns whether there may be anything to rasterise. */
     virtual bool mayShow(size_t frustum) const = 0;
     /** Switches to the present boxes of the clusters of an object's mesh. */
-    virtual void takeShape(uint32_t /*object*/) {}
+    virtual void updateShape(uint32_t /*object*/) {}
     /** Queues the device's work that precedes the rasterising of all frusta. */
     virtual void prepare(std::span<const ViewFrustum>) {}
     /** Returns the max draws of a frustum. */

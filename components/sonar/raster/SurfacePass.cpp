@@ -184,8 +184,8 @@ bool SurfacePass::serves(const Setup& other) const {
            other.cull_on_device == setup_.cull_on_device;
 }
 
-void SurfacePass::takeLaws() {
-    scene_.takeLaws(setup_.geometry, setup_.laws);
+void SurfacePass::updateLaws() {
+    scene_.updateLaws(setup_.geometry, setup_.laws);
     if (parts_.size() > 1) gpu::Fence::here().wait();  // the other contexts must find the buffers filled
 }
 
@@ -223,8 +223,8 @@ void SurfacePass::makePictures(size_t part) {
             std::make_unique<VisibilityBuffer>(setup_.frusta[frustum], hasNormalMaps(setup_), contextOf(part));
 }
 
-void SurfacePass::takeShape(uint32_t object) {
-    scene_.takeShape(setup_.geometry, setup_.laws, static_cast<size_t>(setup_.geometry.objects[object].mesh));
+void SurfacePass::updateShape(uint32_t object) {
+    scene_.updateShape(setup_.geometry, setup_.laws, static_cast<size_t>(setup_.geometry.objects[object].mesh));
 }
 
 void SurfacePass::uploadShapes(std::span<const uint32_t> objects) {
@@ -232,7 +232,7 @@ void SurfacePass::uploadShapes(std::span<const uint32_t> objects) {
     for (const uint32_t object : objects) {
         const auto mesh = static_cast<size_t>(setup_.geometry.objects[object].mesh);
         scene_.uploadShape(setup_.geometry.meshes[mesh], mesh);
-        lists_->takeShape(object);
+        lists_->updateShape(object);
     }
     if (parts_.size() > 1) gpu::Fence::here().wait();  // the other contexts must find the buffers filled
 }

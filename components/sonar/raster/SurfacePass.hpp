@@ -84,16 +84,16 @@ public:
     SurfacePass(gpu::EglContext& context, Setup setup, Culler& culler, ThreadPool& threads);
     ~SurfacePass();
 
-    /** Returns whether this pass serves another setup of the same scene, after takeLaws() and resize(). */
+    /** Returns whether this pass serves another setup of the same scene, after updateLaws() and resize(). */
     bool serves(const Setup& other) const;
     /** Switches to the present laws of materials. */
-    void takeLaws();
+    void updateLaws();
     /** Switches to pictures of as many frusta, with other numbers of pixels. */
     void resize(const std::vector<ViewFrustum>& frusta);
 
     /** Switches to the present shape of an object's mesh, before uploadShapes(). Several threads may take different
      *  objects. */
-    void takeShape(uint32_t object);
+    void updateShape(uint32_t object);
     /** Uploads the shapes of these objects. */
     void uploadShapes(std::span<const uint32_t> objects);
 

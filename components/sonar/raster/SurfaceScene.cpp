@@ -130,7 +130,7 @@ void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {
     normal_maps_.push_back(std::move(flat));
 }
 
-void SurfaceScene::takeLaws(const types::Geometry& geometry, const MaterialLaws& laws) {
+void SurfaceScene::updateLaws(const types::Geometry& geometry, const MaterialLaws& laws) {
     UsedLaws used{laws.records, laws.wavelength, laws.sharp_turn};
     if (used == laws_) return;
     laws_ = std::move(used);
@@ -143,7 +143,7 @@ size_t SurfaceScene::endOf(size_t mesh) const {
     return mesh + 1 < places_.size() ? places_[mesh + 1].first_triangle : plane_list_.size();
 }
 
-void SurfaceScene::takeShape(const types::Geometry& geometry, const MaterialLaws& laws, size_t mesh) {
+void SurfaceScene::updateShape(const types::Geometry& geometry, const MaterialLaws& laws, size_t mesh) {
     const size_t first = places_[mesh].first_triangle;
     findPlanes(geometry.meshes[mesh], std::span(plane_list_).subspan(first, endOf(mesh) - first));
     if (facet_list_.empty()) return;

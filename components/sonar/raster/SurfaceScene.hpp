@@ -28,10 +28,10 @@ public:
     /** Returns the facet of each triangle; empty where no material has a lobe. */
     const std::vector<FacetRecord>& facets() const { return facet_list_; }
     /** Switches to the laws of the same materials in another plan. Uploads only what differs. */
-    void takeLaws(const types::Geometry& geometry, const MaterialLaws& laws);
+    void updateLaws(const types::Geometry& geometry, const MaterialLaws& laws);
     /** Computes planes and facets of a mesh that has another shape now. Several threads may take different meshes. */
-    void takeShape(const types::Geometry& geometry, const MaterialLaws& laws, size_t mesh);
-    /** Uploads the shape of a mesh after takeShape(). */
+    void updateShape(const types::Geometry& geometry, const MaterialLaws& laws, size_t mesh);
+    /** Uploads the shape of a mesh after updateShape(). */
     void uploadShape(const types::Mesh& mesh, size_t number);
     /** Sets the attributes and indices of a context's vertex array. */
     void describe(const gpu::VertexArray& vertices) const;

@@ -129,13 +129,13 @@ RayPaths::RayPaths(const RenderPlan& plan, const types::Geometry& geometry)
     corners_.reserve(RayTable::max_corners + 1);
 }
 
-void RayPaths::takeScene(const types::Geometry& geometry) {
-    if (motion_) motion_->takeScene(geometry);
+void RayPaths::setScene(const types::Geometry& geometry) {
+    if (motion_) motion_->setScene(geometry);
 }
 
 void RayPaths::place(const types::Snapshot& snapshot) {
     world_from_sonar_ = glm::mat3_cast(glm::normalize(snapshot.sonar.orientation));
-    if (table_) table_->place(-waterViewOf(snapshot).height);
+    if (table_) table_->place(-waterView(snapshot).height);
     if (motion_) placeMotion(snapshot);
     placeCorners();
 }

@@ -101,7 +101,7 @@ public:
     RayPaths(const RenderPlan& plan, const types::Geometry& geometry);
 
     /** Switches to another geometry from the next ping on. */
-    void takeScene(const types::Geometry& geometry);
+    void setScene(const types::Geometry& geometry);
     /** Computes the paths of a ping; call it once per ping. Allocates nothing after the second. */
     void place(const types::Snapshot& snapshot);
     /** Returns whether all paths of this ping are effectively straight: nothing is bent, and nothing moves enough. */

@@ -55,7 +55,7 @@ public:
     ~RayVisibility();
 
     /** Switches to another geometry from the next ping on, which must outlive it. Keeps trees of unchanged objects. */
-    void takeScene(const types::Geometry& geometry, std::span<const uint32_t> deforming = {});
+    void setScene(const types::Geometry& geometry, std::span<const uint32_t> deforming = {});
 
     /** Forgets which objects have moved. Trees stay until the next ping has reused those that it needs. */
     void forget();
@@ -72,7 +72,7 @@ public:
     /** Ends the fitting, before anything is cast. */
     void joinDeforming();
     /** The meshes of objects that deform have other shapes now. */
-    void takeShapes() { is_fitted_ = false; }
+    void updateShapes() { is_fitted_ = false; }
     /** Whether trees of objects that deform are to be fitted in this ping. */
     bool needsFitting() const { return !deforming_.isEmpty() && !is_fitted_; }
 

@@ -247,7 +247,7 @@ bool TreesAhead::follow(const glm::dvec3& sonar, const Objects& objects) {
     const double way = before_ ? glm::distance(*before_, sonar) : 0;
     before_ = sonar;
     const int64_t version = version_;
-    if (objects != objects_) takeObjects(objects);
+    if (objects != objects_) setObjects(objects);
     if (way == 0 && version == version_) return false;
     const Origins origins = way > 0 && way <= near ? originsAround(sonar) : Origins();
     if (origins.count == 0 && origins_.count == 0) return false;
@@ -256,7 +256,7 @@ bool TreesAhead::follow(const glm::dvec3& sonar, const Objects& objects) {
     return true;
 }
 
-void TreesAhead::takeObjects(const Objects& objects) {
+void TreesAhead::setObjects(const Objects& objects) {
     if (!objects_ || *objects != *objects_) ++version_;
     objects_ = objects;
     size_t triangles = 0;

@@ -225,7 +225,7 @@ private:
     /** Returns the origins of the cells near the sonar, the nearest first; none where it is near its own only, whose
      *  tree is in use. */
     Origins originsAround(const glm::dvec3& sonar) const;
-    void takeObjects(const Objects& objects);
+    void setObjects(const Objects& objects);
 
     Objects objects_;
     size_t max_count_ = 0;  ///< Max number of origins, by the triangles of the objects.

@@ -67,7 +67,7 @@ std::string hindranceText(const Coverage& coverage, const glm::dvec3& point) {
     if (range > plan.grid.range_max) return fmt::format("beyond the range of {:.4g} m", plan.grid.range_max);
     if (range < plan.grid.range_min) return fmt::format("nearer than range_min, {:g} m", plan.grid.range_min);
     const bool conical = plan.features.has(Feature::Conical);
-    const BeamAngles angles = beamAnglesOf(point, conical);
+    const BeamAngles angles = beamAngles(point, conical);
     const std::string above = aboveText(plan, degrees(angles.elevation));
     if (!above.empty() || coverage.all_round) return above;
     if (conical && point.x < 0) return "behind the sonar, a straight array";

@@ -82,7 +82,7 @@ std::vector<std::string> configNotices(const SonarConfig& config) {
 
 std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot) {
     if (!plan.profile) return {};
-    const double depth = -waterViewOf(snapshot).height, top = plan.profile->top(), bottom = plan.profile->bottom();
+    const double depth = -waterView(snapshot).height, top = plan.profile->top(), bottom = plan.profile->bottom();
     if (depth >= top && depth <= bottom) return {};
     return fmt::format(
         "Warning: at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound covers {:g} to {:g} "

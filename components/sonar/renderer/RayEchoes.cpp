@@ -22,7 +22,7 @@
 #include "components/sonar/rays/TileCells.hpp"
 #include "components/sonar/surfaces/DeformedMeshes.hpp"
 #include "components/sonar/surfaces/FacetLobes.hpp"
-#include "components/sonar/surfaces/ObjectPlaces.hpp"
+#include "components/sonar/surfaces/ObjectPlacements.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -55,11 +55,11 @@ struct Strip {
 class RayEchoes final : public EchoRenderer {
 public:
     RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
-    void takeQuality() override;
-    bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
+    void updateQuality() override;
+    bool setScene(types::GeometryPtr geometry, bool same_plan) override;
     bool changePlan() override;
     void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) override;
-    void takeShapes(const types::Snapshot& snapshot) override;
+    void updateShapes(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool forget() override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
@@ -91,8 +91,8 @@ private:
         }
     };
     /** Computes what depends on scene and plan, such as the facets of materials with a specular lobe. */
-    void takeLaws();
-    void takePlan();
+    void updateLaws();
+    void updatePlan();
     void shareOut();
     int beamsTogether() const {
         return std::min(view_.cells.beams, (3 + view_.cells.beam_columns) / view_.cells.beam_columns);
@@ -141,7 +141,7 @@ private:
     WaterView water_;      ///< Water view of this ping.
     WaterMirror surface_;  ///< Ends rays that have passed walls.
     std::unique_ptr<Accumulator> accumulator_;
-    std::unique_ptr<ObjectPlaces> places_;
+    std::unique_ptr<ObjectPlacements> places_;
     RayVisibility visibility_;
     std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
     std::vector<MeshFacts::Planes> planes_;  ///< One for each mesh.
@@ -175,12 +175,12 @@ RayEchoes::RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEf
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
     for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
-    takeScene(geometry_, false);
+    setScene(geometry_, false);
 }
 
 void RayEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
     deformed_ = meshes;
-    takeScene(std::move(geometry), true);
+    setScene(std::move(geometry), true);
     if (!meshes) return;
     size_t triangles = 0;
     for (const uint32_t object : meshes->objects())
@@ -188,8 +188,8 @@ void RayEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
     bends_ = triangles <= max_bent;
 }
 
-void RayEchoes::takeShapes(const types::Snapshot& snapshot) {
-    visibility_.takeShapes();
+void RayEchoes::updateShapes(const types::Snapshot& snapshot) {
+    visibility_.updateShapes();
     threads_.run([&](int part, int parts) {
         deformed_->take(snapshot, static_cast<size_t>(part), static_cast<size_t>(parts));
         const std::vector<uint32_t>& objects = deformed_->objects();
@@ -204,11 +204,11 @@ void RayEchoes::takeShapes(const types::Snapshot& snapshot) {
     });
 }
 
-bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
+bool RayEchoes::setScene(types::GeometryPtr geometry, bool same_plan) {
     const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // kept until unused
     if (before != geometry_)
-        visibility_.takeScene(
-            *geometry_, deformed_ ? std::span<const uint32_t>(deformed_->objects()) : std::span<const uint32_t>());
+        visibility_.setScene(*geometry_,
+                             deformed_ ? std::span<const uint32_t>(deformed_->objects()) : std::span<const uint32_t>());
     normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
     std::vector<MeshFacts::Planes> planes;
     std::vector<MeshFacts::Curves> curves;
@@ -224,14 +224,14 @@ bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     }
     planes_ = std::move(planes);  // shared data is kept, because the predecessors are destroyed after the new are made
     curves_ = std::move(curves);
-    takeLaws();
-    if (ray_paths_) ray_paths_->takeScene(*geometry_);
-    if (!same_plan) takePlan();
+    updateLaws();
+    if (ray_paths_) ray_paths_->setScene(*geometry_);
+    if (!same_plan) updatePlan();
     return true;
 }
 
-void RayEchoes::takeLaws() {
-    places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
+void RayEchoes::updateLaws() {
+    places_ = std::make_unique<ObjectPlacements>(*geometry_, reach(plan_), true);
     std::vector<MeshFacts::Facets> facets;
     for (size_t i = 0; i < geometry_->meshes.size(); ++i)
         facets.push_back(MeshFacts::of(geometry_->meshes.shared(i))->facets(worldFromMesh(*geometry_, i), plan_.laws));
@@ -245,8 +245,8 @@ void RayEchoes::takeLaws() {
 bool RayEchoes::changePlan() {
     ray_paths_.reset();
     accumulator_.reset();
-    takeLaws();
-    takePlan();
+    updateLaws();
+    updatePlan();
     return true;
 }
 
@@ -258,17 +258,17 @@ bool RayEchoes::forget() {
     return true;
 }
 
-void RayEchoes::takePlan() {
+void RayEchoes::updatePlan() {
     surface_ = WaterMirror(plan_.config);
     if (plan_.profile || plan_.config.motion_in_ping) {
         if (!ray_paths_) ray_paths_.emplace(plan_, *geometry_);
     } else {
         ray_paths_.reset();
     }
-    takeQuality();
+    updateQuality();
 }
 
-void RayEchoes::takeQuality() {
+void RayEchoes::updateQuality() {
     rules_ = makeEchoRules(plan_, effects_);
     view_.cells = makeAngularView(plan_);
     energy_rules_.reset();
@@ -317,7 +317,7 @@ void RayEchoes::makeTruth() {
 }
 
 void RayEchoes::place(const types::Snapshot& snapshot) {
-    water_ = waterViewOf(snapshot);
+    water_ = waterView(snapshot);
     surface_.place(snapshot, plan_.grid.range_max);
     places_->place(snapshot);
     visibility_.place(snapshot);

@@ -41,7 +41,7 @@ public:
     /** Fills the bins of `alike`, with the shape of the ping, with what every beam of the last ping records alike,
      *  whatever it looks at: the ring-down of the transmitter. Returns false, and changes nothing, where there is none.
      *  Allocates nothing when it has filled `alike` before. */
-    bool takeAlike(const types::Sonar& ping, types::Sonar& alike) const;
+    bool computeAlike(const types::Sonar& ping, types::Sonar& alike) const;
 
     /** Forgets all pings, as if it had just been made. Returns false where a new renderer is needed: with motion in a
      *  ping, with bent rays, or where it rasterises. */
@@ -78,7 +78,7 @@ public:
 
 private:
     struct Parts;
-    void takeElements(const types::Sonar& ping, types::SonarElements& signals);
+    void computeElements(const types::Sonar& ping, types::SonarElements& signals);
     /** Adds what the bins contain in addition to the echoes of surfaces. */
     void finish(const types::Snapshot& snapshot, types::Sonar& ping);
     std::unique_ptr<Parts> parts_;

@@ -412,7 +412,7 @@ private:
 };
 
 /** Returns the curvature of a facet: its lobe's record has the curvatures along its axis and across it. */
-CurveRecord curveOf(const FacetRecord& facet, const glm::dvec3& normal, const glm::dmat3& world_from_mesh) {
+CurveRecord curve(const FacetRecord& facet, const glm::dvec3& normal, const glm::dmat3& world_from_mesh) {
     const glm::dmat3 mesh_from_world = glm::transpose(world_from_mesh);
     glm::dvec3 axis = glm::inverse(mesh_from_world) * glm::dvec3(facet.axis);
     double more = static_cast<double>(facet.first.z), less = static_cast<double>(facet.second.z);
@@ -502,7 +502,7 @@ std::vector<CurveRecord> facetCurves(const types::Mesh& mesh, const glm::dmat3& 
             return world_from_mesh * glm::dvec3(once.positions[once.indices[3 * t + k]]);
         };
         const glm::dvec3 across = glm::cross(place(1) - place(0), place(2) - place(0));
-        if (glm::length(across) > 0) curves[i] = curveOf(facets[t], glm::normalize(across), world_from_mesh);
+        if (glm::length(across) > 0) curves[i] = curve(facets[t], glm::normalize(across), world_from_mesh);
     }
     return curves;
 }

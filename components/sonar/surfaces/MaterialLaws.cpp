@@ -116,7 +116,7 @@ bool MaterialLaws::hasReturns() const {
     return std::ranges::any_of(walls, [](const WallLaw& wall) { return wall.rings() || wall.fill; });
 }
 
-void MaterialLaws::takeReturnsApart() {
+void MaterialLaws::separateReturns() {
     for (size_t i = 0; i < walls.size(); ++i)
         if (walls[i].rings()) {
             records[i].values.x *= walls[i].outside.front();

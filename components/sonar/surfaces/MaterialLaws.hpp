@@ -43,7 +43,7 @@ struct MaterialLaws {
     /** Returns whether any wall has returns that are separate in range, or a fill. */
     bool hasReturns() const;
     /** Reduces each wall that rings to its first return; WallRays adds the others. */
-    void takeReturnsApart();
+    void separateReturns();
     bool followsLambert(size_t material) const { return FOLLOWS_LAMBERT(records[material].law); }
     bool hasLobe(size_t material) const { return records[material].law.y > 0; }
     /** Returns sigma_b / cos(theta) of a material at a cosine [1]; with a lobe, for the lobe's slopes. */

@@ -26,7 +26,7 @@ PlaneRecord planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     return {vec4(glm::vec3(normal), static_cast<float>(glm::dot(normal, a - glm::dvec3(point)))), vec4(point, 0)};
 }
 
-std::vector<Box> leavesOf(const types::Mesh& mesh) {
+std::vector<Box> leaves(const types::Mesh& mesh) {
     constexpr size_t leaf = 3 * MeshFacts::leaf_triangles;
     std::vector<Box> boxes((mesh.indices.size() + leaf - 1) / leaf);
     for (size_t i = 0; i < mesh.indices.size(); ++i) boxes[i / leaf].add(mesh.positions[mesh.indices[i]]);
@@ -139,7 +139,7 @@ std::vector<std::shared_ptr<MeshFacts>> MeshFacts::ofAll(const types::Geometry& 
 void MeshFacts::renew() {
     box_.renew([this](Box& box) { box = boxOf(*mesh_); });
     longest_edge_.renew([this](double& longest) { longest = sonar::longestEdge(*mesh_); });
-    triangles_.renew([this](BoxTree& tree) { tree.refit(leavesOf(*mesh_)); });
+    triangles_.renew([this](BoxTree& tree) { tree.refit(leaves(*mesh_)); });
     planes_.renew([this](const std::shared_ptr<std::vector<PlaneRecord>>& planes) { findPlanes(*mesh_, *planes); });
     map_density_.renew([this](std::vector<float>& density) { density = mapDensityOf(*mesh_); });
 }
@@ -153,7 +153,7 @@ double MeshFacts::longestEdge() {
 }
 
 const BoxTree& MeshFacts::triangles() {
-    return triangles_.get([this] { return BoxTree(leavesOf(*mesh_)); });
+    return triangles_.get([this] { return BoxTree(leaves(*mesh_)); });
 }
 
 MeshFacts::Planes MeshFacts::planes() {

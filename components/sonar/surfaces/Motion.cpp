@@ -24,9 +24,9 @@ glm::dvec3 turnBetween(const glm::dquat& from, const glm::dquat& to, double seco
     return sine > 0 ? axis * (2 * std::atan2(sine, turned.w) / (sine * seconds)) : glm::dvec3(0);
 }
 
-Motion::Motion(const types::Geometry& geometry, double fastest) : fastest_allowed_(fastest) { takeScene(geometry); }
+Motion::Motion(const types::Geometry& geometry, double fastest) : fastest_allowed_(fastest) { setScene(geometry); }
 
-void Motion::takeScene(const types::Geometry& geometry) {
+void Motion::setScene(const types::Geometry& geometry) {
     const std::vector<Thing> old = std::exchange(things_, {});
     places_.clear();
     deforming_.assign(geometry.objects.size(), nullptr);

@@ -28,7 +28,7 @@ public:
 
     /** Switches to another geometry from the next ping on. Objects with the same number, mesh and name are the same
      *  object. Other objects are at rest at first. */
-    void takeScene(const types::Geometry& geometry);
+    void setScene(const types::Geometry& geometry);
     /** Updates the motion once per ping; several calls for one time count as one. Allocates nothing after the second
      *  ping. */
     void follow(const types::Snapshot& snapshot);

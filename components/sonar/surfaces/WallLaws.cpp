@@ -49,7 +49,7 @@ public:
     /** Returns whether returns are far enough apart to be separate in a ping, and each has at least half a period. */
     bool rings(const SonarConfig& config) const {
         const double spacing = plate_.thickness * water_.sound_speed / plate_.sound_speed;
-        return spacing > rangeCellOf(config) / 2 && frequency_ * plate_.thickness > plate_.sound_speed / 4;
+        return spacing > rangeCell(config) / 2 && frequency_ * plate_.thickness > plate_.sound_speed / 4;
     }
     acoustics::PlateReturns returns(bool from_within) const {
         return acoustics::plateReturns(plate_, from_within ? behind_ : water_, from_within ? water_ : behind_,

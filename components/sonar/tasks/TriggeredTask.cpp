@@ -53,7 +53,7 @@ void TriggeredTask::followSnapshot(const types::Snapshot& scene) {
                         way, seconds, fastest));
 }
 
-bool TriggeredTask::takeGiven() {
+bool TriggeredTask::readInputs() {
     types::SnapshotPtr sample;
     types::Pose given;
     if (snapshot.readNewest(sample) == framework::FlowStatus::NoData || !given_pose.readNew(given)) return false;
@@ -98,17 +98,17 @@ void TriggeredTask::applySettings(const types::SonarSettings& asked) {
     if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
 }
 
-bool TriggeredTask::takeAsked() {
+bool TriggeredTask::consumeRequest() {
     types::SonarSettings asked;
     types::SnapshotPtr sample;
-    if (snapshot.readNewest(sample) == framework::FlowStatus::NoData || !settings.takeNext(asked)) return false;
+    if (snapshot.readNewest(sample) == framework::FlowStatus::NoData || !settings.readNext(asked)) return false;
     try {
         applySettings(asked);
     } catch (const std::exception& refused) {
         error(std::string("settings: ") + refused.what());
         return false;
     }
-    takeScene(*sample);
+    setScene(*sample);
     // A request from before the clock was set back would be ahead of it.
     const types::Time latest = activity().realtime() ? std::min(asked.time, now()) : asked.time;
     taken_.scene.time = std::max(taken_.scene.time, latest);
@@ -116,16 +116,16 @@ bool TriggeredTask::takeAsked() {
     return true;
 }
 
-bool TriggeredTask::takeNext() {
-    if (given_pose.connected()) return takeGiven();
-    if (settings.connected()) return takeAsked();
+bool TriggeredTask::readNext() {
+    if (given_pose.connected()) return readInputs();
+    if (settings.connected()) return consumeRequest();
     types::SnapshotPtr sample;
-    if (!snapshot.takeNext(sample)) return false;
-    takeScene(*sample);
+    if (!snapshot.readNext(sample)) return false;
+    setScene(*sample);
     return true;
 }
 
-void TriggeredTask::takeScene(const types::Snapshot& scene) {
+void TriggeredTask::setScene(const types::Snapshot& scene) {
     taken_.begun = now();
     taken_.scene = scene;
     if (activity().realtime() && taken_.scene.max_extrapolation > 0) {

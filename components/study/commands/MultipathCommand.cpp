@@ -43,7 +43,7 @@ int runStudy(const std::string& out) {
     const MultipathResult result = studyMultipath();
     console::OutputFolder folder(out, "study_multipath");
     folder.keep();
-    write(folder.path() / "multipath.csv", csvOf(result));
+    write(folder.path() / "multipath.csv", csv(result));
     console::write(toJson(result), (folder.path() / "multipath.json").string());
     for (const Claim& claim : result.claims)
         console::printResult("{}  {}: {:.3g}, at most {:.3g}\n", claim.verdict(), claim.text, claim.measured,

@@ -76,8 +76,8 @@ types::Snapshot at(const StudyScene& scene, int pose) {
 }
 
 /** Averages the poses alternately into two halves; adds the times of all poses except the first [ms]. */
-Halves meansOf(const StudyScene& scene, const sonar::SonarConfig& config, int poses, std::vector<double>* times,
-               std::string& device) {
+Halves means(const StudyScene& scene, const sonar::SonarConfig& config, int poses, std::vector<double>* times,
+             std::string& device) {
     sonar::SonarRenderer renderer(config, scene.snapshot.geometry);
     device = renderer.device();
     Halves halves;
@@ -164,7 +164,7 @@ ReferenceTrace traceBy(const StudyScene& scene) {
         };
 }
 
-ReferenceTrace referenceOf(const StudyScene& scene) {
+ReferenceTrace reference(const StudyScene& scene) {
     return scene.config.multipath ? traceBy<PathTracer>(scene) : traceBy<PointTracer>(scene);
 }
 
@@ -272,7 +272,7 @@ private:
             energies_ = trueEnergies(scene_);
             return;
         }
-        trace_ = referenceOf(scene_);
+        trace_ = reference(scene_);
         traceReference(1);
         if (std::ranges::none_of(energies_, [](double energy) { return energy > 0; }))
             throw std::runtime_error(scene_.name +
@@ -370,14 +370,14 @@ void studyCoherent(const StudyScene& scene, const ErrorOptions& options, int min
     options.progress(scene.name + " energies");
     sonar::SonarConfig energies = configOf(min_rows * finer, base_columns * finer);
     energies.speckle.reset();
-    const Halves expected = meansOf(scene, energies, poses, nullptr, result.device);
+    const Halves expected = means(scene, energies, poses, nullptr, result.device);
     double chance = 0;
     for (int level = 0; level < std::min(options.levels, max_levels); ++level) {
         Measurement point{scene.name, Method::Footprint, min_rows << level, base_columns << level, 1, {}, 0, 0, 0, 0};
         options.progress(fmt::format("{} footprint {} x {}", scene.name, point.rows, point.columns_per_beam));
         std::vector<double> times;
         const Halves received =
-            meansOf(scene, configOf(point.rows, point.columns_per_beam), poses, &times, result.device);
+            means(scene, configOf(point.rows, point.columns_per_beam), poses, &times, result.device);
         double square = 0, scale = 0, spread = 0, got = 0, all = 0;
         for (size_t i = 0; i < received[0].size(); ++i) {
             const double product = (received[0][i] - expected[0][i]) * (received[1][i] - expected[1][i]);

@@ -102,7 +102,7 @@ void layLines(const CodedPing& recorded, FitChain& chain) {
                         chain.lines.size(), glm::distance(chain.lines.front().position, chain.lines.back().position)));
 }
 
-void takeShape(const CodedPing& recorded, FitChain& chain) {
+void copyShape(const CodedPing& recorded, FitChain& chain) {
     sonar::SonarConfig& sonar = chain.sonar;
     if (recorded.resolution > 0) sonar.range = recorded.resolution * static_cast<double>(recorded.bin_count);
     sonar.bin_count = static_cast<int>(recorded.bin_count);

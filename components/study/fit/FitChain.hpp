@@ -32,7 +32,7 @@ void layLines(const CodedPing& recorded, FitChain& chain);
 
 /** Gives the chain's sonar the beams, bins, speed of sound and frequency of a recording, as far as it states them, and
  *  its receiver the law of the codes. */
-void takeShape(const CodedPing& recorded, FitChain& chain);
+void copyShape(const CodedPing& recorded, FitChain& chain);
 
 /** Returns the mean intensities of echoes over all speckle, without noise and absorption, relative to the source [1].
  *  For a side-scan the beams are a subset of its lines. */

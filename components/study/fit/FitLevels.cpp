@@ -394,7 +394,7 @@ Values fitScene(LevelModel& model, const Values& values, const std::function<voi
 
 /** Returns the factor by which correlation of neighbouring residuals raises the variance of their mean, for a
  *  first-order process (Priestley 1981). */
-double alikeOf(const std::vector<double>& residuals, size_t stride) {
+double alike(const std::vector<double>& residuals, size_t stride) {
     double squares = 0, products = 0, pairs = 0;
     for (size_t i = 0; i < residuals.size(); ++i) {
         squares += residuals[i] * residuals[i] / static_cast<double>(residuals.size());
@@ -412,7 +412,7 @@ double varianceOf(const LevelModel& model, const Values& at) {
     for (const double r : residuals) sum += r * r;
     const auto fitted = static_cast<double>(model.levels().size() + model.looks().size());
     const double freedom = std::max(1.0, static_cast<double>(residuals.size()) - fitted);
-    return sum / freedom * alikeOf(residuals, residuals.size() / model.rows());
+    return sum / freedom * alike(residuals, residuals.size() / model.rows());
 }
 
 /** Returns the derivatives of residuals and priors by each chosen value; for attitude by rendering again. */

@@ -132,7 +132,7 @@ double autocorrelation(const std::function<double(double)>& field, double lag, d
     return total;
 }
 
-double medianOf(std::vector<double> values) {
+double median(std::vector<double> values) {
     if (values.empty()) return NAN;
     const auto middle = values.begin() + static_cast<long>(values.size() / 2);
     std::ranges::nth_element(values, middle);
@@ -162,7 +162,7 @@ public:
                     farther.push_back(levelAt(beam + side, bin + aside));
                 }
             }
-        const double background = std::max(medianOf(nearer), medianOf(farther));
+        const double background = std::max(median(nearer), median(farther));
         if (at.size() < 4 || level < background + 25) return {};
         const double highest = *std::ranges::max_element(at);
         return highest > background + 6 ? std::optional(highest - level) : std::nullopt;
@@ -190,7 +190,7 @@ private:
 
 }  // namespace
 
-Measured sidelobesOf(const std::vector<CodedPing>& pings, double width_beams) {
+Measured sidelobes(const std::vector<CodedPing>& pings, double width_beams) {
     std::vector<double> all, off;
     for (const CodedPing& ping : pings) {
         const TargetView view(ping, width_beams);
@@ -200,10 +200,10 @@ Measured sidelobesOf(const std::vector<CodedPing>& pings, double width_beams) {
                     if (const auto level = view.sidelobeAt(beam, bin)) all.push_back(*level);
     }
     if (all.empty()) return {};
-    const double middle = medianOf(all);
+    const double middle = median(all);
     for (const double level : all) off.push_back(std::abs(level - middle));
     // 1.4826: standard deviation over median deviation of a normal law; for few targets at least 1 dB each.
-    const double deviation = std::max(1.0, 1.4826 * medianOf(off));
+    const double deviation = std::max(1.0, 1.4826 * median(off));
     return {middle, 1.25 * deviation / std::sqrt(static_cast<double>(all.size()))};
 }
 

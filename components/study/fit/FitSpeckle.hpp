@@ -33,7 +33,7 @@ SpeckleMoments momentsOf(const std::vector<CodedPing>& pings, const LevelFit& le
  *  beyond the main lobe; the median over all targets. A target must be unclipped and 25 dB above its surroundings, its
  *  sidelobes 6 dB above them; NaN without a target. @param width_beams of the main lobe at -3 dB [distances of
  *  beams] */
-Measured sidelobesOf(const std::vector<CodedPing>& pings, double width_beams);
+Measured sidelobes(const std::vector<CodedPing>& pings, double width_beams);
 
 /** Returns the sum of the correlations of intensities of beams 1, 2 and 3 spacings apart, for echoes from many places.
  *  It is the square of the autocorrelation of the beam's field (van Cittert and Zernike; Goodman 2007). @param spacing

@@ -347,7 +347,7 @@ void addLevels(const LevelFit& fit, const FitChain& before, double range, std::v
 void addSidelobes(const std::vector<CodedPing>& recorded, FitChain& chain, std::vector<Finding>& findings) {
     constexpr double useful_db = 3;
     acoustics::BeamLaw& law = *chain.sonar.beam_pattern->receive.azimuth;
-    const Measured level = sidelobesOf(recorded, *law.width_deg / *chain.sonar.beam_width_deg);
+    const Measured level = sidelobes(recorded, *law.width_deg / *chain.sonar.beam_width_deg);
     const double off = z_95 * level.error;
     const bool is_determined = level.isKnown() && off <= useful_db;
     findings.push_back({"sidelobe level",
@@ -519,7 +519,7 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
         throw types::ConfigError(recorded.front().file, "",
                                  chain.looks_abeam ? "is not a recording of a side-scan, but the deployment has one"
                                                    : "is a recording of a side-scan, but the deployment has none");
-    takeShape(recorded.front(), chain);
+    copyShape(recorded.front(), chain);
     if (chain.looks_abeam) layLines(recorded.front(), chain);
     const FitChain before = chain;
     prepare(recorded.front(), chain);

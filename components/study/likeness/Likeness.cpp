@@ -418,7 +418,7 @@ std::vector<LikenessFigure> figuresOf(const LikenessRow& row) {
             {"fall_off_apart_db", row.apart.fall_off_db}};
 }
 
-std::string csvOf(const LikenessResult& result) {
+std::string csv(const LikenessResult& result) {
     std::string text = "ping";
     for (const LikenessFigure& figure : figuresOf(result.rows.front())) text += std::string(",") + figure.name;
     for (const LikenessRow& row : result.rows) {
@@ -428,7 +428,7 @@ std::string csvOf(const LikenessResult& result) {
     return text + "\n";
 }
 
-std::string profilesCsvOf(const LikenessResult& result) {
+std::string profilesCsv(const LikenessResult& result) {
     std::string text = "ping,code,share\n";
     for (const LikenessRow& row : result.rows)
         for (size_t code = 0; code < code_classes; ++code)
@@ -465,8 +465,8 @@ types::Image fansOf(const std::vector<CodedPing>& pings) {
 
 void writeReport(const LikenessResult& result, const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
-    write(folder / "likeness.csv", csvOf(result));
-    write(folder / "profiles.csv", profilesCsvOf(result));
+    write(folder / "likeness.csv", csv(result));
+    write(folder / "profiles.csv", profilesCsv(result));
     output::writePng(folder / "fans.png", fansOf(result.shown));
 }
 

@@ -88,8 +88,8 @@ struct LikenessFigure {
 std::vector<LikenessFigure> figuresOf(const LikenessRow& row);
 
 /** Return a line for each row, with its statistics and distances; histograms by code, codes and levels by slice. */
-std::string csvOf(const LikenessResult& result);
-std::string profilesCsvOf(const LikenessResult& result);
+std::string csv(const LikenessResult& result);
+std::string profilesCsv(const LikenessResult& result);
 
 /** Draws pings as fans side by side, grey, codes unchanged. */
 types::Image fansOf(const std::vector<CodedPing>& pings);

@@ -226,7 +226,7 @@ EmbreeTracer::~EmbreeTracer() = default;
 void EmbreeTracer::prepare(const sonar::SonarConfig& config) {
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     Fan& fan = *fan_;
-    fan.tree.takeLaws(config);
+    fan.tree.updateLaws(config);
     fan.columns.clear();
     fan.rows.clear();
     fan.columns_per_beam = config.columnsPerBeam();

@@ -188,7 +188,7 @@ PathTracer::PathTracer(const types::Snapshot& scene)
 
 std::vector<double> PathTracer::render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
                                        uint64_t seed) {
-    tree_.takeLaws(config);
+    tree_.updateLaws(config);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const sonar::Fan beams = sonar::makeBeams(config);
     const double half = std::sin(types::radians(config.beam_height_deg) / 2);

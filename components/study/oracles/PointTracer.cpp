@@ -270,7 +270,7 @@ std::vector<std::vector<double>> weightsOf(const sonar::SonarConfig& config, con
 }
 
 /** Adds echoes of the water of a strip [bin]. */
-void takeWater(Sums& sums, const sonar::BinGrid& grid, double strength) {
+void addWater(Sums& sums, const sonar::BinGrid& grid, double strength) {
     double beyond = 0;
     for (int k = grid.bin_count - 1; k >= 0; --k) {
         const auto bin = static_cast<size_t>(k);
@@ -281,7 +281,7 @@ void takeWater(Sums& sums, const sonar::BinGrid& grid, double strength) {
 }
 
 /** Spreads each bin by the pulse. */
-void takePulse(std::vector<double>& energies, const sonar::BinGrid& grid, const acoustics::PulseConfig& config) {
+void applyPulse(std::vector<double>& energies, const sonar::BinGrid& grid, const acoustics::PulseConfig& config) {
     const acoustics::Pulse pulse(config, grid.speed_of_sound);
     std::vector<double> response;
     for (int m = 0; m < grid.bin_count; ++m)
@@ -303,7 +303,7 @@ void takePulse(std::vector<double>& energies, const sonar::BinGrid& grid, const 
 std::vector<double> PointTracer::render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
                                         uint64_t seed) {
     if (config.hasLayers()) throw std::invalid_argument("points support only homogeneous water, no layers");
-    tree_.takeLaws(config);
+    tree_.updateLaws(config);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const std::vector<Strip> strips = stripsOf(config);
     const bool formed = config.beam_pattern && config.beam_pattern->hasAzimuth();
@@ -336,7 +336,7 @@ std::vector<double> PointTracer::render(const types::Pose& sonar, const sonar::S
                 part.trace(
                     {azimuth(column), azimuth(column + 1) - azimuth(column), sine(row), sine(row + 1) - sine(row)},
                     types::hashed(seed, which, static_cast<uint64_t>(row + 1) << 32 | static_cast<uint32_t>(column)));
-        if (water > 0) takeWater(own, grid, std::pow(10, *config.volume.front().strength_db / 10));
+        if (water > 0) addWater(own, grid, std::pow(10, *config.volume.front().strength_db / 10));
         rays[static_cast<size_t>(number)] = part.rays();
     });
     rays_ = 0;
@@ -351,7 +351,7 @@ std::vector<double> PointTracer::render(const types::Pose& sonar, const sonar::S
                 for (size_t bin = 0; bin < bins; ++bin) energies[beam * bins + bin] += weight * sums[i].echoes[bin];
         }
     });
-    if (config.pulse) takePulse(energies, grid, *config.pulse);
+    if (config.pulse) applyPulse(energies, grid, *config.pulse);
     return energies;
 }
 

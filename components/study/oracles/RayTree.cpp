@@ -107,7 +107,7 @@ RayTree::RayTree(const types::Snapshot& scene)
 
 RayTree::~RayTree() = default;
 
-void RayTree::takeLaws(const sonar::SonarConfig& config) {
+void RayTree::updateLaws(const sonar::SonarConfig& config) {
     const Hearer hearer{config.model, config.frequency_khz, config.speedOfSound()};
     if (std::exchange(received_by_, hearer) == hearer) return;
     laws_ = sonar::makeMaterialLaws(config, *geometry_);

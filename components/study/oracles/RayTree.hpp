@@ -48,7 +48,7 @@ public:
 
     /** Sets the materials' backscatter for a sonar of this configuration; before the first call Lambert's law. A call
      * that changes neither model nor frequency nor speed of sound does nothing. */
-    void takeLaws(const sonar::SonarConfig& config);
+    void updateLaws(const sonar::SonarConfig& config);
     /** Returns sigma_b / cos(theta) of a triangle that is hit along a unit direction, axes of the world, at a range [1,
      *  m]. */
     double backscatter(uint32_t triangle, double cosine, const glm::dvec3& direction, double range) const {

@@ -37,12 +37,12 @@ void Workers::run(int count, Call call, const void* context) {
         ++job_;
     }
     begun_.notify_all();
-    takeTurns();
+    runTurns();
     std::unique_lock lock(mutex_);
     done_.wait(lock, [this] { return busy_ == 0; });
 }
 
-void Workers::takeTurns() {
+void Workers::runTurns() {
     for (int i = next_++; i < count_; i = next_++) call_(context_, i);
 }
 
@@ -54,7 +54,7 @@ void Workers::wait() {
             if (quit_) return;
             last = job_;
         }
-        takeTurns();
+        runTurns();
         const std::lock_guard lock(mutex_);
         if (--busy_ == 0) done_.notify_one();
     }

@@ -29,7 +29,7 @@ public:
 private:
     using Call = void (*)(const void*, int);
     void run(int count, Call call, const void* context);
-    void takeTurns();
+    void runTurns();
     void wait();
     void end();
 

@@ -5,7 +5,7 @@ const protocol = 'insonify.view.v1';
 const first_patience = 30000, patience = 5000;
 
 /** Splits a binary message: u32 kind, u32 size of the JSON, JSON, data. */
-export function takeApart(buffer) {
+export function splitFrame(buffer) {
   const head = new DataView(buffer);
   const kind = head.getUint32(0, true), size = head.getUint32(4, true);
   const json = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 8, size)));
@@ -54,7 +54,7 @@ export class Link {
   }
 
   take(data) {
-    const message = typeof data === 'string' ? JSON.parse(data) : takeApart(data);
+    const message = typeof data === 'string' ? JSON.parse(data) : splitFrame(data);
     this.heard_at = performance.now();
     if (message.type === 'status') this.patience = patience;
     if (message.type !== 'answer') return this.heard(message);

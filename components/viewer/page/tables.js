@@ -96,7 +96,7 @@ function keysOf(block) {
 
 /** Returns the value to set to change a property from `before` to `after`. Setting merges blocks, so removed keys, and
  *  the content of emptied blocks, are set to null. */
-export function settingOf(type, before, after) {
+export function setting(type, before, after) {
   const text = after.trim(), isBlock = (one) => /^\{.*\}$/s.test(one);
   if (!text) return 'null';
   if (type === 'text' || type === 'text, optional') return JSON.stringify(after);  // it may contain YAML syntax: "a: b #c"
@@ -126,7 +126,7 @@ export function fieldOf(link, task, property, control) {
     is_edited = false;
     is_left_alone = true;
     ++unanswered;
-    const value = input.type === 'checkbox' ? input.checked : settingOf(property.type, held(), input.value);
+    const value = input.type === 'checkbox' ? input.checked : setting(property.type, held(), input.value);
     const {refused} = await link.call(`${task}.${setter(property.name)}`, value);
     --unanswered;
     said.textContent = refused ?? '';

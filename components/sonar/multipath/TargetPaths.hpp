@@ -45,7 +45,7 @@ private:
 };
 
 /** One sound path between the sonar and a point. */
-struct TargetWay {
+struct TargetPath {
     static constexpr size_t max_mirrors = MultipathConfig::max_bounces;
 
     double length = 0;                       ///< [m]
@@ -64,16 +64,16 @@ struct TargetWay {
 
 /** All unobstructed sound paths between the sonar and points of the world (ACOUSTICS.md 5.23): the straight path, and
  *  those via the water surface and triangles of mirrors. Uses the image method, in double. */
-class TargetWays {
+class TargetPaths {
 public:
     /** `geometry` must outlive it, and so must `walls`; null: all surfaces hide. */
-    TargetWays(const SonarConfig& config, const types::Geometry& geometry, WallSights* walls = nullptr);
+    TargetPaths(const SonarConfig& config, const types::Geometry& geometry, WallSights* walls = nullptr);
 
     /** Places mirrors and objects; call it once per ping. Ignores paths longer than twice `range_max` [m]. */
     void place(const types::Snapshot& snapshot, double range_max);
-    /** Returns the paths in the order of `TargetWay::mirrors`, the straight one first. They are valid until the next
+    /** Returns the paths in the order of `TargetPath::mirrors`, the straight one first. They are valid until the next
      *  call. */
-    const std::vector<TargetWay>& waysTo(const glm::dvec3& point);
+    const std::vector<TargetPath>& waysTo(const glm::dvec3& point);
 
 private:
     using Chain = std::span<const PlacedMirror* const>;
@@ -92,8 +92,8 @@ private:
     void addWay(const glm::dvec3& point, Chain chain);
     /** Returns where the line from a stop to the image hits a mirror, and adds the mirror to the path. */
     std::optional<glm::dvec3> meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,
-                                   TargetWay& way) const;
-    void addOnce(const TargetWay& way);
+                                   TargetPath& way) const;
+    void addOnce(const TargetPath& way);
 
     int bounces_;
     FlatMirrors flat_;
@@ -108,7 +108,7 @@ private:
 
     std::vector<glm::dvec3> images_;  ///< The point's image in each mirror [m].
     std::vector<double> distances_;   ///< From each mirror's plane to the point [m].
-    std::vector<TargetWay> ways_;
+    std::vector<TargetPath> ways_;
     glm::dvec3 sonar_{0};
     glm::dquat sonar_from_world_{1, 0, 0, 0};
     double longest_ = 0;  ///< [m]

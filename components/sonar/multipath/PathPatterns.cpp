@@ -1,4 +1,4 @@
-#include "components/sonar/multipath/WayPatterns.hpp"
+#include "components/sonar/multipath/PathPatterns.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr size_t table_cells = 1024;
 
 }  // namespace
 
-WayPatterns::WayPatterns(const RenderPlan& plan)
+PathPatterns::PathPatterns(const RenderPlan& plan)
     : plan_(plan),
       conical_(plan.features.has(Feature::Conical)),
       has_azimuth_(plan.has(Pass::Beamform)),
@@ -38,21 +38,21 @@ WayPatterns::WayPatterns(const RenderPlan& plan)
                                              -pi, pi, bound, table_cells);
 }
 
-WayPatterns::Way WayPatterns::wayOf(const glm::dvec3& direction) const {
-    return {beamAzimuthOf(direction, conical_), direction.z, !conical_ || direction.x >= 0};
+PathPatterns::Way PathPatterns::wayOf(const glm::dvec3& direction) const {
+    return {beamAzimuth(direction, conical_), direction.z, !conical_ || direction.x >= 0};
 }
 
-double WayPatterns::elevation(const acoustics::AdaptiveTable& table, double sine) const {
+double PathPatterns::elevation(const acoustics::AdaptiveTable& table, double sine) const {
     if (!(std::abs(sine) <= reach_)) return 0;
     return table.empty() ? 1 : table.at(sine);
 }
 
-double WayPatterns::sentAzimuth(double azimuth) const {
+double PathPatterns::sentAzimuth(double azimuth) const {
     if (!has_azimuth_) return plan_.cells.spans(azimuth) ? 1 : 0;
     return azimuths_.at(std::remainder(azimuth, 2 * pi));
 }
 
-double WayPatterns::power(const Way& sent, const Way& received) const {
+double PathPatterns::power(const Way& sent, const Way& received) const {
     if (!sent.received || !received.received) return 0;
     const double here = sentAzimuth(received.azimuth);
     return here > 0
@@ -60,12 +60,12 @@ double WayPatterns::power(const Way& sent, const Way& received) const {
                : 0;
 }
 
-double WayPatterns::received(const Way& way) const {
+double PathPatterns::received(const Way& way) const {
     const double here = way.received ? sentAzimuth(way.azimuth) : 0;
     return here > 0 ? elevation(received_, way.sine) / here : 0;
 }
 
-bool WayPatterns::inOneBeam(const Way& a, const Way& b) const {
+bool PathPatterns::inOneBeam(const Way& a, const Way& b) const {
     return std::abs(std::remainder(a.azimuth - b.azimuth, 2 * pi)) < beam_width_;
 }
 

@@ -1,4 +1,4 @@
-#include "components/sonar/multipath/TargetWays.hpp"
+#include "components/sonar/multipath/TargetPaths.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ double distanceFrom(const MirrorPlane& plane, const glm::dvec3& point) {
 }
 
 /** Returns the rounding of places: a few units in the last digit of their coordinates; intersections add some. */
-double doubtOf(std::span<const PlacedMirror> mirrors, const glm::dvec3& sonar, double longest) {
+double doubt(std::span<const PlacedMirror> mirrors, const glm::dvec3& sonar, double longest) {
     Box all;
     all.add(sonar);
     for (const PlacedMirror& mirror : mirrors)
@@ -71,7 +71,7 @@ double WallSights::pass(const Sightlines::WallMet& met, WallArrivals& arrivals) 
     return wall.exactly_once(met.cosine);
 }
 
-TargetWays::TargetWays(const SonarConfig& config, const types::Geometry& geometry, WallSights* walls)
+TargetPaths::TargetPaths(const SonarConfig& config, const types::Geometry& geometry, WallSights* walls)
     : bounces_(config.tracesPaths() ? config.multipath->bounces : 0),
       flat_(geometry, bounces_),
       sightlines_(geometry, flat_.all().empty() ? Sightlines::Lines::Few : Sightlines::Lines::Many),
@@ -81,11 +81,11 @@ TargetWays::TargetWays(const SonarConfig& config, const types::Geometry& geometr
       reach_(bounces_ > 1 ? mirrors_.size() : 0),
       images_(mirrors_.size()),
       distances_(mirrors_.size()) {
-    static_assert(TargetWay::max_mirrors == 2, "waysTo() looks for ways by one mirror and by two");
+    static_assert(TargetPath::max_mirrors == 2, "waysTo() looks for ways by one mirror and by two");
     ways_.reserve(std::min(max_reserved, 1 + mirrors_.size() * (1 + mirrors_.size())));
 }
 
-void TargetWays::place(const types::Snapshot& snapshot, double range_max) {
+void TargetPaths::place(const types::Snapshot& snapshot, double range_max) {
     sightlines_.place(snapshot);
     sonar_ = snapshot.sonar.position;
     sonar_from_world_ = glm::conjugate(snapshot.sonar.orientation);
@@ -94,7 +94,7 @@ void TargetWays::place(const types::Snapshot& snapshot, double range_max) {
     if (bounces_ > 0) placeMirrors(snapshot, range_max);
 }
 
-void TargetWays::placeMirrors(const types::Snapshot& snapshot, double range_max) {
+void TargetPaths::placeMirrors(const types::Snapshot& snapshot, double range_max) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     water_.place(snapshot, range_max);
     flat_.place(snapshot);
@@ -111,25 +111,25 @@ void TargetWays::placeMirrors(const types::Snapshot& snapshot, double range_max)
         for (const glm::dvec3& corner : flat.outline) mirror.box.add(corner);
         mirror.is_there = flat.is_there && distanceTo(mirror.box, sonar_) <= longest_ * (1 + same);
     }
-    doubt_ = doubtOf(mirrors_, sonar_, longest_);
+    doubt_ = doubt(mirrors_, sonar_, longest_);
     for (PlacedMirror& mirror : mirrors_) {
         mirror.sonar_image = mirror.plane.image(sonar_);
         mirror.sonar_side = distanceFrom(mirror.plane, sonar_);
     }
 }
 
-const std::vector<TargetWay>& TargetWays::waysTo(const glm::dvec3& point) {
+const std::vector<TargetPath>& TargetPaths::waysTo(const glm::dvec3& point) {
     ways_.clear();
     arrivals_count_ = 0;
     if (bounces_ > 0 && mirrors_.front().is_there && !(point.z < mirrors_.front().plane.distance)) return ways_;
     addWay(point, {});
     if (bounces_ > 0) addByOne(point);
     if (bounces_ > 1) addByTwo(point);
-    std::ranges::sort(ways_, {}, &TargetWay::mirrors);
+    std::ranges::sort(ways_, {}, &TargetPath::mirrors);
     return ways_;
 }
 
-void TargetWays::addByOne(const glm::dvec3& point) {
+void TargetPaths::addByOne(const glm::dvec3& point) {
     for (size_t i = 0; i < mirrors_.size(); ++i) {
         const PlacedMirror& mirror = mirrors_[i];
         if (!mirror.is_there) continue;
@@ -142,7 +142,7 @@ void TargetWays::addByOne(const glm::dvec3& point) {
 
 /** Adds the paths via two mirrors. Unfolded, a path via two mirrors is a line from the sonar's image in the first to
  *  the point's image in the second, which intersects both. */
-void TargetWays::addByTwo(const glm::dvec3& point) {
+void TargetPaths::addByTwo(const glm::dvec3& point) {
     if (!std::exchange(has_reach_, true)) reach_.place(mirrors_, longest_, doubt_);
     for (size_t i = 0; i < mirrors_.size(); ++i) {
         const PlacedMirror& first = mirrors_[i];
@@ -157,8 +157,8 @@ void TargetWays::addByTwo(const glm::dvec3& point) {
     }
 }
 
-bool TargetWays::mayMeet(const PlacedMirror& mirror, const glm::dvec3& from, double distance, const glm::dvec3& image,
-                         double image_distance) const {
+bool TargetPaths::mayMeet(const PlacedMirror& mirror, const glm::dvec3& from, double distance, const glm::dvec3& image,
+                          double image_distance) const {
     constexpr double grazing = 1e-4, rounded = 1e5;
     const double a = std::abs(distance), b = std::abs(image_distance);
     if (a > doubt_ && b > doubt_ && distance * image_distance < 0) return false;
@@ -166,16 +166,16 @@ bool TargetWays::mayMeet(const PlacedMirror& mirror, const glm::dvec3& from, dou
     return holds(mirror.box, from + a / (a + b) * (image - from), rounded * doubt_);
 }
 
-void TargetWays::addWay(const glm::dvec3& point, Chain chain) {
+void TargetPaths::addWay(const glm::dvec3& point, Chain chain) {
     // The image seen behind the first k mirrors of the chain: the point's image in the mirrors after them.
-    std::array<glm::dvec3, TargetWay::max_mirrors + 1> images;
+    std::array<glm::dvec3, TargetPath::max_mirrors + 1> images;
     images[chain.size()] = point;
     for (size_t k = chain.size(); k-- > 0;) images[k] = chain[k]->plane.image(images[k + 1]);
-    TargetWay way;
+    TargetPath way;
     way.length = glm::distance(sonar_, images[0]);
     if (!(way.length > 0 && way.length <= longest_)) return;
     way.direction = sonar_from_world_ * ((images[0] - sonar_) / way.length);
-    std::array<glm::dvec3, TargetWay::max_mirrors + 2> stops{sonar_};
+    std::array<glm::dvec3, TargetPath::max_mirrors + 2> stops{sonar_};
     for (const PlacedMirror* mirror : chain) {
         const auto k = static_cast<size_t>(way.reflections);
         const auto at = meet(*mirror, stops[k], images[k], way);
@@ -196,13 +196,13 @@ void TargetWays::addWay(const glm::dvec3& point, Chain chain) {
     addOnce(way);
 }
 
-WallArrivals& TargetWays::newArrivals() {
+WallArrivals& TargetPaths::newArrivals() {
     if (arrivals_count_ == arrivals_.size()) arrivals_.emplace_back();
     return arrivals_[arrivals_count_++] = {};
 }
 
-std::optional<glm::dvec3> TargetWays::meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,
-                                           TargetWay& way) const {
+std::optional<glm::dvec3> TargetPaths::meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,
+                                            TargetPath& way) const {
     const double here = distanceFrom(mirror.plane, from), there = distanceFrom(mirror.plane, image);
     // A path may leave a first mirror where it joins the second; then the sonar's side decides.
     const bool in_corner = std::abs(here) <= doubt_;
@@ -222,8 +222,8 @@ std::optional<glm::dvec3> TargetWays::meet(const PlacedMirror& mirror, const glm
 }
 
 /** Adds a path once: mirrors of several objects may share an edge or overlap, and their reflections are one path. */
-void TargetWays::addOnce(const TargetWay& way) {
-    const auto isSame = [&](const TargetWay& other) {
+void TargetPaths::addOnce(const TargetPath& way) {
+    const auto isSame = [&](const TargetPath& other) {
         return other.reflections == way.reflections && std::abs(other.length - way.length) <= same * way.length &&
                glm::distance(other.direction, way.direction) <= same;
     };

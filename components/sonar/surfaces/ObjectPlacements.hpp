@@ -17,10 +17,10 @@ struct Reach {
 };
 
 /** The places of a scene's objects relative to the sonar in this ping. */
-class ObjectPlaces {
+class ObjectPlacements {
 public:
     /** `geometry` must outlive it. `all`: objects out of range are placed as well. */
-    ObjectPlaces(const types::Geometry& geometry, const Reach& reach, bool all);
+    ObjectPlacements(const types::Geometry& geometry, const Reach& reach, bool all);
 
     /** Places the objects; call it once per ping. */
     void place(const types::Snapshot& snapshot);

@@ -8,9 +8,9 @@ namespace insonify::sonar {
 
 /** Power of a sonar's beam pattern on the path out and on the path back (ACOUSTICS.md 5.9), and the cells that receive
  *  it. */
-class WayPatterns {
+class PathPatterns {
 public:
-    explicit WayPatterns(const RenderPlan& plan);
+    explicit PathPatterns(const RenderPlan& plan);
 
     /** A direction in sonar axes. */
     struct Way {
