@@ -72,6 +72,7 @@ EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects) {
 
 EchoRules makeEnergyRules(RenderPlan plan, const PingEffects& effects) {
     plan.features = plan.features.without(Feature::Speckle);
+    plan.summed = plan.grid;
     return makeEchoRules(plan, effects);
 }
 
