@@ -8,22 +8,6 @@
 
 namespace insonify::acoustics {
 
-/** A fluid that fills the space below a plane. The ratios are to the water above [1]. */
-struct HalfSpace {
-    double density_ratio = 1, speed_ratio = 1;
-    double loss = 0;  ///< delta: imaginary over real part of the wave number [1].
-};
-HalfSpace halfSpace(const Seabed& seabed);
-
-/** Returns kappa = (1 + i delta) / nu: the wave number in the half-space over that in the water [1]. */
-std::complex<double> waveNumberRatio(const HalfSpace& half_space);
-/** Returns Rayleigh's reflection coefficient of the sound pressure at a grazing angle [rad], with loss. A fast
- *  half-space reflects totally below its critical angle arccos(1 / nu). ACOUSTICS.md 3.7. */
-std::complex<double> halfSpaceReflection(const HalfSpace& half_space, double grazing);
-/** Returns Y at a grazing angle [rad]: a slightly rough surface of spectrum W [m^4] scatters
- *  4 k^4 sin^4 |Y|^2 W(2 k cos) back (Kuo 1964; ACOUSTICS.md 3.5). */
-std::complex<double> roughnessAmplitude(const HalfSpace& half_space, double grazing);
-
 /** The parameters of the seabed model of APL-UW TR 9407 (1994, section IV, table 1). Ratios are to the water above. */
 struct Seabed {
     double density_ratio = 1;       ///< rho, 1 to 3 [1].
@@ -45,6 +29,22 @@ std::optional<Seabed> seabedNamed(std::string_view name);
 /** Returns the mean grain size of a name [phi]; none for rocks, cobble and gravel. */
 std::optional<double> grainSizeNamed(std::string_view name);
 std::vector<std::string> seabedNames();
+
+/** A fluid that fills the space below a plane. The ratios are to the water above [1]. */
+struct HalfSpace {
+    double density_ratio = 1, speed_ratio = 1;
+    double loss = 0;  ///< delta: imaginary over real part of the wave number [1].
+};
+HalfSpace halfSpace(const Seabed& seabed);
+
+/** Returns kappa = (1 + i delta) / nu: the wave number in the half-space over that in the water [1]. */
+std::complex<double> waveNumberRatio(const HalfSpace& half_space);
+/** Returns Rayleigh's reflection coefficient of the sound pressure at a grazing angle [rad], with loss. A fast
+ *  half-space reflects totally below its critical angle arccos(1 / nu). ACOUSTICS.md 3.7. */
+std::complex<double> halfSpaceReflection(const HalfSpace& half_space, double grazing);
+/** Returns Y at a grazing angle [rad]: a slightly rough surface of spectrum W [m^4] scatters
+ *  4 k^4 sin^4 |Y|^2 W(2 k cos) back (Kuo 1964; ACOUSTICS.md 3.5). */
+std::complex<double> roughnessAmplitude(const HalfSpace& half_space, double grazing);
 
 /** Backscattering cross section of a seabed after APL-UW TR 9407 (1994), section IV.C: its rough interface and its
  *  volume. The interface uses Kirchhoff's approximation near the vertical and composite roughness elsewhere; a very

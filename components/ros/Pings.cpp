@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "components/ros/Clouds.hpp"
-#include "components/ros/Echoes.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/BeamArc.hpp"
 

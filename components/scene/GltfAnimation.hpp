@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "components/scene/Animation.hpp"
-#include "components/scene/GltfAccessor.hpp"
 #include "components/scene/GltfFile.hpp"
 #include "types/Geometry.hpp"
 

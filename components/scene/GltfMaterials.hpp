@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "components/scene/GltfAccessor.hpp"
 #include "components/scene/GltfFile.hpp"
 #include "types/Geometry.hpp"
 

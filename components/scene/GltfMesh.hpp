@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "components/scene/GltfAccessor.hpp"
 #include "components/scene/GltfAnimation.hpp"
+#include "components/scene/GltfFile.hpp"
 #include "components/scene/GltfMaterials.hpp"
 #include "components/scene/Surface.hpp"
 #include "types/Geometry.hpp"

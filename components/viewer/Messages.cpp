@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Echoes.hpp"
+#include "components/ros/Clouds.hpp"
 #include "components/ros/Stamps.hpp"
 #include "components/viewer/PingPicture.hpp"
 #include "types/BeamArc.hpp"

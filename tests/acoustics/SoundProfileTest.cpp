@@ -5,7 +5,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "components/acoustics/SoundProfile.hpp"
+#include "components/acoustics/SoundSpeed.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/dataset/Instances.hpp"
+#include "components/dataset/Annotate.hpp"
 
 namespace insonify::dataset {
 namespace {

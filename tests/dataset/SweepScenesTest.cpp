@@ -3,7 +3,7 @@
 #include <functional>
 #include <set>
 
-#include "components/dataset/commands/SweepScenes.hpp"
+#include "components/dataset/commands/SweepFile.hpp"
 #include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 

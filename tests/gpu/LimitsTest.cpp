@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/gpu/Limits.hpp"
 #include "tests/support/PromisedLimits.hpp"
 
 namespace insonify::gpu {

@@ -1,4 +1,4 @@
-#include "components/meshes/ModelPaths.hpp"
+#include "components/meshes/FileMeshes.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 
 namespace insonify::sdf {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <functional>
 
-#include "components/acoustics/SoundProfile.hpp"
+#include "components/acoustics/SoundSpeed.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-#include "components/gpu/Limits.hpp"
+#include "components/gpu/EglContext.hpp"
 
 namespace insonify::test {
 

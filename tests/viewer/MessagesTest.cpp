@@ -6,7 +6,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/viewer/Messages.hpp"
-#include "components/viewer/ViewerConfig.hpp"
+#include "components/viewer/Publisher.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"

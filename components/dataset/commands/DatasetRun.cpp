@@ -15,7 +15,6 @@
 #include "components/console/Json.hpp"
 #include "components/console/Sha256.hpp"
 #include "components/dataset/commands/SweepFile.hpp"
-#include "components/dataset/commands/SweepScenes.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"

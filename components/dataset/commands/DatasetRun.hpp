@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "components/dataset/Instances.hpp"
+#include "components/dataset/Annotate.hpp"
 #include "components/dataset/SampleFiles.hpp"
 #include "components/dataset/Samples.hpp"
 #include "components/dataset/Sweep.hpp"

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "components/log/Writer.hpp"
-#include "components/log/mcap/Bag.hpp"
 #include "components/log/mcap/ChunkWriter.hpp"
+#include "components/log/mcap/Reader.hpp"
 #include "components/log/mcap/Transforms.hpp"
 #include "components/ros/Samples.hpp"
 

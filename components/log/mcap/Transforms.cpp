@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "components/log/mcap/Bag.hpp"
+#include "components/log/mcap/Reader.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Poses.hpp"

@@ -7,8 +7,8 @@
 #include "components/sonar/bins/CellDeposit.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/bins/Estimators.hpp"
+#include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/plan/Effect.hpp"
-#include "components/sonar/plan/ScattererLattice.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

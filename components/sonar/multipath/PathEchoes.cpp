@@ -13,7 +13,7 @@
 #include "components/sonar/multipath/PathCells.hpp"
 #include "components/sonar/multipath/PathPatterns.hpp"
 #include "components/sonar/multipath/WallRay.hpp"
-#include "components/sonar/plan/ScattererLattice.hpp"
+#include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "types/Angle.hpp"

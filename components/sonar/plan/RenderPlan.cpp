@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/plan/Effects.hpp"
-#include "components/sonar/plan/ScattererLattice.hpp"
 #include "types/Angle.hpp"
 #include "types/Ascii.hpp"
 

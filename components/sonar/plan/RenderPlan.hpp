@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "components/acoustics/Absorption.hpp"
-#include "components/acoustics/SoundProfile.hpp"
+#include "components/acoustics/SoundSpeed.hpp"
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/beams/Directivity.hpp"

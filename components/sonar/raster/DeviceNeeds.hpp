@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "components/gpu/Limits.hpp"
+#include "components/gpu/EglContext.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/raster/PictureDeposit.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "components/acoustics/SoundProfile.hpp"
+#include "components/acoustics/SoundSpeed.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/surfaces/Motion.hpp"

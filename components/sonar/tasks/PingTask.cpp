@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "components/acoustics/BeamPattern.hpp"
-#include "components/acoustics/SoundProfile.hpp"
+#include "components/acoustics/SoundSpeed.hpp"
 #include "components/framework/Activity.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/multipath/OtherSonars.hpp"

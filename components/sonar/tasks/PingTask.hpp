@@ -10,7 +10,7 @@
 #include "components/sonar/base/Counters.hpp"
 #include "components/sonar/bins/Detection.hpp"
 #include "components/sonar/multipath/OtherSonars.hpp"
-#include "components/sonar/renderer/PingDiagnostics.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
 #include "components/sonar/renderer/QualityKeeper.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/tasks/TriggeredTask.hpp"

@@ -9,6 +9,17 @@
 
 namespace insonify::study {
 
+/** The value of one property of the device or its surroundings, found from a recording. */
+struct Finding {
+    std::string name, unit;
+    Fitted found;
+    bool is_determined = false;  ///< Whether the interval is small enough to be useful, see `text`.
+    std::string note = {};       ///< The method, or why the value is not determined.
+
+    /** Returns "24.2 (23.9 to 24.6) dB", or "not determined by this recording: ...". */
+    std::string text() const;
+};
+
 /** Fits the speckle of a device that averages several looks in each bin, like most side-scans. Its intensities vary
  *  less than those of one look, which fields of scatterers cannot reproduce. It is drawn for each bin before the
  *  receiver, as the mean of looks over a gamma-distributed texture (K law).
@@ -41,17 +52,6 @@ private:
     int looks_ = 1;
     double inverse_ = 0;  ///< 1 / shape [1].
     double bins_ = 0;     ///< Target of the filter: the sum of the correlations of the first three lags [1].
-};
-
-/** The value of one property of the device or its surroundings, found from a recording. */
-struct Finding {
-    std::string name, unit;
-    Fitted found;
-    bool is_determined = false;  ///< Whether the interval is small enough to be useful, see `text`.
-    std::string note = {};       ///< The method, or why the value is not determined.
-
-    /** Returns "24.2 (23.9 to 24.6) dB", or "not determined by this recording: ...". */
-    std::string text() const;
 };
 
 /** Properties of a sonar, fitted to a recording. */
