@@ -170,7 +170,7 @@ types::Time ArisFile::timeOf(std::span<const char> header) const {
     return {static_cast<int64_t>(time)};
 }
 
-std::optional<RecordedFile::Stated> ArisFile::stated(std::span<const char> header) {
+std::optional<RecordingReader::Stated> ArisFile::stated(std::span<const char> header) {
     const auto number = [&](size_t at) { return numberAt(header, at); };
     const double north = field<double>(header, aris::latitude), east = field<double>(header, aris::longitude);
     const bool has_place = north != 0 || east != 0;

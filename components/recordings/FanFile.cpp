@@ -58,7 +58,7 @@ void FanFile::setBins(std::span<const double> bearings, uint32_t first, std::spa
 std::vector<std::string> FanFile::notices() const {
     std::vector<std::string> all;
     if (!damage_.empty()) all.push_back(damage_);
-    for (std::string& notice : RecordedFile::notices()) all.push_back(std::move(notice));
+    for (std::string& notice : RecordingReader::notices()) all.push_back(std::move(notice));
     return all;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "components/recordings/RecordedFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 
 namespace insonify::recordings {
 
@@ -20,7 +20,7 @@ struct FanFrame {
 };
 
 /** Reads a recording of a forward-looking sonar with samples of 8 bits, ping by ping. */
-class FanFile : public RecordedFile {
+class FanFile : public RecordingReader {
 public:
     static constexpr int code_bits = 8;
 
@@ -33,7 +33,7 @@ public:
 
 protected:
     /** Throws types::ConfigError for a file that cannot be read. */
-    explicit FanFile(const std::filesystem::path& path) : RecordedFile(path, "a recording of a sonar") {}
+    explicit FanFile(const std::filesystem::path& path) : RecordingReader(path, "a recording of a sonar") {}
 
     /** Returns the next ping, or fails. */
     virtual std::optional<FanFrame> read() = 0;

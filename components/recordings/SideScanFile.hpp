@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "components/recordings/RecordedFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "components/recordings/Xtf.hpp"
 
 namespace insonify::recordings {
@@ -17,7 +17,7 @@ struct SideScanLine {
 };
 
 /** Reads a recording of a side-scan ping by ping. */
-class SideScanFile : public RecordedFile {
+class SideScanFile : public RecordingReader {
 public:
     /** Returns the next ping; none at the end of the file. Throws types::ConfigError with the byte of damage. A packet
      *  truncated by the end of the file is not damage. */
@@ -25,7 +25,7 @@ public:
 
 protected:
     /** Throws types::ConfigError for a file that cannot be read. */
-    explicit SideScanFile(const std::filesystem::path& path) : RecordedFile(path, "a recording of a side-scan") {}
+    explicit SideScanFile(const std::filesystem::path& path) : RecordingReader(path, "a recording of a side-scan") {}
 
     /** Adds a beam of bin_count bins: `count` samples from bin `first` on, and no echo in the others. */
     static void appendBeam(bool is_port, uint32_t first, uint32_t count, auto&& sample, types::Sonar& ping) {

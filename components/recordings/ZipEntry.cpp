@@ -7,7 +7,7 @@
 #include <fstream>
 #include <vector>
 
-#include "components/recordings/RecordedFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::recordings {

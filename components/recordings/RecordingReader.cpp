@@ -1,4 +1,4 @@
-#include "components/recordings/RecordedFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 
 #include <fmt/format.h>
 
@@ -9,20 +9,20 @@
 
 namespace insonify::recordings {
 
-RecordedFile::RecordedFile(const std::filesystem::path& path, const char* kind)
+RecordingReader::RecordingReader(const std::filesystem::path& path, const char* kind)
     : path_(path), file_(path, std::ios::binary) {
     if (!file_ || std::filesystem::is_directory(path))
         throw types::ConfigError(path.string(), "", std::string("cannot be read; it must be ") + kind);
     size_ = std::filesystem::file_size(path);
 }
 
-void RecordedFile::fail(uint64_t byte, const std::string& why) const { fail(fmt::format("byte {}", byte), why); }
+void RecordingReader::fail(uint64_t byte, const std::string& why) const { fail(fmt::format("byte {}", byte), why); }
 
-void RecordedFile::fail(const std::string& place, const std::string& why) const {
+void RecordingReader::fail(const std::string& place, const std::string& why) const {
     throw types::ConfigError(path_.string(), place, why);
 }
 
-std::vector<char> RecordedFile::take(uint64_t at, size_t size) {
+std::vector<char> RecordingReader::take(uint64_t at, size_t size) {
     std::vector<char> bytes(static_cast<size_t>(std::min<uint64_t>(size, size_ - std::min(at, size_))));
     file_.clear();
     file_.seekg(static_cast<std::streamoff>(at));
@@ -31,7 +31,7 @@ std::vector<char> RecordedFile::take(uint64_t at, size_t size) {
     return bytes;
 }
 
-void RecordedFile::setResolution(double resolution, double speed_of_sound, types::Sonar& ping) {
+void RecordingReader::setResolution(double resolution, double speed_of_sound, types::Sonar& ping) {
     ping.setBins(resolution, speed_of_sound);
     if (ping.bin_width > 0 && rounding_.empty())
         rounding_ = fmt::format(
@@ -40,7 +40,7 @@ void RecordedFile::setResolution(double resolution, double speed_of_sound, types
             1e6 * ping.binSeconds(), ping.bin_duration.microseconds, ping.writtenSpeed(), speed_of_sound);
 }
 
-types::Pose RecordedFile::placed(types::Time time, const std::optional<Stated>& stated) {
+types::Pose RecordingReader::placed(types::Time time, const std::optional<Stated>& stated) {
     const auto isWithin = [](double limit, std::initializer_list<double> values) {
         return std::ranges::all_of(values, [&](double value) { return std::abs(value) <= limit; });
     };
@@ -66,7 +66,7 @@ types::Pose RecordedFile::placed(types::Time time, const std::optional<Stated>& 
     return pose;
 }
 
-std::vector<std::string> RecordedFile::notices() const {
+std::vector<std::string> RecordingReader::notices() const {
     std::vector<std::string> all;
     if (cut_off_) all.push_back(fmt::format("the packet at byte {} is cut off by the end of the file", *cut_off_));
     if (!rounding_.empty()) all.push_back(rounding_);

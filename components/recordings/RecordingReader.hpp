@@ -65,11 +65,11 @@ T field(std::span<const char> bytes, size_t at) {
 /** Reads the file of another program or device packet by packet: bytes, places of damage, poses and ranges.
  *
  *  Bins keep their slant ranges, see types::RangeBins. Poses are the sonar's, in metres from LocalOrigin. */
-class RecordedFile {
+class RecordingReader {
 public:
-    virtual ~RecordedFile() = default;
-    RecordedFile(const RecordedFile&) = delete;
-    RecordedFile& operator=(const RecordedFile&) = delete;
+    virtual ~RecordingReader() = default;
+    RecordingReader(const RecordingReader&) = delete;
+    RecordingReader& operator=(const RecordingReader&) = delete;
 
     /** Returns the place of x = y = 0 of the poses; empty before the first pose. */
     const std::string& origin() const { return origin_.text(); }
@@ -85,7 +85,7 @@ protected:
     };
 
     /** Throws types::ConfigError for a file that cannot be read. @param kind "a recording of a side-scan" */
-    RecordedFile(const std::filesystem::path& path, const char* kind);
+    RecordingReader(const std::filesystem::path& path, const char* kind);
 
     [[noreturn]] void fail(uint64_t byte, const std::string& why) const;
     /** @param place "log.dat, byte 21" */
