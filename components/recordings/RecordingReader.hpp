@@ -8,11 +8,14 @@
 #include <fstream>
 #include <glm/vec2.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "components/receiver/ReceiverConfig.hpp"
 #include "types/Angle.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
@@ -62,15 +65,63 @@ T field(std::span<const char> bytes, size_t at) {
     return value;
 }
 
-/** Reads the file of another program or device packet by packet: bytes, places of damage, poses and ranges.
+/** What the pings of a recording are: fans of a forward-looking sonar, or lines of a side-scan. */
+enum class RecordedShape { Fan, Line };
+
+class RecordingReader;
+
+/** A format of recordings: a line of the table in RecordingReader.cpp, from which files are recognised and messages are
+ *  made. */
+struct RecordingFormat {
+    std::string_view ending;  ///< Of the files, in lower case; empty: any.
+    const char* name;         ///< For messages: "XTF".
+    const char* device;       ///< For messages: "a side-scan".
+    RecordedShape shape;
+    std::string_view signature;  ///< The first bytes of each file; empty: any bytes.
+    std::unique_ptr<RecordingReader> (*open)(const std::filesystem::path&) = nullptr;  ///< Null: of `component`.
+    const char* component = nullptr;  ///< Its component library, with the function insonify_open_recording.
+};
+/** The formats that can be read; the last one, without a signature, is tried for files that are of no other. */
+std::span<const RecordingFormat> recordingFormats();
+/** Returns the format with the ending of a file, in any case of letters; null: none has it. */
+const RecordingFormat* findRecordingFormat(const std::filesystem::path& file);
+/** Returns the endings as a message lists them: ".xtf, .jsf or .aris". */
+std::string recordingEndings();
+
+/** A ping of a recording, in the frames and units of a simulated one. */
+struct RecordedPing {
+    types::Sonar ping;  ///< Beams from starboard to port, nearest bin first; a line's are those of sonar::SideScanTask.
+    types::Pose sonar;  ///< In the world; not finite: unknown.
+    uint32_t number = 0;        ///< As the file states it, or counted from 0.
+    double since_first = 0;     ///< Time since the first ping [s].
+    double altitude = 0;        ///< Above the bottom [m]; 0: unknown.
+    double frequency_khz = 0;   ///< 0: unknown.
+    double speed_of_sound = 0;  ///< As the file states it [m/s]; 0: unknown.
+    double range = 0;           ///< Slant range of the end of the last bin [m].
+    double window_start = 0;    ///< Slant range of the first sample [m]; the bins before it are 0.
+    double max_code = 0;        ///< Max code of the device; 0: bins are no codes.
+    receiver::CodeConfig code;  ///< The law of the codes as far as the file states it; at most 16 bits.
+    bool law_known = false;     ///< Whether the file states the law.
+};
+
+/** Reads the recording of another program or device, ping by ping. This class checks what all formats share: the file,
+ *  its first bytes, that it has a ping, the place of damage. A format's reader derives from it, and reads packets.
  *
  *  Bins keep their slant ranges, see types::RangeBins. Poses are the sonar's, in metres from LocalOrigin. */
 class RecordingReader {
 public:
+    /** Opens a recording by its content. Throws types::ConfigError for a file that does not exist, is a folder or
+     * empty, or cannot be read, and for a damaged beginning. */
+    static std::unique_ptr<RecordingReader> open(const std::filesystem::path& file);
     virtual ~RecordingReader() = default;
     RecordingReader(const RecordingReader&) = delete;
     RecordingReader& operator=(const RecordingReader&) = delete;
 
+    const RecordingFormat& format() const { return format_; }
+    /** Returns the next ping; none at the end of the file. Throws types::ConfigError if the file has no ping, or with
+     *  the byte at which the first ping is damaged. Later damage ends the pings, with a notice; a packet that the end
+     * of the file cuts off is no damage. */
+    std::optional<RecordedPing> next();
     /** Returns the place of x = y = 0 of the poses; empty before the first pose. */
     const std::string& origin() const { return origin_.text(); }
     /** Returns what was omitted or is unknown in the pings so far. */
@@ -84,12 +135,17 @@ protected:
         double depth = 0, heading = 0, pitch = 0, roll = 0;  ///< Pitch is positive bow up, roll to starboard.
     };
 
-    /** Throws types::ConfigError for a file that cannot be read. @param kind "a recording of a side-scan" */
-    RecordingReader(const std::filesystem::path& path, const char* kind);
+    /** Throws as open(). */
+    explicit RecordingReader(const std::filesystem::path& path);
+
+    /** Returns the next ping, none at the end of the file, or fails. */
+    virtual std::optional<RecordedPing> read() = 0;
 
     [[noreturn]] void fail(uint64_t byte, const std::string& why) const;
     /** @param place "log.dat, byte 21" */
     [[noreturn]] void fail(const std::string& place, const std::string& why) const;
+    /** Returns what is wrong with a time since the epoch [us], or with its order; empty if nothing is. */
+    std::string diagnosticOf(double time_us) const;
     /** Returns at most `size` bytes of the file. */
     std::vector<char> take(uint64_t at, size_t size);
     /** Returns the packet at `next_`, which becomes `at_`; its header has `header` bytes. Empty at the end of the file.
@@ -108,7 +164,21 @@ protected:
         return take(at_, static_cast<size_t>(bytes));
     }
     /** Sets bins of this length [m]; notes if logs contain another speed of sound for it [m/s]. */
-    void setResolution(double resolution, double speed_of_sound, types::Sonar& ping);
+    void setResolution(double resolution, double speed_of_sound, RecordedPing& to);
+    /** Sets the beams and bins of a fan from samples of 8 bits: `first` bins without echo, then the samples, all beams
+     *  of the nearest range first. @param bearings of the samples' beams, in any order [rad] */
+    void setFan(std::span<const double> bearings, uint32_t first, std::span<const char> samples, RecordedPing& to);
+    /** Adds a side of a line, a beam of bin_count bins: `count` samples from bin `first` on, no echo in the others. */
+    static void appendSide(bool is_port, uint32_t first, uint32_t count, auto&& sample, types::Sonar& ping) {
+        const size_t begin = ping.bins.size();
+        ping.bins.resize(begin + ping.bin_count);
+        for (uint32_t i = 0; i < count; ++i) {
+            const float bin = sample(i);
+            ping.bins[begin + first + i] = std::isfinite(bin) ? bin : std::numeric_limits<float>::quiet_NaN();
+        }
+        ping.bearings.push_back(types::Angle::fromDeg(is_port ? 90 : -90));
+        ++ping.beam_count;
+    }
     /** Returns the pose in the world; unknown if it is not stated or not on the earth. */
     types::Pose placed(types::Time time, const std::optional<Stated>& stated);
 
@@ -117,8 +187,12 @@ protected:
 
 private:
     std::filesystem::path path_;
+    const RecordingFormat& format_;
     std::ifstream file_;
     LocalOrigin origin_;
+    types::Time first_, last_;         ///< Times of the first ping and the last one so far.
+    uint32_t count_ = 0;               ///< Pings so far.
+    std::string damage_;               ///< The damage that ended the pings; empty: none.
     std::optional<uint64_t> cut_off_;  ///< Offset of the packet that the end of the file truncates [B].
     std::string rounding_;
     size_t without_pose_ = 0;

@@ -111,12 +111,6 @@ struct ZipEntry::Source {
     }
 };
 
-bool ZipEntry::isArchive(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    char mark[4] = {};
-    return file.read(mark, sizeof mark) && field<uint32_t>(mark, 0) == zip::magic;
-}
-
 ZipEntry::ZipEntry(const std::filesystem::path& path, const std::string& ending) : source_(std::make_unique<Source>()) {
     Source& source = *source_;
     source.path = path;
