@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 /** Returns the task of a type upstream of another; throws types::ConfigError where there is none. */
 template <class Task>
 const Task& upstreamTask(const framework::Deployment& deployment, const std::string& of, const char* type) {
-    for (const std::string& name : upstreamOf({of}, deployment))
+    for (const std::string& name : upstream({of}, deployment))
         if (const auto* task = dynamic_cast<const Task*>(deployment.task(name))) return *task;
     throw types::ConfigError(deployment.spec().file, "tasks." + of,
                              std::string("has no ") + type + " before it, which a fit needs");

@@ -11,7 +11,7 @@
 
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/Tasks.hpp"
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "components/log/Writer.hpp"
 #include "components/logger/PropertyLog.hpp"
 #include "components/pose/TrajectoryTask.hpp"
@@ -80,7 +80,7 @@ private:
         const fs::path file = to_.parent_path() / "properties.0.log";
         if (!properties_) {
             std::error_code none;
-            const bool is_own = fs::exists(to_, none) && log::propertyLogOf(*log::openLog(to_)) == file;
+            const bool is_own = fs::exists(to_, none) && log::propertyLog(*log::openLog(to_)) == file;
             if (fs::exists(file, none) && !is_own)
                 throw types::ConfigError(file.string(), "--to", "is of another run; give the log a folder of its own");
             properties_.emplace(file);
@@ -123,7 +123,7 @@ RecordedTasks recordedTasks(const DeploymentSpec& spec, const char* sonar_type) 
     const framework::Deployment deployment(spec, registry);
     const receiver::ReceiverTask& receiver = codingReceiverOf(deployment, spec.file);
     const Sonar* sonar = nullptr;
-    for (const std::string& name : upstreamOf({receiver.name()}, deployment))
+    for (const std::string& name : upstream({receiver.name()}, deployment))
         if (!sonar) sonar = dynamic_cast<const Sonar*>(deployment.task(name));
     if (!sonar)
         throw types::ConfigError(spec.file, "tasks." + receiver.name(),
@@ -132,7 +132,7 @@ RecordedTasks recordedTasks(const DeploymentSpec& spec, const char* sonar_type) 
     tasks.max_code = std::exp2(receiver.config->code.value_or(receiver::CodeConfig{}).bits) - 1;
     constexpr bool is_fan = std::is_same_v<Sonar, sonar::SonarTask>;
     if constexpr (is_fan) tasks.has_beam_width = sonar->sonarConfig().beam_width_deg.has_value();
-    const std::set<std::string> upstream = upstreamOf({tasks.sonar}, deployment);
+    const std::set<std::string> upstream = upstream({tasks.sonar}, deployment);
     for (const auto& task : deployment.tasks())
         if (const auto* source = dynamic_cast<const pose::TrajectoryTask*>(task.get())) {
             tasks.trajectories.emplace_back(source->name() + ".pose", source->trajectory());

@@ -42,7 +42,7 @@ std::string loggedPings(const framework::Deployment& deployment) {
         const framework::TaskSpec* const reader = deployment.spec().task(connection.to->owner().name());
         if (reader && reader->type == "logger::LoggerTask" &&
             connection.from->typeName() == types::typeName<types::Sonar>())
-            stream = framework::streamNameOf(*connection.from).path();
+            stream = framework::streamName(*connection.from).path();
     }
     return stream;
 }

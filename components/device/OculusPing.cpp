@@ -13,7 +13,7 @@ namespace insonify::device {
 namespace {
 
 /** Transposes rows of all beams, one for each bin, to beams. */
-void takeImage(const OculusResult& result, OculusPing& ping) {
+void copyImage(const OculusResult& result, OculusPing& ping) {
     ping.codes.resize(size_t{result.beam_count} * result.bin_count);
     const size_t width = result.codeBytes(), gain = result.gainBytes();
     for (size_t k = 0; k < result.bin_count; ++k) {
@@ -51,7 +51,7 @@ OculusPing pingOf(const OculusResult& result) {
     ping.bin_count = result.bin_count;
     for (const int16_t bearing : result.bearings)  // hundredths of a degree, positive to starboard
         ping.bearings.push_back(types::radians(-0.01 * bearing));
-    takeImage(result, ping);
+    copyImage(result, ping);
     return ping;
 }
 

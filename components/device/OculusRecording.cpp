@@ -189,7 +189,7 @@ struct OculusPings::Source {
     }
 
     /** Returns the time of a ping since the first one, by the device's clock [s]. */
-    double clockOf(const OculusResult& ping) {
+    double clock(const OculusResult& ping) {
         const auto ticks = static_cast<uint32_t>(ping.start_ticks - start_ticks);  // wraps like the clock
         const double step = ping.fire.isVersion2() ? ping.start_s - start_s : ticks / oculus_ticks_per_second;
         if (known && step >= 0 && step < 1e6) elapsed += step;
@@ -218,7 +218,7 @@ std::optional<TimedOculusResult> OculusPings::next() {
         std::string reason;
         ++number_;
         if (auto ping = oculusResult(message.bytes, &reason))
-            return TimedOculusResult{message.time ? *message.time : source_->clockOf(*ping), std::move(*ping)};
+            return TimedOculusResult{message.time ? *message.time : source_->clock(*ping), std::move(*ping)};
         if (diagnostic_.empty()) diagnostic_ = fmt::format("ping {} {}", number_, reason);
     }
     if (diagnostic_.empty()) diagnostic_ = source_->recording ? source_->recording->diagnostic() : source_->damage;

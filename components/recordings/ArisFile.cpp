@@ -184,7 +184,7 @@ std::optional<RecordingReader::Stated> ArisFile::stated(std::span<const char> he
 
 std::optional<RecordedPing> ArisFile::read() {
     const std::vector<char> frame =
-        takePacket(aris::header, [&](std::span<const char> header) { return sizeOf(header); });
+        readPacket(aris::header, [&](std::span<const char> header) { return sizeOf(header); });
     if (frame.empty()) return std::nullopt;
     const std::span<const char> header = std::span(frame).first(aris::header);
     const Shape shape = shapeOf(header);

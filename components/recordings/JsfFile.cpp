@@ -66,7 +66,7 @@ std::optional<JsfFile::Side> JsfFile::nextSide() {
         if (size < 0) fail(at_ + jsf::size, fmt::format("the message has {} bytes; it must have at least 0", size));
         return jsf::header + static_cast<uint64_t>(size);
     };
-    for (packet_ = takePacket(jsf::header, sizeOf); !packet_.empty(); packet_ = takePacket(jsf::header, sizeOf))
+    for (packet_ = readPacket(jsf::header, sizeOf); !packet_.empty(); packet_ = readPacket(jsf::header, sizeOf))
         if (isWanted()) {
             Side read = side();
             read.message = std::move(packet_);

@@ -86,7 +86,7 @@ void XtfFile::readChannels() {
 }
 
 bool XtfFile::readPacket() {
-    packet_ = takePacket(xtf::packet::size, [&](std::span<const char> head) -> uint64_t {
+    packet_ = readPacket(xtf::packet::size, [&](std::span<const char> head) -> uint64_t {
         if (const auto mark = field<uint16_t>(head, xtf::packet::mark); mark != xtf::packet::magic)
             fail(at_, fmt::format("is 0x{:04X}; a packet begins with 0x{:04X}", mark, xtf::packet::magic));
         const auto bytes = field<uint32_t>(head, xtf::packet::bytes);

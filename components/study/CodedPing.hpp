@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/receiver/ReceiverConfig.hpp"
+#include "components/receiver/Receiver.hpp"
 #include "components/recordings/RecordingReader.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"

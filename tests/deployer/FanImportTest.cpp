@@ -69,7 +69,7 @@ struct FanImportTest : testing::Test {
                 samples.push_back(static_cast<char>(std::lround(ping.bins[beam * ping.bin_count + bin])));
         return samples;
     }
-    static test::ArisFrame arisFrameOf(const types::Sonar& ping) {
+    static test::ArisFrame arisFrame(const types::Sonar& ping) {
         test::ArisFrame frame{.model = 0, .ping_mode = 1, .is_high = false};
         frame.period_us = 100;
         frame.delay_us = 2000;
@@ -80,7 +80,7 @@ struct FanImportTest : testing::Test {
     }
     void recordAris(int count) const {
         std::vector<test::ArisFrame> frames;
-        for (const auto& ping : pingsOf(wallWith(arisBearingsDeg()), count)) frames.push_back(arisFrameOf(ping));
+        for (const auto& ping : pingsOf(wallWith(arisBearingsDeg()), count)) frames.push_back(arisFrame(ping));
         writeBytes(folder_ / "dive.aris", test::arisFile(frames));
     }
     void recordGemini(int count) const {
@@ -176,7 +176,7 @@ TEST_F(FanImportTest, PosesOfTheRecordingBecomeThoseOfTheVehicleAndTheSonar) {
     ping.time = {1'700'000'000'000'000};
     ping.resize(bins, 48);
     ping.bins.assign(ping.bins.size(), 1);
-    test::ArisFrame frame = arisFrameOf(ping);
+    test::ArisFrame frame = arisFrame(ping);
     frame.heading = 30;
     frame.depth = 2;
     frame.altitude = 4;

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "components/device/DeviceBins.hpp"
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "components/log/Writer.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "components/output/FanShape.hpp"
@@ -184,10 +184,10 @@ TEST(RangesTest, ADriverThatAssumesTheBinWidthFindsTheWall) {
         given.wall = 0.8 * range;
         types::Sonar ping = rendered(given).ping;
         const double assumed = range / 1000, own = ping.binWidth();
-        EXPECT_EQ(device::takeBinWidth(assumed, ping), own > 1.001 * assumed) << "whole microseconds: longer bins";
+        EXPECT_EQ(device::setBinWidth(assumed, ping), own > 1.001 * assumed) << "whole microseconds: longer bins";
         const auto first = std::ranges::find_if(ping.bins, [](float bin) { return bin > 0; }) - ping.bins.begin();
         EXPECT_NEAR((static_cast<double>(first) + 0.5) * assumed, given.wall, own) << range << " m";
-        EXPECT_FALSE(device::takeBinWidth(assumed, ping)) << "it has that width now";
+        EXPECT_FALSE(device::setBinWidth(assumed, ping)) << "it has that width now";
     }
 }
 

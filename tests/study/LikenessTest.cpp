@@ -6,7 +6,6 @@
 
 #include "components/device/OculusRecording.hpp"
 #include "components/study/likeness/Likeness.hpp"
-#include "components/study/likeness/LikenessReport.hpp"
 #include "tests/support/Paths.hpp"
 #include "types/Hash.hpp"
 
