@@ -33,7 +33,7 @@ void addNeeded(const YAML::Node& node, std::set<std::string>& names) {
     if (!node.IsDefined() || !node.IsScalar()) return;
     const scene::SceneFormat* const format = scene::findSceneFormat(node.Scalar());
     if (format && !format->component.empty()) names.emplace(format->component);
-    if (output::isVideo(node.Scalar())) names.insert("video");
+    if (output::findFileFormat(node.Scalar(), output::FileContent::Video)) names.insert("video");
 }
 
 std::set<std::string> neededBy(const framework::DeploymentSpec& spec) {

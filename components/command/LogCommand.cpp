@@ -20,6 +20,7 @@
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/Export.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "types/DidYouMean.hpp"
 
 namespace insonify::command {
@@ -56,8 +57,22 @@ void printTable(const log::Reader& log) {
                                  s.set_backs, s.set_back.seconds());
 }
 
-/** Opens a log, and prints a notice where it cannot be read to its end. */
+/** Returns the recordings that can be imported: "FILE.xtf (XTF of a side-scan)". */
+std::string recordingHelp() {
+    std::string help;
+    for (const recordings::RecordingFormat& format : recordings::recordingFormats())
+        help += (help.empty() ? "" : ", ") +
+                (format.ending.empty() ? std::string(format.name)
+                                       : fmt::format("FILE{} ({}, {})", format.ending, format.name, format.device));
+    return help;
+}
+
+/** Opens a log, and prints a notice where it cannot be read to its end. Throws types::ConfigError for a recording of
+ *  another program or device, with the command that makes a log of it. */
 std::unique_ptr<log::Reader> opened(const std::string& file) {
+    if (const recordings::RecordingFormat* const format = recordings::findRecordingFormat(file))
+        throw types::ConfigError(
+            file, "", fmt::format("is a recording of {}; `insonify log import` makes a log of it", format->device));
     auto log = log::openLog(file);
     if (!log->complete()) console::printDiagnostic("notice: {}: {}\n", file, log->diagnostic());
     return log;
@@ -415,15 +430,10 @@ void addLogCommand(CLI::App& app, Action& action) {
     cut->add_option("--stream", options->streams, "task.port to keep; may be given again; none: all")
         ->allow_extra_args(false);
 
-    CLI::App* import = add(
-        *log, action, options, "import",
-        "Makes a log of a recording: XTF or JSF of a side-scan, an ARIS', a Gemini's or an Oculus', to be exported, "
-        "replayed and scored",
-        logImport);
-    import
-        ->add_option("FILE", options->file,
-                     "FILE.xtf, FILE.jsf, FILE.aris, FILE.glf, FILE.oculus, or messages of an Oculus as captured")
-        ->required();
+    CLI::App* import =
+        add(*log, action, options, "import",
+            "Makes a log of a recording of another program or device, to be exported, replayed and scored", logImport);
+    import->add_option("FILE", options->file, recordingHelp())->required();
     import->add_option("DEPLOYMENT", options->deployment,
                        "whose receiver's pings they become; a recording without poses gets its trajectories; none: the "
                        "log has only the file's data");

@@ -5,7 +5,6 @@
 
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/RecordedLog.hpp"
 #include "components/framework/YamlText.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"

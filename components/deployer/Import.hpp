@@ -18,9 +18,9 @@ struct Imported {
     std::vector<std::string> notices{};     ///< What was skipped or is unknown.
 };
 
-/** Makes a log of a device's recording, whose content identifies it: an XTF or JSF file of a side-scan, an .aris file,
- *  a Gemini's .glf file, or an Oculus recording. The log has every ping, and can be exported and replayed like a
- *  recorded run.
+/** Makes a log of a recording of another program or device, which its content identifies
+ * (recordings/RecordingReader.hpp has the formats). The log has every ping, and can be exported and replayed like a
+ * recorded run.
  *
  *  With a deployment, the pings become those of its receiver that outputs codes, and poses use its names. Next to the
  *  log, properties.0.log has the settings of sonar and receiver at each ping, so that the log can be rendered again and

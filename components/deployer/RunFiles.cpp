@@ -29,9 +29,9 @@ std::string kindOf(const fs::path& file) {
  */
 fs::path firstPicture(const std::map<std::string, Files>& kinds) {
     for (const auto& [kind, files] : kinds)
-        if (types::lowered(files.back().extension().string()) == ".png") return files.back();
+        if (output::findFileFormat(files.back(), output::FileContent::Picture)) return files.back();
     for (const auto& [kind, files] : kinds)
-        if (output::isVideo(files.back())) return files.back();
+        if (output::findFileFormat(files.back(), output::FileContent::Video)) return files.back();
     return {};
 }
 

@@ -1,7 +1,8 @@
-// The component library device: its task types, `insonify device`, and the import and export of recordings.
+// The component library device: its task types, `insonify device`, and recordings of an Oculus.
 #include "components/device/DeviceTask.hpp"
+#include "components/device/OculusRecording.hpp"
 #include "components/device/commands/DeviceCommand.hpp"
-#include "components/device/commands/OculusLog.hpp"
+#include "components/device/commands/OculusExport.hpp"
 #include "components/loader/Interface.hpp"
 
 INSONIFY_COMPONENT_LIBRARY;
@@ -14,10 +15,9 @@ void insonify_add_command(CLI::App& app, insonify::console::Action& action) {
     insonify::device::addCommand(app, action);
 }
 
-void insonify_import_oculus(const std::filesystem::path& recording,
-                            std::optional<insonify::framework::DeploymentSpec> spec, const std::filesystem::path& to,
-                            insonify::deployer::Imported& imported) {
-    imported = insonify::device::importOculus(recording, std::move(spec), to);
+void insonify_open_recording(const std::filesystem::path& file,
+                             std::unique_ptr<insonify::recordings::RecordingReader>& reader) {
+    reader = std::make_unique<insonify::device::OculusReader>(file);
 }
 
 void insonify_export_oculus(insonify::log::Reader& log, const std::string& stream, const std::filesystem::path& to) {

@@ -1,24 +1,16 @@
 #include "components/device/OculusPing.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <numbers>
 
-#include "components/device/OculusRecording.hpp"
 #include "types/Angle.hpp"
 #include "types/BeamArc.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {
-
-constexpr size_t max_diagnostics = 100;
 
 /** Transposes rows of all beams, one for each bin, to beams. */
 void copyImage(const OculusResult& result, OculusPing& ping) {
@@ -44,11 +36,6 @@ types::BeamArc wireArc(const types::Sonar& codes) {
     std::ranges::rotate(arc.bearings, arc.bearings.begin() + turned);
     std::ranges::rotate(arc.beams, arc.beams.begin() + turned);
     return arc;
-}
-
-bool beginsPing(std::span<const uint8_t> bytes) {
-    const auto header = oculusHeader(bytes);
-    return header && header->is(OculusId::PingResult);
 }
 
 }  // namespace
@@ -88,50 +75,6 @@ types::Sonar sonarOf(const OculusPing& ping, types::Time time) {
         }
     }
     return sonar;
-}
-
-std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<std::string>* diagnostics) {
-    std::vector<OculusPing> pings;
-    for (size_t at = 0; at + OculusHeader::size <= bytes.size();) {
-        const auto rest = bytes.subspan(at);
-        if (!beginsPing(rest)) {
-            ++at;
-            continue;
-        }
-        const size_t size = std::min(rest.size(), OculusHeader::size + oculusHeader(rest)->payload_size);
-        std::string diagnostic;
-        const auto result = oculusResult(rest.first(size), &diagnostic);
-        if (result) pings.push_back(pingOf(*result));
-        if (!result && diagnostics && diagnostics->size() < max_diagnostics)
-            diagnostics->push_back(fmt::format("the ping at byte {} {}", at, diagnostic));
-        at += result ? size : 2;
-    }
-    return pings;
-}
-
-namespace {
-
-std::vector<OculusPing> pingsOfRecording(const std::filesystem::path& file) {
-    OculusPings recording(file);
-    std::vector<OculusPing> pings;
-    while (const auto recorded = recording.next()) pings.push_back(pingOf(recorded->ping));
-    return pings;
-}
-
-}  // namespace
-
-std::vector<OculusPing> readOculusPings(const std::filesystem::path& file) {
-    if (OculusRecording::isOne(file))
-        if (auto pings = pingsOfRecording(file); !pings.empty()) return pings;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(file))
-        throw types::ConfigError(file.string(), "", "cannot be read; it must be a file of Oculus messages");
-    const std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
-    std::vector<std::string> diagnostics;
-    std::vector<OculusPing> pings = oculusPings(bytes, &diagnostics);
-    if (!pings.empty()) return pings;
-    if (diagnostics.empty()) throw types::ConfigError(file.string(), "", "holds no ping of an Oculus");
-    throw types::ConfigError(file.string(), "", "holds no whole ping: " + diagnostics.front());
 }
 
 void OculusEncoder::bend(double gamma) {

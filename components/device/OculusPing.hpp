@@ -1,8 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <filesystem>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "components/device/oculus/OculusMessages.hpp"
@@ -33,15 +30,6 @@ OculusPing pingOf(const OculusResult& result);
  *  starboard to port, as in simulated fans. Bins have the ping's range resolution, see types::RangeBins. If
  *  the ping has no speed of sound, it is 1500 m/s. */
 types::Sonar sonarOf(const OculusPing& ping, types::Time time);
-
-/** Returns every ping in these bytes, in order. The bytes are network messages with anything between them, as in
- *  captures and in the maker's own log files. Other messages are skipped, and so are pings that contradict themselves
- *  (missing bytes, an image whose size does not match bins and beams).
- *  @param diagnostics receives one line for each invalid ping, up to 100, unless null */
-std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<std::string>* diagnostics = nullptr);
-
-/** Returns the pings of a file. Throws types::ConfigError, with the reason, where it cannot be read or has no ping. */
-std::vector<OculusPing> readOculusPings(const std::filesystem::path& file);
 
 /** Converts a receiver's codes of amplitude to the image of a ping.
  *

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "components/device/OculusPing.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -210,18 +211,44 @@ struct OculusPings::Source {
 OculusPings::OculusPings(const std::filesystem::path& file) : source_(std::make_unique<Source>(file)) {}
 OculusPings::~OculusPings() = default;
 
-std::optional<RecordedPing> OculusPings::next() {
+std::optional<TimedOculusResult> OculusPings::next() {
     for (auto message = source_->next(); !message.bytes.empty(); message = source_->next()) {
         const auto header = oculusHeader(message.bytes);
         if (!header || !header->is(OculusId::PingResult)) continue;
         std::string reason;
         ++number_;
         if (auto ping = oculusResult(message.bytes, &reason))
-            return RecordedPing{message.time ? *message.time : source_->clock(*ping), std::move(*ping)};
+            return TimedOculusResult{message.time ? *message.time : source_->clock(*ping), std::move(*ping)};
         if (diagnostic_.empty()) diagnostic_ = fmt::format("ping {} {}", number_, reason);
     }
     if (diagnostic_.empty()) diagnostic_ = source_->recording ? source_->recording->diagnostic() : source_->damage;
     return std::nullopt;
+}
+
+std::vector<std::string> OculusReader::notices() const {
+    std::vector<std::string> all = RecordingReader::notices();
+    if (!pings_.diagnostic().empty()) all.push_back(pings_.diagnostic());
+    return all;
+}
+
+std::optional<recordings::RecordedPing> OculusReader::read() {
+    const auto recorded = pings_.next();
+    if (!recorded) return std::nullopt;
+    if (!begin_) begin_ = recorded->time;
+    constexpr double start_of_captures = 1;  // 0 is not a valid time
+    const OculusPing ping = pingOf(recorded->ping);
+    recordings::RecordedPing read;
+    read.since_first = recorded->time - *begin_;
+    read.ping = sonarOf(ping, types::Time::fromSeconds((*begin_ > 0 ? *begin_ : start_of_captures) + read.since_first));
+    read.sonar.position.x = types::Pose::unknown;
+    read.number = ping.number;
+    read.frequency_khz = ping.frequency_hz / 1e3;
+    read.speed_of_sound = ping.speed_of_sound;
+    read.range = ping.range_resolution * ping.bin_count;
+    read.max_code = ping.maxCode();
+    read.code = {.bits = ping.bits > 8 ? 16 : 8, .law = receiver::CodeLaw::Sqrt, .gamma = ping.gamma};
+    read.law_known = true;
+    return read;
 }
 
 }  // namespace insonify::device

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "components/device/oculus/OculusMessages.hpp"
+#include "components/recordings/RecordingReader.hpp"
 
 namespace insonify::device {
 
@@ -90,7 +91,7 @@ private:
 
 /** A ping of a recording with its time [s]: since the epoch in a *.oculus file; since the first ping, by the device's
  *  clock, in a capture, which has no other clock. */
-struct RecordedPing {
+struct TimedOculusResult {
     double time = 0;
     OculusResult ping;
 };
@@ -102,7 +103,7 @@ public:
     explicit OculusPings(const std::filesystem::path& file);
     ~OculusPings();
 
-    std::optional<RecordedPing> next();
+    std::optional<TimedOculusResult> next();
     /** The first ping that contradicts itself, or the first skipped part of the file; empty: none. */
     const std::string& diagnostic() const { return diagnostic_; }
 
@@ -111,6 +112,22 @@ private:
     std::unique_ptr<Source> source_;
     size_t number_ = 0;  ///< Number of the last ping that was read, from 1.
     std::string diagnostic_;
+};
+
+/** Reads the pings of an Oculus' recording as a receiver's output, see sonarOf(). Damaged parts are skipped, with a
+ *  notice of the first. The pings have no poses; a capture, which has no times since the epoch, starts at 1 s. */
+class OculusReader final : public recordings::RecordingReader {
+public:
+    /** Throws types::ConfigError for a file that cannot be read. */
+    explicit OculusReader(const std::filesystem::path& file) : RecordingReader(file), pings_(file) {}
+
+    std::vector<std::string> notices() const override;
+
+private:
+    std::optional<recordings::RecordedPing> read() override;
+
+    OculusPings pings_;
+    std::optional<double> begin_;  ///< Time of the first ping, by the clock of the recording [s].
 };
 
 }  // namespace insonify::device

@@ -9,19 +9,37 @@
 #include <memory>
 #include <stdexcept>
 
-#include "types/Ascii.hpp"
+#include "types/DidYouMean.hpp"
 
 namespace insonify::output {
+namespace {
+
+constexpr FileFormat all_formats[] = {
+    {".png", FileContent::Picture, writePng},
+    {".avi", FileContent::Video, nullptr, "MJPG"},
+    {".mp4", FileContent::Video, nullptr, "mp4v"},
+    {".xtf", FileContent::SideScan},
+};
+
+}  // namespace
+
+const FileFormat* findFileFormat(const std::filesystem::path& file, FileContent content) {
+    const FileFormat* const format = types::findFormat(all_formats, file);
+    return format && format->content == content ? format : nullptr;
+}
+
+std::string fileEndings(FileContent content) {
+    return types::alternativeEndings(all_formats, [&](const FileFormat& format) { return format.content == content; });
+}
 
 std::optional<FilePattern> FilePattern::parse(const std::string& pattern) {
     const size_t percent = pattern.find('%');
     if (percent == pattern.npos || pattern.find('%', percent + 1) != pattern.npos) return {};
     const size_t letter = pattern.find_first_not_of("0123456789", percent + 1);
     const std::string flags = pattern.substr(percent + 1, letter - percent - 1);
-    if (letter == pattern.npos || pattern[letter] != 'd' || flags.size() > 3 ||
-        !types::lowered(pattern).ends_with(".png"))
-        return {};
     FilePattern parsed;
+    parsed.format_ = findFileFormat(pattern, FileContent::Picture);
+    if (letter == pattern.npos || pattern[letter] != 'd' || flags.size() > 3 || !parsed.format_) return {};
     parsed.before_ = pattern.substr(0, percent);
     parsed.after_ = pattern.substr(letter + 1);
     parsed.width_ = flags.empty() ? 0 : std::stoi(flags);
@@ -57,11 +75,6 @@ png_uint_32 pngFormat(const std::filesystem::path& file, const types::Image& pic
 
 }  // namespace
 
-bool isVideo(const std::filesystem::path& file) {
-    const std::string extension = types::lowered(file.extension().string());
-    return extension == ".avi" || extension == ".mp4";
-}
-
 void DisplayConfig::check(types::Diagnostics& diagnostics) const {
     if (scale == BinScale::Code && reference_db)
         diagnostics.push_back(
@@ -70,9 +83,10 @@ void DisplayConfig::check(types::Diagnostics& diagnostics) const {
 
 void RecordingConfig::check(types::Diagnostics& diagnostics) const {
     if (file && !FilePattern::parse(*file))
-        diagnostics.push_back(
-            {"file", "is '" + *file + "'; it must have one number and end in .png, as in fan_%06d.png"});
-    if (video && !isVideo(*video)) diagnostics.push_back({"video", "is '" + *video + "'; it must end in .avi or .mp4"});
+        diagnostics.push_back({"file", "is '" + *file + "'; it must have one number and end in " +
+                                           fileEndings(FileContent::Picture) + ", as in fan_%06d.png"});
+    if (video && !findFileFormat(*video, FileContent::Video))
+        diagnostics.push_back({"video", "is '" + *video + "'; it must end in " + fileEndings(FileContent::Video)});
 }
 
 void writePng(const std::filesystem::path& file, const types::Image& picture) {
@@ -107,7 +121,7 @@ PictureFiles::PictureFiles(const RecordingConfig& config, const std::filesystem:
 }
 
 void PictureFiles::write(const types::Image& picture) {
-    if (pattern_) writePng(folder_ / pattern_->name(number_++), picture);
+    if (pattern_) pattern_->format().write(folder_ / pattern_->name(number_++), picture);
     if (video_) video_->write(picture);
 }
 

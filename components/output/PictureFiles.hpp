@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "components/output/PictureConfig.hpp"
 #include "components/output/VideoFile.hpp"
@@ -10,19 +11,32 @@
 
 namespace insonify::output {
 
-/** Whether the name of a file is that of a video: it ends in .avi or .mp4, in any case of letters. */
-bool isVideo(const std::filesystem::path& file);
+enum class FileContent { Picture, Video, SideScan };
+
+/** A format of the files that tasks write: a line of the table in PictureFiles.cpp, from which messages are made. */
+struct FileFormat {
+    std::string_view ending;  ///< In lower case.
+    FileContent content;
+    void (*write)(const std::filesystem::path&, const types::Image&) = nullptr;  ///< Writes a picture; else null.
+    std::string_view codec{};  ///< Of a video: four letters of OpenCV; MJPG is written without FFmpeg.
+};
+/** Returns the format of a file by its ending, in any case of letters; null: none with this content has it. */
+const FileFormat* findFileFormat(const std::filesystem::path& file, FileContent content);
+/** Returns the endings of files with this content as a message lists them: ".avi or .mp4". */
+std::string fileEndings(FileContent content);
 
 /** A file name with a number, in printf's notation: "fan_%06d.png". */
 class FilePattern {
 public:
-    /** Returns none unless there is exactly one `%`, of the form %d, %Nd or %0Nd with N up to 99, before a final
-     *  ".png". */
+    /** Returns none unless there is exactly one `%`, of the form %d, %Nd or %0Nd with N up to 99, before the ending
+     *  of a picture. */
     static std::optional<FilePattern> parse(const std::string& pattern);
 
     std::string name(uint64_t number) const;
+    const FileFormat& format() const { return *format_; }
 
 private:
+    const FileFormat* format_ = nullptr;
     std::string before_, after_;
     int width_ = 0;
     char filler_ = ' ';
@@ -32,7 +46,7 @@ private:
  *  file. */
 void writePng(const std::filesystem::path& file, const types::Image& picture);
 
-/** Writes a stream of pictures as numbered PNG files, a video, or both. Makes the folders that they need. */
+/** Writes a stream of pictures as numbered files, a video, or both. Makes the folders that they need. */
 class PictureFiles {
 public:
     /** @param folder base of relative names */

@@ -2,11 +2,13 @@
 
 #include "components/framework/MayLose.hpp"
 #include "components/framework/Upstream.hpp"
+#include "components/output/PictureFiles.hpp"
 
 namespace insonify::output {
 
 void XtfConfig::check(types::Diagnostics& diagnostics) const {
-    if (!file.ends_with(".xtf")) diagnostics.push_back({"file", "is " + file + "; must end in .xtf"});
+    if (!findFileFormat(file, FileContent::SideScan))
+        diagnostics.push_back({"file", "is " + file + "; must end in " + fileEndings(FileContent::SideScan)});
 }
 
 void XtfTask::check(types::Diagnostics& diagnostics) const {

@@ -98,13 +98,7 @@ std::span<const double> arisBearings(ArisModel model, uint32_t beams, bool is_te
     return {};
 }
 
-bool ArisFile::isOne(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    char mark[4] = {};
-    return file.read(mark, sizeof mark) && (field<uint32_t>(mark, 0) & 0xFFFFFF) == aris::mark;
-}
-
-ArisFile::ArisFile(const std::filesystem::path& path) : FanFile(path) {
+ArisFile::ArisFile(const std::filesystem::path& path) : RecordingReader(path) {
     const std::vector<char> header = take(0, aris::header);
     if (header.size() < aris::header)
         fail(header.size(), fmt::format("ends here; an ARIS file has a header of {} bytes", aris::header));
@@ -170,7 +164,7 @@ types::Time ArisFile::timeOf(std::span<const char> header) const {
     return {static_cast<int64_t>(time)};
 }
 
-std::optional<RecordedFile::Stated> ArisFile::stated(std::span<const char> header) {
+std::optional<RecordingReader::Stated> ArisFile::stated(std::span<const char> header) {
     const auto number = [&](size_t at) { return numberAt(header, at); };
     const double north = field<double>(header, aris::latitude), east = field<double>(header, aris::longitude);
     const bool has_place = north != 0 || east != 0;
@@ -188,18 +182,20 @@ std::optional<RecordedFile::Stated> ArisFile::stated(std::span<const char> heade
     return stated;
 }
 
-std::optional<FanFrame> ArisFile::read() {
+std::optional<RecordedPing> ArisFile::read() {
     const std::vector<char> frame =
         readPacket(aris::header, [&](std::span<const char> header) { return sizeOf(header); });
     if (frame.empty()) return std::nullopt;
     const std::span<const char> header = std::span(frame).first(aris::header);
     const Shape shape = shapeOf(header);
-    FanFrame found;
+    RecordedPing found;
     found.ping.time = timeOf(header);
-    setResolution(shape.period * shape.speed / 2, shape.speed, found.ping);
+    setResolution(shape.period * shape.speed / 2, shape.speed, found);
     std::vector<double> bearings;
     for (const double bearing : shape.bearings) bearings.push_back(types::radians(bearing));
-    setBins(bearings, shape.first, std::span(frame).subspan(aris::header), found.ping);
+    setFan(bearings, shape.first, std::span(frame).subspan(aris::header), found);
+    found.code = {.bits = 8, .law = receiver::CodeLaw::Log, .dynamic_range_db = 80};
+    found.law_known = true;
     found.window_start = found.ping.binStart(shape.first);
     found.frequency_khz = shape.frequency_khz;
     found.sonar = placed(found.ping.time, stated(header));

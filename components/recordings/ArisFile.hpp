@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "components/recordings/FanFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 
 namespace insonify::recordings {
 
@@ -22,14 +22,11 @@ std::span<const double> arisBearings(ArisModel model, uint32_t beams, bool is_te
  *  window begins at the nearest bin. A pose has the header's latitude and longitude, the platform's depth, and the
  *  angles of the sonar's compass. Without that compass it has the platform's angles; without a position it stays at x =
  *  y = 0. */
-class ArisFile final : public FanFile {
+class ArisFile final : public RecordingReader {
 public:
-    /** Returns whether a file begins like an ARIS file, or like a file of its predecessor, the DIDSON. */
-    static bool isOne(const std::filesystem::path& path);
-    /** Throws types::ConfigError for a file that cannot be read or has another version. */
+    /** Throws types::ConfigError for a file that cannot be read or has another version, as those of the ARIS'
+     *  predecessor, the DIDSON. */
     explicit ArisFile(const std::filesystem::path& path);
-
-    std::optional<double> dynamicRange() const override { return 80; }
 
 private:
     /** The layout of a frame's samples, from its header. */
@@ -40,7 +37,7 @@ private:
         double frequency_khz = 0;
     };
 
-    std::optional<FanFrame> read() override;
+    std::optional<RecordedPing> read() override;
     uint64_t sizeOf(std::span<const char> header) const;
     Shape shapeOf(std::span<const char> header) const;
     types::Time timeOf(std::span<const char> header) const;

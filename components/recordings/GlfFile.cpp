@@ -142,7 +142,7 @@ std::vector<double> GlfFile::bearingsOf(std::span<const char> record, const Imag
     return bearings;
 }
 
-void GlfFile::setRanges(std::span<const char> tail, const Image& image, types::Sonar& ping) {
+void GlfFile::setRanges(std::span<const char> tail, const Image& image, RecordedPing& to) {
     const auto rate = field<uint32_t>(tail, glf::modulation);
     if (rate < 100 || rate > 1'000'000)
         failAt(image.tail + glf::modulation,
@@ -152,10 +152,10 @@ void GlfFile::setRanges(std::span<const char> tail, const Image& image, types::S
     if (!(speed >= 1000 && speed <= 2000))
         failAt(image.tail + glf::sound_speed,
                fmt::format("the speed of sound is {:g} m/s; it may be 1000 to 2000, or 0 for unknown", speed));
-    setResolution(speed / 2 / rate, speed, ping);
+    setResolution(speed / 2 / rate, speed, to);
 }
 
-std::optional<FanFrame> GlfFile::frameOf(std::span<const char> record, const Image& image) {
+std::optional<RecordedPing> GlfFile::frameOf(std::span<const char> record, const Image& image) {
     if (image.compression == glf::h264) return ++videos_, std::nullopt;
     const std::span<const char> tail = record.subspan(image.tail);
     const double transmitted = field<double>(tail, glf::transmit_time);
@@ -163,12 +163,12 @@ std::optional<FanFrame> GlfFile::frameOf(std::span<const char> record, const Ima
     const double time_us = std::round(((has_time ? transmitted : stamp_) + glf::epoch_s) * 1e6);
     if (const std::string wrong = diagnosticOf(time_us); !wrong.empty())
         failAt(has_time ? image.tail + glf::transmit_time : glf::stamp, wrong);
-    FanFrame found;
+    RecordedPing found;
     found.ping.time = {static_cast<int64_t>(time_us)};
-    setRanges(tail, image, found.ping);
+    setRanges(tail, image, found);
     const std::vector<char> samples = samplesOf(record, image);
     const bool has_all = samples.size() == image.allSamples();
-    setBins(bearingsOf(record, image), has_all ? 0 : image.start_range, samples, found.ping);
+    setFan(bearingsOf(record, image), has_all ? 0 : image.start_range, samples, found);
     found.window_start = found.ping.binStart(image.start_range);
     found.frequency_khz = geminiFrequency(field<uint8_t>(tail, glf::platform), field<uint16_t>(tail, glf::ping_flags));
     found.sonar.position.x = types::Pose::unknown;
@@ -189,7 +189,7 @@ void GlfFile::skipToRecord(size_t size) {
     entry_.skip(glf::head);  // the rest is not a record
 }
 
-std::optional<FanFrame> GlfFile::read() {
+std::optional<RecordedPing> GlfFile::read() {
     for (;;) {
         std::span<const char> record = entry_.peek(glf::numbers + 2);
         if (endsHere(record)) return std::nullopt;
@@ -216,7 +216,7 @@ std::optional<FanFrame> GlfFile::read() {
                    fmt::format("is 0x{:04X}; an image ends with 0x{:04X}", mark, glf::end_mark));
         const auto device = field<uint16_t>(record, glf::device);
         if (!device_) device_ = device;
-        std::optional<FanFrame> found;
+        std::optional<RecordedPing> found;
         if (device == *device_)
             found = frameOf(record, image);
         else
@@ -228,7 +228,7 @@ std::optional<FanFrame> GlfFile::read() {
 }
 
 std::vector<std::string> GlfFile::notices() const {
-    std::vector<std::string> all = FanFile::notices();
+    std::vector<std::string> all = RecordingReader::notices();
     if (!entry_.diagnostic().empty()) all.push_back(fmt::format("{}: {}", entry_.name(), entry_.diagnostic()));
     if (cut_off_record_)
         all.push_back(fmt::format("the record at byte {} of {} is cut off", *cut_off_record_, entry_.name()));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "components/recordings/FanFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "components/recordings/ZipEntry.hpp"
 
 namespace insonify::recordings {
@@ -18,14 +18,11 @@ namespace insonify::recordings {
  *  Samples are the file's, unpacked; the meaning of their values is not published. Bearings are those of each image's
  *  table. A range line is one period of the modulation frequency, two-way. The file has no poses. Times, which count
  *  from 1980, are taken as UTC. */
-class GlfFile final : public FanFile {
+class GlfFile final : public RecordingReader {
 public:
-    /** Returns whether a file begins like an archive, as a .glf file does. */
-    static bool isOne(const std::filesystem::path& path) { return ZipEntry::isArchive(path); }
     /** Throws types::ConfigError for a file that cannot be read or has no records. */
-    explicit GlfFile(const std::filesystem::path& path) : FanFile(path), entry_(path, ".dat") {}
+    explicit GlfFile(const std::filesystem::path& path) : RecordingReader(path), entry_(path, ".dat") {}
 
-    std::optional<double> dynamicRange() const override { return std::nullopt; }
     std::vector<std::string> notices() const override;
 
 private:
@@ -39,13 +36,13 @@ private:
         size_t allSamples() const { return size_t{beams} * end_range; }
     };
 
-    std::optional<FanFrame> read() override;
+    std::optional<RecordedPing> read() override;
     bool endsHere(std::span<const char> head);
     Image imageOf(std::span<const char> head) const;
-    std::optional<FanFrame> frameOf(std::span<const char> record, const Image& image);
+    std::optional<RecordedPing> frameOf(std::span<const char> record, const Image& image);
     std::vector<char> samplesOf(std::span<const char> record, const Image& image) const;
     std::vector<double> bearingsOf(std::span<const char> record, const Image& image) const;
-    void setRanges(std::span<const char> tail, const Image& image, types::Sonar& ping);
+    void setRanges(std::span<const char> tail, const Image& image, RecordedPing& to);
     /** Skips a part of this record and everything up to the next record. */
     void skipToRecord(size_t size);
     [[noreturn]] void failAt(size_t offset, const std::string& why) const;

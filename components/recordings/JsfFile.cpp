@@ -44,12 +44,6 @@ uint32_t extended(std::span<const char> message, size_t at, int shift) {
 
 }  // namespace
 
-bool JsfFile::isOne(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    char mark[2] = {};
-    return file.read(mark, sizeof mark) && field<uint16_t>(mark, 0) == jsf::magic;
-}
-
 bool JsfFile::isWanted() {
     const int type = field<uint16_t>(packet_, jsf::type), subsystem = field<uint8_t>(packet_, jsf::subsystem);
     if (type != jsf::sonar_data) return ++other_messages_[type], false;
@@ -129,7 +123,7 @@ types::Time JsfFile::time(const Side& side) const {
     return {(midnight * 1000 + milliseconds) * 1000};
 }
 
-std::optional<SideScanFile::Stated> JsfFile::stated(const Side& side) {
+std::optional<RecordingReader::Stated> JsfFile::stated(const Side& side) {
     const std::span<const char> message = side.message;
     const auto units = field<int16_t>(message, jsf::units);
     const bool has_heading = isValid(message, jsf::heading_bit), has_course = isValid(message, jsf::course_bit);
@@ -157,20 +151,20 @@ void JsfFile::append(const Side& side, types::Sonar& ping) {
         const float real = field<int16_t>(side.message, at), imaginary = field<int16_t>(side.message, at + 2);
         return std::ldexp(std::hypot(real, imaginary), -weight);
     };
-    appendBeam(side.is_port, side.first, side.count, sample, ping);
+    appendSide(side.is_port, side.first, side.count, sample, ping);
 }
 
-SideScanLine JsfFile::line(const Side& a, const Side* b) {
+RecordedPing JsfFile::line(const Side& a, const Side* b) {
     if (b && std::abs(a.resolution / b->resolution - 1) > 1e-3)
         fail(
             b->at + jsf::interval,
             fmt::format("the sample interval is {:g} ns, and that of the other side {:g} ns; both sides of a ping must "
                         "be alike",
                         b->resolution * 2e9, a.resolution * 2e9));
-    SideScanLine read;
+    RecordedPing read;
     const double speed = speedOfSound(a);
     read.ping.time = time(a);
-    setResolution(a.resolution * speed, speed, read.ping);
+    setResolution(a.resolution * speed, speed, read);
     read.ping.bin_count = a.first + a.count;
     if (b) read.ping.bin_count = std::max(read.ping.bin_count, b->first + b->count);
     const Side* const port = a.is_port ? &a : b;
@@ -179,16 +173,14 @@ SideScanLine JsfFile::line(const Side& a, const Side* b) {
     if (port) append(*port, read.ping);
     read.frequency_khz =
         (extended(a.message, jsf::start_frequency, 0) + extended(a.message, jsf::end_frequency, 4)) / 200.0;
-    read.record.sonar = placed(read.ping.time, stated(a));
+    read.sonar = placed(read.ping.time, stated(a));
     if (isValid(a.message, jsf::altitude_bit))
-        read.record.altitude = std::max(0.0, field<int32_t>(a.message, jsf::altitude) * 1e-3);
-    read.record.since_last = last_.isNull() ? 0 : (read.ping.time - last_).seconds();
-    read.record.number = a.number;
-    last_ = read.ping.time;
+        read.altitude = std::max(0.0, field<int32_t>(a.message, jsf::altitude) * 1e-3);
+    read.number = a.number;
     return read;
 }
 
-std::optional<SideScanLine> JsfFile::next() {
+std::optional<RecordedPing> JsfFile::read() {
     const std::optional<Side> first = waiting_ ? std::exchange(waiting_, std::nullopt) : nextSide();
     if (!first) return std::nullopt;
     waiting_ = nextSide();
@@ -199,7 +191,7 @@ std::optional<SideScanLine> JsfFile::next() {
 }
 
 std::vector<std::string> JsfFile::notices() const {
-    std::vector<std::string> all = SideScanFile::notices();
+    std::vector<std::string> all = RecordingReader::notices();
     for (const auto& [type, count] : other_messages_)
         all.push_back(
             fmt::format("{} messages of type {} are omitted: only sonar data (type 80) are read", count, type));

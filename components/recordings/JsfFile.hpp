@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "components/recordings/SideScanFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 
 namespace insonify::recordings {
 
@@ -15,14 +15,11 @@ namespace insonify::recordings {
  *
  *  Samples are envelopes, or the magnitude of analytic data, times 2^-weight; samples before matched filtering are
  *  omitted. Both sides of a ping have the same number; a side without the other becomes a ping of one beam. */
-class JsfFile final : public SideScanFile {
+class JsfFile final : public RecordingReader {
 public:
-    /** Returns whether a file begins like a JSF file. */
-    static bool isOne(const std::filesystem::path& path);
     /** Throws types::ConfigError for a file that cannot be read. */
-    explicit JsfFile(const std::filesystem::path& path) : SideScanFile(path) {}
+    explicit JsfFile(const std::filesystem::path& path) : RecordingReader(path) {}
 
-    std::optional<SideScanLine> next() override;
     std::vector<std::string> notices() const override;
 
 private:
@@ -35,19 +32,19 @@ private:
         double resolution = 0;                      ///< Slant range per sample [m].
     };
 
+    std::optional<RecordedPing> read() override;
     std::optional<Side> nextSide();
     bool isWanted();
     Side side() const;
     double speedOfSound(const Side& side) const;
     types::Time time(const Side& side) const;
     static std::optional<Stated> stated(const Side& side);
-    SideScanLine line(const Side& a, const Side* b);
+    RecordedPing line(const Side& a, const Side* b);
     static void append(const Side& side, types::Sonar& ping);
 
     std::vector<char> packet_;
     std::optional<Side> waiting_;  ///< The first side of the next ping.
     std::optional<int> subsystem_;
-    types::Time last_;
     std::map<int, size_t> other_messages_;    ///< By type.
     std::map<int, size_t> other_subsystems_;  ///< By number.
     std::map<int, size_t> other_formats_;     ///< By data format.

@@ -46,12 +46,7 @@ float sampleAt(std::span<const char> samples, size_t index, size_t bytes, bool i
 
 }  // namespace
 
-bool XtfFile::isOne(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return file.get() == xtf::file_header::mark;
-}
-
-XtfFile::XtfFile(const std::filesystem::path& path) : SideScanFile(path) { readChannels(); }
+XtfFile::XtfFile(const std::filesystem::path& path) : RecordingReader(path) { readChannels(); }
 
 void XtfFile::readChannels() {
     namespace header = xtf::file_header;
@@ -59,9 +54,6 @@ void XtfFile::readChannels() {
     std::vector<char> bytes = take(0, header::size);
     if (bytes.size() < header::size)
         fail(bytes.size(), fmt::format("ends here; an XTF file has a header of {} bytes", header::size));
-    if (field<uint8_t>(bytes, header::format) != header::mark)
-        fail(header::format,
-             fmt::format("is {}; an XTF file begins with {}", field<uint8_t>(bytes, header::format), header::mark));
     in_degrees_ = field<uint16_t>(bytes, header::nav_units) == header::degrees;
     const size_t count =
         size_t{field<uint16_t>(bytes, header::channel_count)} + field<uint16_t>(bytes, header::bathymetry_count);
@@ -106,7 +98,7 @@ bool XtfFile::readPacket() {
     return !packet_.empty();
 }
 
-std::optional<SideScanLine> XtfFile::next() {
+std::optional<RecordedPing> XtfFile::read() {
     while (readPacket()) {
         if (const auto type = field<uint8_t>(packet_, xtf::packet::type); type != xtf::packet::sonar)
             ++other_packets_[type];
@@ -204,7 +196,7 @@ types::Time XtfFile::time() const {
     return {seconds * 1'000'000 + int64_t{hundredths} * 10'000};
 }
 
-std::optional<SideScanFile::Stated> XtfFile::stated() const {
+std::optional<RecordingReader::Stated> XtfFile::stated() const {
     namespace fields = xtf::ping_header;
     const auto pairAt = [&](size_t at) {
         return glm::dvec2(field<double>(packet_, at), field<double>(packet_, at + sizeof(double)));
@@ -227,12 +219,13 @@ void XtfFile::append(const Side& side, bool is_port, types::Sonar& ping) {
         const float value = sampleAt(side.samples, at, side.channel->sample_bytes, is_float);
         return weight == 0 ? value : std::ldexp(value, -weight);
     };
-    appendBeam(is_port, 0, side.count, sample, ping);
+    appendSide(is_port, 0, side.count, sample, ping);
 }
 
-void XtfFile::setBins(const Sides& sides, double speed_of_sound, types::Sonar& ping) {
+void XtfFile::setBins(const Sides& sides, double speed_of_sound, RecordedPing& to) {
     const Side& any = sides.starboard ? *sides.starboard : *sides.port;
-    setResolution(any.resolution(), speed_of_sound, ping);
+    setResolution(any.resolution(), speed_of_sound, to);
+    types::Sonar& ping = to.ping;
     ping.beam_width = any.channel->beam_width;
     ping.beam_height = any.channel->beam_height;
     ping.bin_count = std::max(sides.port ? sides.port->count : 0, sides.starboard ? sides.starboard->count : 0);
@@ -240,7 +233,7 @@ void XtfFile::setBins(const Sides& sides, double speed_of_sound, types::Sonar& p
     if (sides.port) append(*sides.port, true, ping);
 }
 
-std::optional<SideScanLine> XtfFile::line() {
+std::optional<RecordedPing> XtfFile::line() {
     namespace fields = xtf::ping_header;
     if (packet_.size() < fields::size)
         fail(at_ + xtf::packet::bytes,
@@ -255,24 +248,22 @@ std::optional<SideScanLine> XtfFile::line() {
             found.starboard->at,
             fmt::format("the samples are {:.6g} m long, and those to port {:.6g} m; both sides of a ping must be alike",
                         found.starboard->resolution(), found.port->resolution()));
-    SideScanLine read;
+    RecordedPing read;
     read.ping.time = time();
-    setBins(found, speed, read.ping);
+    setBins(found, speed, read);
     const Side& any = found.starboard ? *found.starboard : *found.port;
     const double of_ping = field<uint16_t>(any.header, xtf::channel_header::frequency),
                  of_file = any.channel->frequency_khz;
     read.frequency_khz = of_file > 0 && of_file <= 1e5 ? of_file : of_ping;
-    read.record.sonar = placed(read.ping.time, stated());
+    read.sonar = placed(read.ping.time, stated());
     if (const double altitude = floatAt(packet_, fields::altitude); altitude > 0 && altitude <= 12000)
-        read.record.altitude = altitude;
-    read.record.since_last = last_.isNull() ? 0 : (read.ping.time - last_).seconds();
-    read.record.number = field<uint32_t>(packet_, fields::number);
-    last_ = read.ping.time;
+        read.altitude = altitude;
+    read.number = field<uint32_t>(packet_, fields::number);
     return read;
 }
 
 std::vector<std::string> XtfFile::notices() const {
-    std::vector<std::string> all = SideScanFile::notices();
+    std::vector<std::string> all = RecordingReader::notices();
     for (const auto& [type, count] : other_packets_)
         all.push_back(
             fmt::format("{} packets of type {} are omitted: only side-scan pings (type 0) are read", count, type));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "components/recordings/SideScanFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 
 namespace insonify::recordings {
 
@@ -16,14 +16,11 @@ namespace insonify::recordings {
  *
  *  Samples are the file's: integers, or floats; times 2^-weight if a channel has a weight. A ping without a position of
  *  the sonar has the ship's. */
-class XtfFile final : public SideScanFile {
+class XtfFile final : public RecordingReader {
 public:
-    /** Returns whether a file begins like an XTF file. */
-    static bool isOne(const std::filesystem::path& path);
     /** Throws types::ConfigError for a file that cannot be read or is not an XTF file. */
     explicit XtfFile(const std::filesystem::path& path);
 
-    std::optional<SideScanLine> next() override;
     std::vector<std::string> notices() const override;
 
 private:
@@ -47,22 +44,22 @@ private:
         std::optional<Side> port, starboard;
     };
 
+    std::optional<RecordedPing> read() override;
     void readChannels();
     bool readPacket();
-    std::optional<SideScanLine> line();
+    std::optional<RecordedPing> line();
     Sides sides();
     Side side(size_t offset) const;
     double rangeOf(const Side& side, double speed_of_sound) const;
     double speedOfSound() const;
     types::Time time() const;
     std::optional<Stated> stated() const;
-    void setBins(const Sides& sides, double speed_of_sound, types::Sonar& ping);
+    void setBins(const Sides& sides, double speed_of_sound, RecordedPing& to);
     static void append(const Side& side, bool is_port, types::Sonar& ping);
 
     bool in_degrees_ = false;
     std::vector<Channel> channels_;
     std::vector<char> packet_;
-    types::Time last_;
 
     std::map<int, size_t> other_packets_;      ///< By type.
     std::map<size_t, size_t> other_channels_;  ///< By number.

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <vector>
 
-#include "components/recordings/RecordedFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::recordings {
@@ -110,12 +110,6 @@ struct ZipEntry::Source {
             end(fmt::format("it is damaged behind byte {}", at + window.size()));
     }
 };
-
-bool ZipEntry::isArchive(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    char mark[4] = {};
-    return file.read(mark, sizeof mark) && field<uint32_t>(mark, 0) == zip::magic;
-}
 
 ZipEntry::ZipEntry(const std::filesystem::path& path, const std::string& ending) : source_(std::make_unique<Source>()) {
     Source& source = *source_;

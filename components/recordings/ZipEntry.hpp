@@ -11,8 +11,6 @@ namespace insonify::recordings {
  *  archive, which libraries refuse, can be read up to its end. */
 class ZipEntry {
 public:
-    /** Returns whether a file begins like an archive. */
-    static bool isArchive(const std::filesystem::path& path);
     /** Opens the first file whose name ends in `ending`. Throws types::ConfigError if there is none, and for methods
      *  other than stored and deflated. */
     ZipEntry(const std::filesystem::path& path, const std::string& ending);

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "components/recordings/FanFile.hpp"
-#include "components/recordings/SideScanFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Quaternion.hpp"
@@ -16,6 +15,7 @@ namespace insonify::study {
 namespace {
 
 namespace fs = std::filesystem;
+using recordings::RecordingReader;
 
 /** Returns the named files, and the files of the named folders. */
 std::vector<fs::path> filesOf(const std::vector<std::string>& names) {
@@ -32,13 +32,6 @@ std::vector<fs::path> filesOf(const std::vector<std::string>& names) {
     return files;
 }
 
-std::vector<CodedPing> pingsOfOculus(const fs::path& file) {
-    std::vector<CodedPing> pings;
-    for (const device::OculusPing& ping : device::readOculusPings(file))
-        pings.push_back(codedPing(ping, fmt::format("recorded_{}", ping.number)));
-    return pings;
-}
-
 /** Returns the law of codes with the bits of the max code. */
 receiver::CodeConfig withBits(receiver::CodeConfig code, const std::vector<types::Sonar>& pings) {
     float maximum = 255;
@@ -48,37 +41,39 @@ receiver::CodeConfig withBits(receiver::CodeConfig code, const std::vector<types
     return code;
 }
 
-std::vector<CodedPing> pingsOfSideScan(const fs::path& file, const receiver::CodeConfig& law) {
+/** Returns the pings of a fan. */
+std::vector<CodedPing> pingsOfFan(RecordingReader& reader, const receiver::CodeConfig& assumed) {
+    std::vector<CodedPing> pings;
+    for (auto recorded = reader.next(); recorded; recorded = reader.next()) {
+        receiver::CodeConfig law = recorded->law_known ? recorded->code : assumed;
+        law.bits = recorded->code.bits;
+        const double factor = (std::exp2(law.bits) - 1) / recorded->max_code;
+        if (factor != 1)
+            for (float& bin : recorded->ping.bins) bin = static_cast<float>(static_cast<double>(bin) * factor);
+        CodedPing& coded =
+            pings.emplace_back(codedPing(recorded->ping, law, fmt::format("recorded_{}", recorded->number)));
+        coded.law_known = recorded->law_known;
+        coded.speed_of_sound = recorded->speed_of_sound;
+        coded.frequency_khz = recorded->frequency_khz;
+    }
+    return pings;
+}
+
+/** Returns the lines of a side-scan as a waterfall for each side. */
+std::vector<CodedPing> pingsOfLines(RecordingReader& reader, const receiver::CodeConfig& law) {
     std::vector<types::Sonar> lines;
     std::vector<types::Pose> sonars;
     std::vector<double> altitudes;
     double frequency_khz = 0;
-    const auto recording = recordings::openSideScan(file);
-    for (auto line = recording->next(); line; line = recording->next()) {
+    for (auto line = reader.next(); line; line = reader.next()) {
         frequency_khz = line->frequency_khz;
-        sonars.push_back(line->record.sonar);
-        altitudes.push_back(line->record.altitude);
+        sonars.push_back(line->sonar);
+        altitudes.push_back(line->altitude);
         lines.push_back(std::move(line->ping));
     }
-    if (lines.empty()) throw types::ConfigError(file.string(), "", "has no ping of a side-scan");
     std::vector<CodedPing> sides = codedLines(lines, withBits(law, lines), "recorded", placesOf(sonars, altitudes));
     for (CodedPing& side : sides) side.law_known = false, side.frequency_khz = frequency_khz;
     return sides;
-}
-
-std::vector<CodedPing> pingsOfFan(const fs::path& file, receiver::CodeConfig law) {
-    std::vector<CodedPing> pings;
-    const auto recording = recordings::openFan(file);
-    const std::optional<double> dynamic_range = recording->dynamicRange();
-    if (dynamic_range) law = {.law = receiver::CodeLaw::Log, .dynamic_range_db = *dynamic_range};
-    law.bits = recordings::FanFile::code_bits;
-    for (auto frame = recording->next(); frame; frame = recording->next()) {
-        pings.push_back(codedPing(frame->ping, law, fmt::format("recorded_{}", pings.size())));
-        pings.back().law_known = dynamic_range.has_value();
-        pings.back().frequency_khz = frame->frequency_khz;
-    }
-    if (pings.empty()) throw types::ConfigError(file.string(), "", "has no ping of a sonar");
-    return pings;
 }
 
 bool isLineOfSideScan(const types::Sonar& ping) {
@@ -168,24 +163,6 @@ double CodedPing::levelDb(float code) const {
     return (law.law == receiver::CodeLaw::Sqrt ? 20 : 10) * std::log10(share) / law.gamma;
 }
 
-CodedPing codedPing(const device::OculusPing& ping, std::string name) {
-    CodedPing coded{.name = std::move(name),
-                    .beam_count = ping.beamCount(),
-                    .bin_count = ping.bin_count,
-                    .bearings = ping.bearings,
-                    .codes = {},
-                    .bits = std::min(ping.bits, 16),
-                    .law = {.law = receiver::CodeLaw::Sqrt, .gamma = ping.gamma},
-                    .resolution = ping.range_resolution,
-                    .speed_of_sound = ping.speed_of_sound,
-                    .frequency_khz = ping.frequency_hz / 1e3};
-    for (size_t i = 0; i < ping.codes.size(); ++i) {
-        const double gain = ping.row_gains.empty() ? 1 : std::max(1u, ping.row_gains[i % ping.bin_count]);
-        coded.codes.push_back(static_cast<float>(ping.codes[i] / std::sqrt(gain) / ping.maxCode()));
-    }
-    return coded;
-}
-
 CodedPing codedPing(const types::Sonar& ping, const receiver::CodeConfig& code, std::string name) {
     CodedPing coded{.name = std::move(name),
                     .beam_count = 0,
@@ -233,16 +210,19 @@ std::vector<CodedPing> codedLines(const std::vector<types::Sonar>& lines, const 
     return sides;
 }
 
+std::vector<CodedPing> codedPings(RecordingReader& reader, const receiver::CodeConfig& assumed) {
+    return reader.format().shape == recordings::RecordedShape::Line ? pingsOfLines(reader, assumed)
+                                                                    : pingsOfFan(reader, assumed);
+}
+
 std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, const receiver::CodeConfig* law,
                                      const ReadLog& readLog) {
     const receiver::CodeConfig assumed = law ? *law : receiver::CodeConfig{.law = receiver::CodeLaw::Sqrt};
     std::vector<CodedPing> pings;
     for (const fs::path& file : filesOf(names)) {
         const std::optional<LoggedPings> logged = readLog ? readLog(file) : std::nullopt;
-        for (CodedPing& coded : logged                           ? pingsOfLog(*logged, assumed)
-                                : recordings::openSideScan(file) ? pingsOfSideScan(file, assumed)
-                                : recordings::openFan(file)      ? pingsOfFan(file, assumed)
-                                                                 : pingsOfOculus(file)) {
+        for (CodedPing& coded :
+             logged ? pingsOfLog(*logged, assumed) : codedPings(*RecordingReader::open(file), assumed)) {
             coded.file = file.string();
             const auto isSame = [&](const CodedPing& other) {
                 return other.name == coded.name && other.codes == coded.codes;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "components/device/OculusPing.hpp"
 #include "components/receiver/Receiver.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 
@@ -45,9 +45,6 @@ struct CodedPing {
     double levelDb(float code) const;
 };
 
-/** Returns a recorded ping. If rows have separate gains, codes are divided by sqrt(gain), as open drivers do. */
-CodedPing codedPing(const device::OculusPing& ping, std::string name);
-
 /** Returns a ping that a receiver output as codes, by the receiver's configuration. */
 CodedPing codedPing(const types::Sonar& ping, const receiver::CodeConfig& code, std::string name);
 
@@ -55,6 +52,10 @@ CodedPing codedPing(const types::Sonar& ping, const receiver::CodeConfig& code, 
  *  "NAME_port". Lines that differ in length from the first are omitted. @param places of the lines; empty: unknown */
 std::vector<CodedPing> codedLines(const std::vector<types::Sonar>& lines, const receiver::CodeConfig& code,
                                   const std::string& name, const std::vector<LinePlace>& places = {});
+
+/** Returns the pings of a recording, numbered as in it: "recorded_5"; a side-scan becomes a waterfall for each side.
+ *  @param assumed law of codes whose law the recording does not state */
+std::vector<CodedPing> codedPings(recordings::RecordingReader& reader, const receiver::CodeConfig& assumed);
 
 /** Pings of a log, and the law of their codes if the log states it. */
 struct LoggedPings {
@@ -69,8 +70,9 @@ struct LoggedPings {
  *  of codes. */
 using ReadLog = std::function<std::optional<LoggedPings>(const std::filesystem::path& file)>;
 
-/** Returns the pings of recordings, which are files or folders of files: of an Oculus, an ARIS, a Gemini, a side-scan,
- *  or a log. Names are numbered: "recorded_5". A side-scan becomes a waterfall for each side.
+/** Returns the pings of recordings, which are files or folders of files: of another program or device
+ *  (recordings/RecordingReader.hpp), or a log. Names are numbered: "recorded_5". A side-scan becomes a waterfall for
+ * each side.
  *  @param law of codes whose law the recording does not state; null: codes are proportional to amplitude
  *  @param readLog may be null
  *  @throws types::ConfigError for a file without pings, or a folder without files */

@@ -1,7 +1,6 @@
 #include <opencv2/videoio.hpp>
 
-#include "components/output/VideoFile.hpp"
-#include "types/Ascii.hpp"
+#include "components/output/PictureFiles.hpp"
 
 namespace insonify::video {
 namespace {
@@ -19,9 +18,12 @@ private:
 
 /** Implements output::openVideo. The caller owns the result. */
 extern "C" output::VideoEncoder* insonify_open_video(const char* file, double rate, int width, int height) {
-    const bool avi = types::lowered(std::filesystem::path(file).extension().string()) == ".avi";
-    const int codec = avi ? cv::VideoWriter::fourcc('M', 'J', 'P', 'G') : cv::VideoWriter::fourcc('m', 'p', '4', 'v');
-    cv::VideoWriter writer(file, avi ? cv::CAP_OPENCV_MJPEG : cv::CAP_FFMPEG, codec, rate, cv::Size(width, height));
+    const output::FileFormat* const format = output::findFileFormat(file, output::FileContent::Video);
+    if (!format) return nullptr;
+    const std::string_view codec = format->codec;
+    cv::VideoWriter writer(file, codec == "MJPG" ? cv::CAP_OPENCV_MJPEG : cv::CAP_FFMPEG,
+                           cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]), rate,
+                           cv::Size(width, height));
     return writer.isOpened() ? new OpenCvVideo(std::move(writer)) : nullptr;
 }
 

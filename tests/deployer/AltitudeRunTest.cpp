@@ -108,7 +108,7 @@ TEST_F(AltitudeRunTest, AnXtfFileOfAReplayHasTheAltitudesOfTheRecording) {
     recordings::XtfFile file(folder_ / "out/again.xtf");
     int count = 0;
     for (auto line = file.next(); line; line = file.next(), ++count)
-        EXPECT_NEAR(line->record.altitude, altitudeOf(count), 1e-6) << count;
+        EXPECT_NEAR(line->altitude, altitudeOf(count), 1e-6) << count;
     EXPECT_EQ(count, lines);
 }
 

@@ -196,7 +196,7 @@ TEST_F(FanImportTest, PosesOfTheRecordingBecomeThoseOfTheVehicleAndTheSonar) {
 TEST_F(FanImportTest, ADamagedFileIsOneErrorAndLeavesNoLog) {
     test::RecordedBytes bytes = test::arisHeader();
     writeBytes(folder_ / "empty.aris", bytes);
-    EXPECT_EQ(import("empty.aris").err, "empty.aris: holds no ping of a sonar\n");
+    EXPECT_EQ(import("empty.aris").err, "empty.aris: holds no ping of an ARIS\n");
     bytes.resize(3000);
     writeBytes(folder_ / "zero.aris", bytes);
     EXPECT_THAT(import("zero.aris"),

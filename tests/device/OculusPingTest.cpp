@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "components/device/OculusPing.hpp"
+#include "components/device/OculusRecording.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/OculusMessage.hpp"
 #include "tests/support/Paths.hpp"
@@ -20,11 +21,26 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+/** Returns the pings in a stream of messages. @param diagnostics receives what is wrong with the others, unless null */
+std::vector<OculusPing> pingsIn(std::span<const uint8_t> bytes, std::vector<std::string>* diagnostics = nullptr) {
+    OculusFramer framer;
+    framer.add(bytes);
+    std::vector<OculusPing> pings;
+    for (Bytes message = framer.next(); !message.empty(); message = framer.next()) {
+        if (!oculusHeader(message)->is(OculusId::PingResult)) continue;
+        std::string diagnostic;
+        const auto result = oculusResult(message, &diagnostic);
+        if (result) pings.push_back(pingOf(*result));
+        if (!result && diagnostics) diagnostics->push_back(diagnostic);
+    }
+    return pings;
+}
+
 TEST(OculusPingTest, APingIsReadInEveryVersionAndWidth) {
     for (const uint16_t version : {0, 1, 2})
         for (const bool gains : {false, true}) {
             const Bytes bytes = Sent{.version = version, .gains = gains}.bytes();
-            const auto pings = oculusPings(bytes);
+            const auto pings = pingsIn(bytes);
             ASSERT_EQ(pings.size(), 1u) << version;
             const OculusPing& ping = pings[0];
             EXPECT_EQ(ping.number, 77u);
@@ -38,13 +54,13 @@ TEST(OculusPingTest, APingIsReadInEveryVersionAndWidth) {
             EXPECT_THAT(ping.codes, ElementsAre(0, 1, 10, 11, 20, 21)) << "beam-first";
             EXPECT_EQ(ping.row_gains.size(), gains ? 2u : 0u);
         }
-    const OculusPing wide = oculusPings(Sent{.code_bytes = 2}.bytes()).at(0);
+    const OculusPing wide = pingsIn(Sent{.code_bytes = 2}.bytes()).at(0);
     EXPECT_THAT(wide.codes, ElementsAre(256, 257, 266, 267, 276, 277));
     EXPECT_EQ(wide.maxCode(), 65535);
 }
 
 TEST(OculusPingTest, AMissingSpeedOfSoundIs1500) {
-    OculusPing ping = oculusPings(Sent{}.bytes()).at(0);
+    OculusPing ping = pingsIn(Sent{}.bytes()).at(0);
     ping.speed_of_sound = 0;
     const types::Sonar sonar = sonarOf(ping, {});
     EXPECT_EQ(sonar.speed_of_sound, 1500);
@@ -52,7 +68,7 @@ TEST(OculusPingTest, AMissingSpeedOfSoundIs1500) {
 }
 
 TEST(OculusPingTest, RangesAreThoseOfTheRangeResolution) {
-    OculusPing ping = oculusPings(Sent{}.bytes()).at(0);
+    OculusPing ping = pingsIn(Sent{}.bytes()).at(0);
     for (const double resolution : {0.0015, 0.002, 0.0025, 0.01}) {
         ping.range_resolution = resolution;
         const types::Sonar sonar = sonarOf(ping, {});
@@ -69,31 +85,31 @@ TEST(OculusPingTest, FindsPingsAmongOtherMessages) {
         put<uint16_t>(other, 6, 0xFF);
         for (const Bytes& part : {other, Sent{}.bytes()}) all.insert(all.end(), part.begin(), part.end());
     }
-    EXPECT_EQ(oculusPings(all).size(), 3u);
+    EXPECT_EQ(pingsIn(all).size(), 3u);
 }
 
 TEST(OculusPingTest, RejectsPingsThatContradictThemselves) {
     std::vector<std::string> diagnostics;
     Bytes bytes = Sent{}.bytes();
     put<uint32_t>(bytes, 114, 7);
-    EXPECT_THAT(oculusPings(bytes, &diagnostics), IsEmpty());
+    EXPECT_THAT(pingsIn(bytes, &diagnostics), IsEmpty());
     EXPECT_THAT(diagnostics, ElementsAre(HasSubstr("an image of 7 bytes where bins and beams make 6")));
     for (size_t length = 0; length < Sent{}.bytes().size(); ++length) {
         const Bytes whole = Sent{}.bytes();
-        EXPECT_THAT(oculusPings(std::span(whole).first(length)), IsEmpty()) << length;
+        EXPECT_THAT(pingsIn(std::span(whole).first(length)), IsEmpty()) << length;
     }
     for (const auto& [at, words] : {std::pair{61, "a frequency of nan Hz"}, {85, "a speed of sound of nan m/s"}}) {
         Bytes changed = Sent{}.bytes();
         put<double>(changed, static_cast<size_t>(at), std::nan(""));
         diagnostics.clear();
-        EXPECT_THAT(oculusPings(changed, &diagnostics), IsEmpty());
+        EXPECT_THAT(pingsIn(changed, &diagnostics), IsEmpty());
         EXPECT_THAT(diagnostics, ElementsAre(HasSubstr(words)));
     }
     for (size_t at = 16; at < 128; ++at)  // for any value there, no byte beyond the message is read
         for (const uint8_t value : {0, 1, 127, 255}) {
             Bytes changed = Sent{}.bytes();
             changed[at] = value;
-            EXPECT_LE(oculusPings(changed).size(), 1u);
+            EXPECT_LE(pingsIn(changed).size(), 1u);
         }
 }
 
@@ -102,30 +118,37 @@ TEST(OculusPingTest, AFileWithoutAPingIsRefusedWithTheReason) {
     const auto messageOf = [&](const Bytes& bytes) -> std::string {
         std::ofstream(folder / "a.raw", std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-        return test::errorOf<types::ConfigError>([&] { readOculusPings(folder / "a.raw"); });
+        return test::errorOf<types::ConfigError>([&] { OculusReader(folder / "a.raw").next(); });
     };
     EXPECT_THAT(messageOf({1, 2, 3}), HasSubstr("a.raw: holds no ping of an Oculus"));
     Bytes cut = Sent{}.bytes();
     cut.resize(100);
-    EXPECT_THAT(messageOf(cut), HasSubstr("holds no whole ping: the ping at byte 0 is cut off after 100 bytes"));
+    EXPECT_THAT(messageOf(cut), HasSubstr("holds no ping of an Oculus, and does not begin as a .xtf, "));
+    EXPECT_THAT(messageOf(cut), HasSubstr("; the message at byte 0 is longer than the file"));
     EXPECT_EQ(messageOf(Sent{}.bytes()), "");
-    EXPECT_THROW(readOculusPings(folder / "missing.raw"), types::ConfigError);
-    EXPECT_THROW(readOculusPings(folder / "."), types::ConfigError);
+    EXPECT_THROW(OculusReader(folder / "missing.raw"), types::ConfigError);
+    EXPECT_THROW(OculusReader(folder / "."), types::ConfigError);
 }
 
 TEST(OculusPingTest, ReadsTheRecordingOfAnM1200d) {
     const std::filesystem::path file = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is missing: no recording of a device is tested";
-    const auto pings = readOculusPings(file);
+    OculusReader reader(file);
+    std::vector<recordings::RecordedPing> pings;
+    while (auto ping = reader.next()) pings.push_back(std::move(*ping));
     ASSERT_EQ(pings.size(), 3u);
-    for (const OculusPing& ping : pings) {
-        EXPECT_EQ(ping.beamCount(), 256u);
-        EXPECT_EQ(ping.bin_count, 703u);
-        EXPECT_NEAR(ping.range_resolution, 2.842e-3, 1e-6);
-        EXPECT_NEAR(ping.frequency_hz, 2.0989e6, 100);
-        EXPECT_NEAR(types::degrees(ping.bearings.front()), 30, 1e-9);
-        EXPECT_NEAR(types::degrees(ping.bearings.back()), -30, 1e-9);
+    for (const recordings::RecordedPing& read : pings) {
+        EXPECT_EQ(read.ping.beam_count, 256u);
+        EXPECT_EQ(read.ping.bin_count, 703u);
+        EXPECT_NEAR(read.ping.binStart(1), 2.842e-3, 1e-6);
+        EXPECT_NEAR(read.range, 703 * 2.842e-3, 1e-3);
+        EXPECT_NEAR(read.frequency_khz, 2098.9, 0.1);
+        EXPECT_NEAR(read.ping.bearings.front().deg(), -30, 1e-9) << "starboard first";
+        EXPECT_NEAR(read.ping.bearings.back().deg(), 30, 1e-9);
+        EXPECT_EQ(read.max_code, 255);
+        EXPECT_EQ(read.code.law, receiver::CodeLaw::Sqrt);
     }
+    EXPECT_NEAR(pings[2].since_first, 0.2, 1e-3);
     EXPECT_EQ(pings[2].number, pings[0].number + 2);
 }
 

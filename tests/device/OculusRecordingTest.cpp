@@ -110,7 +110,9 @@ TEST_F(OculusRecordingTest, RealPingsAreRecordedAndPlayedByteForByte) {
         EXPECT_EQ(bytesOf(recorded->ping), messages[i]);
     }
     EXPECT_FALSE(pings.next());
-    EXPECT_THAT(readOculusPings(file_), SizeIs(3));
+    size_t read = 0;
+    for (OculusReader reader(file_); reader.next();) ++read;
+    EXPECT_EQ(read, 3u);
 }
 
 TEST_F(OculusRecordingTest, ACaptureIsTimedByTheDevicesClock) {

@@ -24,7 +24,12 @@ void expectSound(const device::OculusPing& ping) {
 }
 
 void readOculus(const Input& input) try {
-    for (const device::OculusPing& ping : device::readOculusPings(input.file())) expectSound(ping);
+    device::OculusReader reader(input.file());
+    while (const auto read = reader.next()) {
+        EXPECT_NO_THROW(read->ping.validate());
+        EXPECT_GT(read->max_code, 0);
+    }
+    for (const std::string& notice : reader.notices()) expectOurWords(notice);
 } catch (const types::ConfigError& error) {
     expectOurWords(error.what());
 }

@@ -11,12 +11,6 @@
 namespace insonify::fuzz {
 namespace {
 
-void expectSoundPing(const recordings::FanFrame& frame) {
-    EXPECT_GE(frame.altitude, 0);
-    EXPECT_GE(frame.window_start, 0);
-}
-void expectSoundPing(const recordings::SideScanLine& line) { EXPECT_GE(line.record.altitude, 0); }
-
 /** @tparam File reads one format. */
 template <class File>
 void readRecording(const Input& input) try {
@@ -26,7 +20,8 @@ void readRecording(const Input& input) try {
         if (std::is_same_v<File, recordings::XtfFile>) {
             EXPECT_LE(next->ping.bins.size(), input.bytes().size());
         }
-        expectSoundPing(*next);
+        EXPECT_GE(next->altitude, 0);
+        EXPECT_GE(next->window_start, 0);
     }
     for (const std::string& notice : file.notices()) expectOurWords(notice);
 } catch (const types::ConfigError& error) {

@@ -14,7 +14,7 @@ namespace {
 const std::map<std::string, std::set<std::string>> neighbours = {
     {"dataset", {"console", "log", "output", "pose"}},
     {"dds", {"ros"}},
-    {"device", {"console", "output"}},  // readJson, ByteFile
+    {"device", {"console", "output", "recordings"}},  // readJson, ByteFile
     {"framework", {"loader"}},
     {"gazebo", {"meshes", "scene"}},
     {"log", {"ros"}},
@@ -23,11 +23,12 @@ const std::map<std::string, std::set<std::string>> neighbours = {
     {"meshes", {"loader", "scene"}},
     {"noise", {"acoustics"}},
     {"output", {"loader", "recordings"}},
+    {"recordings", {"loader", "receiver"}},  // CodeConfig
     {"replay", {"log"}},
     {"scene", {"acoustics", "loader"}},
     {"sdf", {"meshes", "scene"}},
     {"sonar", {"acoustics", "gpu", "shaders"}},
-    {"study", {"acoustics", "device", "noise", "output", "receiver", "recordings", "scene", "sonar"}},
+    {"study", {"acoustics", "noise", "output", "receiver", "recordings", "scene", "sonar"}},
     {"survey", {"scene"}},
     {"video", {"output"}},
     {"viewer", {"console", "ros"}},

@@ -21,12 +21,34 @@ TEST(FilePatternTest, RefusesAnythingElse) {
         EXPECT_FALSE(FilePattern::parse(pattern)) << pattern;
 }
 
+TEST(FileFormatTest, EachEndingIsFoundInAnyCaseOfLettersWithItsContentOnly) {
+    constexpr FileContent contents[] = {FileContent::Picture, FileContent::Video, FileContent::SideScan};
+    for (const FileContent content : contents) {
+        std::string endings = fileEndings(content);  // ".avi or .mp4"
+        ASSERT_FALSE(endings.empty());
+        for (size_t at = endings.find('.'); at != endings.npos; at = endings.find('.', at + 1)) {
+            const std::string ending = endings.substr(at, endings.find_first_of(", ", at) - at);
+            std::string mixed = ending;
+            mixed[1] = static_cast<char>(std::toupper(mixed[1]));
+            for (const std::string& name : {"a" + ending, "b/c.d" + mixed})
+                for (const FileContent asked : contents)
+                    EXPECT_EQ(findFileFormat(name, asked) != nullptr, asked == content) << name;
+            EXPECT_EQ(findFileFormat("a" + ending, content)->write != nullptr, content == FileContent::Picture);
+            EXPECT_EQ(findFileFormat("a" + ending, content)->codec.size(), content == FileContent::Video ? 4u : 0u);
+            EXPECT_EQ(FilePattern::parse("fan_%d" + mixed).has_value(), content == FileContent::Picture) << mixed;
+        }
+    }
+    EXPECT_EQ(findFileFormat("png", FileContent::Picture), nullptr);
+    EXPECT_EQ(findFileFormat("", FileContent::Picture), nullptr);
+}
+
 TEST(RecordingConfigTest, ReportsNamesThatCannotBeWritten) {
-    using testing::ElementsAre, testing::IsEmpty, testing::StartsWith;
+    using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
     EXPECT_THAT(test::refusalsOf(RecordingConfig{}), IsEmpty());
     EXPECT_THAT(test::refusalsOf(RecordingConfig{.file = "a%d.png", .video = "b.mp4", .video_rate = {}}), IsEmpty());
     EXPECT_THAT(test::refusalsOf(RecordingConfig{.file = "%s%n", .video = "b.mkv", .video_rate = {}}),
-                ElementsAre(StartsWith("file: "), StartsWith("video: ")));
+                ElementsAre(HasSubstr("must have one number and end in " + fileEndings(FileContent::Picture)),
+                            HasSubstr("video: is 'b.mkv'; it must end in .avi or .mp4")));
 }
 
 }  // namespace

@@ -179,6 +179,8 @@ TEST(XtfConfigTest, RequiresTheFileExtension) {
     EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
     config.file = "line.jsf";
     EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("is line.jsf; must end in .xtf")));
+    config.file = "LINE.Xtf";
+    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
 }
 
 TEST_F(XtfTest, EveryPingIsWrittenWhenTheClockIsSetOrARecordingRepeats) {

@@ -10,7 +10,7 @@
 #include "components/log/Writer.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "components/output/FanShape.hpp"
-#include "components/recordings/SideScanFile.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "components/recordings/Xtf.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/sonar/bins/Detection.hpp"
@@ -119,7 +119,7 @@ double xtfRange(const Rendered& made, const std::filesystem::path& path) {
     std::vector<char> bytes = recordings::xtfHeader({recordings::XtfSamples::Float32, 0, "x"}, line);
     recordings::appendXtfPing({recordings::XtfSamples::Float32, 0, "x"}, line, {}, bytes);
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    const auto read = recordings::openSideScan(path)->next();
+    const auto read = recordings::RecordingReader::open(path)->next();
     return read ? read->ping.binStart(made.first + 0.5) : 0;
 }
 

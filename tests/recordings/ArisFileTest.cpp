@@ -22,8 +22,8 @@ ArisFrame smallFrame(uint64_t after_us = 0) {
     return frame;
 }
 
-struct ArisFileTest : RecordedFileTest<FanFile> {
-    ArisFileTest() : RecordedFileTest("fish.aris", openFan) {}
+struct ArisFileTest : RecordedFileTest {
+    ArisFileTest() : RecordedFileTest("fish.aris") {}
 };
 
 TEST_F(ArisFileTest, EveryModelHasItsPublishedBearingsFromStarboard) {
@@ -38,7 +38,7 @@ TEST_F(ArisFileTest, EveryModelHasItsPublishedBearingsFromStarboard) {
         ArisFrame frame{.model = the.model, .ping_mode = the.ping_mode, .is_telephoto = the.is_telephoto};
         frame.is_high = the.frequency_khz == 3000 || (the.model == 0 && the.ping_mode == 3);
         frame.samples.assign(frame.beams(), '\1');
-        const FanFrame read = this->read(arisFile({frame})).at(0);
+        const RecordedPing read = this->read(arisFile({frame})).at(0);
         const auto& bearings = read.ping.bearings;
         ASSERT_EQ(bearings.size(), frame.beams());
         EXPECT_NEAR(bearings.front().deg(), the.starboard_deg, 1e-12);
@@ -78,7 +78,7 @@ TEST_F(ArisFileTest, SamplesAreAtTheirBeamAndRange) {
         frame.sound_speed = 1400 + static_cast<float>(random() % 200);
         const uint32_t rows = 1 + random() % 50, beams = frame.beams();
         frame.samples = randomSamples(size_t{rows} * beams, random);
-        const FanFrame read = this->read(arisFile({frame})).at(0);
+        const RecordedPing read = this->read(arisFile({frame})).at(0);
         const types::Sonar& ping = read.ping;
         ASSERT_NO_THROW(ping.validate());
         const uint32_t first = ping.bin_count - rows;

@@ -47,12 +47,12 @@ GlfImage smallImage(double after_s = 0) {
     return image;
 }
 
-struct GlfFileTest : RecordedFileTest<FanFile> {
-    GlfFileTest() : RecordedFileTest("dive.glf", openFan) {}
+struct GlfFileTest : RecordedFileTest {
+    GlfFileTest() : RecordedFileTest("dive.glf") {}
 };
 
 TEST_F(GlfFileTest, OrdersBeamsFromStarboardWithTheirBearings) {
-    const FanFrame read = this->read(glfFile({glfRecord(smallImage())})).at(0);
+    const RecordedPing read = this->read(glfFile({glfRecord(smallImage())})).at(0);
     EXPECT_THAT(read.ping.bins, ElementsAre(3, 6, 2, 5, 1, 4));
     EXPECT_DOUBLE_EQ(read.ping.bearings[0].rad, -0.6);
     EXPECT_DOUBLE_EQ(read.ping.bearings[2].rad, 0.5) << "positive to port";
@@ -73,7 +73,7 @@ TEST_F(GlfFileTest, SamplesDoNotDependOnThePacking) {
         for (uint32_t beam = 0; beam < beams; ++beam)
             image.bearings.push_back(1 - 2.0 * beam / beams + 1e-3 * static_cast<double>(random() % 10));
         const RecordedBytes samples = randomSamples(size_t{beams} * rows, random);
-        std::vector<FanFrame> all;
+        std::vector<RecordedPing> all;
         for (const int way : {0, 1, 2, 3}) {
             image.version = way < 2 ? 3 : 1;
             image.compression = static_cast<uint16_t>(way % 2);
@@ -86,7 +86,7 @@ TEST_F(GlfFileTest, SamplesDoNotDependOnThePacking) {
                               .at(0));
             EXPECT_FALSE(isNoticed("checksum"));
         }
-        for (const FanFrame& frame : all) {
+        for (const RecordedPing& frame : all) {
             EXPECT_EQ(frame.ping.bins, all[0].ping.bins);
             EXPECT_EQ(frame.ping.bin_count, image.end_range);
             EXPECT_NEAR(frame.window_start, image.start_range * 0.02, 1e-6);

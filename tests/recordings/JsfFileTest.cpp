@@ -54,12 +54,12 @@ std::vector<char> joined(const std::vector<std::vector<char>>& messages) {
     return bytes;
 }
 
-struct JsfFileTest : RecordedFileTest<SideScanFile> {
-    JsfFileTest() : RecordedFileTest("line.jsf", openSideScan) {}
+struct JsfFileTest : RecordedFileTest {
+    JsfFileTest() : RecordedFileTest("line.jsf") {}
 };
 
 TEST_F(JsfFileTest, JoinsBothSidesOfAPing) {
-    const std::vector<SideScanLine> lines =
+    const std::vector<RecordedPing> lines =
         read(joined({sonarData(0, 0, 1000), sonarData(0, 1, 100), sonarData(1, 0, 2000), sonarData(1, 1, 200)}));
     ASSERT_EQ(lines.size(), 2u);
     const types::Sonar& ping = lines[0].ping;
@@ -70,14 +70,14 @@ TEST_F(JsfFileTest, JoinsBothSidesOfAPing) {
     EXPECT_EQ(ping.bin_duration.microseconds, 20);
     EXPECT_EQ(ping.speed_of_sound, 1480);
     EXPECT_EQ(lines[0].frequency_khz, 450);
-    EXPECT_EQ(lines[0].record.altitude, 6.25);
+    EXPECT_EQ(lines[0].altitude, 6.25);
     EXPECT_EQ(lines[1].ping.time.microseconds, 1'700'000'001'250'000);
 }
 
 TEST_F(JsfFileTest, ConvertsPosesToRocksFrames) {
-    const std::vector<SideScanLine> lines =
+    const std::vector<RecordedPing> lines =
         read(joined({sonarData(0, 0, 1000), sonarData(0, 1, 100), sonarData(1, 0, 2000), sonarData(1, 1, 200)}));
-    const types::Pose& pose = lines[1].record.sonar;
+    const types::Pose& pose = lines[1].sonar;
     EXPECT_NEAR(pose.position.x, 111.2, 0.02) << "a thousandth of a degree to the north";
     EXPECT_NEAR(pose.position.y, 0, 1e-9);
     EXPECT_NEAR(pose.position.z, -4.5, 1e-9);
@@ -89,7 +89,7 @@ TEST_F(JsfFileTest, ConvertsPosesToRocksFrames) {
 }
 
 TEST_F(JsfFileTest, KeepsEveryPingIfASideIsMissingOrSettingsChange) {
-    const std::vector<SideScanLine> lines =
+    const std::vector<RecordedPing> lines =
         read(joined({sonarData(0, 0, 1000), sonarData(1, 0, 2000), sonarData(1, 1, 200, 6), sonarData(2, 1, 300, 9)}));
     ASSERT_EQ(lines.size(), 3u);
     EXPECT_EQ(lines[0].ping.beam_count, 1u);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "components/device/OculusRecording.hpp"
 #include "components/study/likeness/Likeness.hpp"
 #include "tests/support/Paths.hpp"
 #include "types/Hash.hpp"
@@ -152,9 +153,8 @@ TEST(LikenessTest, DrawsFansSideBySide) {
 TEST(LikenessTest, RecordingsOfAnM1200dResembleEachOtherButNotWrongPictures) {
     const std::filesystem::path file = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: nothing is held against recordings";
-    std::vector<CodedPing> recorded;
-    for (const auto& ping : device::readOculusPings(file))
-        recorded.push_back(codedPing(ping, "recorded_" + std::to_string(ping.number)));
+    device::OculusReader reader(file);
+    const std::vector<CodedPing> recorded = codedPings(reader, {});
     ASSERT_EQ(recorded.size(), 3u);
     const LikenessResult result = studyLikeness({recorded[0], recorded[1]}, &recorded[2]);
     const Looks& looks = result.recorded;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "components/device/OculusRecording.hpp"
 #include "components/noise/Noise.hpp"
 #include "components/study/SpeckleStatistics.hpp"
 #include "tests/support/Paths.hpp"
@@ -167,8 +168,8 @@ TEST(SpeckleStatisticsTest, LoudPartsOfPingsOfAnM1200dAreStillAndTheRestIsRaylei
     const std::filesystem::path file = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: nothing is held against recordings";
     std::vector<SpeckleField> loud, far;
-    for (const device::OculusPing& recorded : device::readOculusPings(file)) {
-        const CodedPing ping = codedPing(recorded, "recorded");
+    device::OculusReader reader(file);
+    for (const CodedPing& ping : codedPings(reader, {})) {
         EXPECT_EQ(loudestSlice(ping), 3u);
         loud.push_back(sliceOf(overPatches(ping), 3));
         far.push_back(sliceOf(overPatches(ping), 7));

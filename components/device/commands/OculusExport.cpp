@@ -1,11 +1,13 @@
+#include "components/device/commands/OculusExport.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "components/console/Json.hpp"
 #include "components/deployer/StreamMeaning.hpp"
 #include "components/device/OculusPing.hpp"
 #include "components/device/OculusRecording.hpp"
-#include "components/device/commands/OculusLog.hpp"
 #include "components/log/Reader.hpp"
 #include "types/ConfigError.hpp"
 
