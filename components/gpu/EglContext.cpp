@@ -95,8 +95,8 @@ std::vector<EGLDeviceEXT> devices() {
 }
 
 bool isSoftwareDevice(EGLDeviceEXT device) {
-    const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
-    return extensions && std::string(extensions).find("EGL_MESA_device_software") != std::string::npos;
+    const char* of_device = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    return of_device && std::string(of_device).find("EGL_MESA_device_software") != std::string::npos;
 }
 
 EGLDisplay initialised(EGLDisplay display) {
