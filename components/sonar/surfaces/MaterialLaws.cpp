@@ -15,7 +15,6 @@ namespace {
 
 static_assert(acoustics::BackscatterTable::entries == BACKSCATTER_ENTRIES);
 
-constexpr double water_density = 1025;   ///< [kg/m^3]
 constexpr double min_lobe_share = 1e-4;  ///< A rough solid whose lobe has less energy has no lobe [1].
 
 /** Input and code of shaders/backscatter.glsl. */

@@ -12,7 +12,6 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double water_density = 1025;                   ///< [kg/m^3]
 constexpr acoustics::Fluid air{1.23, 340};               ///< Compressed air is denser, which has no effect on a wall.
 constexpr size_t narrow_cells = 4096, mean_cells = 512;  ///< Of tables of one frequency, and of means over a resonance.
 constexpr double min_first = 1e-4;  ///< Min share of the first return, to which the others are relative [1].

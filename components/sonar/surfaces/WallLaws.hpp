@@ -11,6 +11,8 @@
 
 namespace insonify::sonar {
 
+inline constexpr double water_density = 1025;  ///< Of the sonar's water [kg/m^3].
+
 /** Material behind a wall that is neither water nor air (ACOUSTICS.md 5.26). */
 struct WallFill {
     double speed_ratio = 1;  ///< Its speed of sound relative to the sonar's water [1].
