@@ -85,7 +85,7 @@ void XtfFile::readChannels() {
     }
 }
 
-bool XtfFile::readPacket() {
+bool XtfFile::nextPacket() {
     packet_ = readPacket(xtf::packet::size, [&](std::span<const char> head) -> uint64_t {
         if (const auto mark = field<uint16_t>(head, xtf::packet::mark); mark != xtf::packet::magic)
             fail(at_, fmt::format("is 0x{:04X}; a packet begins with 0x{:04X}", mark, xtf::packet::magic));
@@ -99,7 +99,7 @@ bool XtfFile::readPacket() {
 }
 
 std::optional<RecordedPing> XtfFile::read() {
-    while (readPacket()) {
+    while (nextPacket()) {
         if (const auto type = field<uint8_t>(packet_, xtf::packet::type); type != xtf::packet::sonar)
             ++other_packets_[type];
         else if (auto read = line())

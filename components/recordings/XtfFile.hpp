@@ -46,7 +46,7 @@ private:
 
     std::optional<RecordedPing> read() override;
     void readChannels();
-    bool readPacket();
+    bool nextPacket();
     std::optional<RecordedPing> line();
     Sides sides();
     Side side(size_t offset) const;

@@ -60,7 +60,7 @@ struct SharedBins : Bins {
 #undef HAVE_PHYSICAL
 
 /** Returns a quantum of the sums [sr]. */
-double quantumOf(const TracedPing& ping) {
+inline double quantumOf(const TracedPing& ping) {
     return ping.view.cells.cell() / (quanta_per_unit * ping.rules.strength_scale);
 }
 
