@@ -28,7 +28,7 @@ using framework::PropertyInfo;
 using framework::TaskState;
 
 /** Numbers, booleans and lists unchanged, other values as text; null without a default. */
-Json default(const PropertyInfo& property) {
+Json defaultJson(const PropertyInfo& property) {
     if (property.default_value.empty()) return nullptr;
     const Json value = Json::parse(property.default_value, nullptr, false);
     return value.is_number() || value.is_boolean() || value.is_array() ? value : Json(property.default_value);
@@ -38,7 +38,7 @@ Json boundOf(double bound) { return std::isfinite(bound) ? Json(bound) : Json(nu
 
 Json propertyJson(const PropertyInfo& property) {
     return {{"name", property.name},        {"type", property.type},        {"unit", property.unit},
-            {"default", default(property)}, {"min", boundOf(property.min)}, {"max", boundOf(property.max)},
+            {"default", defaultJson(property)}, {"min", boundOf(property.min)}, {"max", boundOf(property.max)},
             {"doc", property.doc}};
 }
 

@@ -132,11 +132,11 @@ RecordedTasks recordedTasks(const DeploymentSpec& spec, const char* sonar_type) 
     tasks.max_code = std::exp2(receiver.config->code.value_or(receiver::CodeConfig{}).bits) - 1;
     constexpr bool is_fan = std::is_same_v<Sonar, sonar::SonarTask>;
     if constexpr (is_fan) tasks.has_beam_width = sonar->sonarConfig().beam_width_deg.has_value();
-    const std::set<std::string> upstream = upstream({tasks.sonar}, deployment);
+    const std::set<std::string> sources = upstream({tasks.sonar}, deployment);
     for (const auto& task : deployment.tasks())
         if (const auto* source = dynamic_cast<const pose::TrajectoryTask*>(task.get())) {
             tasks.trajectories.emplace_back(source->name() + ".pose", source->trajectory());
-            if (is_fan || upstream.contains(source->name())) tasks.vehicles.push_back(source->name() + ".pose");
+            if (is_fan || sources.contains(source->name())) tasks.vehicles.push_back(source->name() + ".pose");
         }
     if (is_fan && tasks.vehicles.empty()) tasks.vehicles = {"vehicle.pose"};
     return tasks;

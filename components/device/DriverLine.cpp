@@ -138,7 +138,7 @@ DriverLine::Datagram DriverLine::receiveDatagram(Duration patience) const {
     return datagram;
 }
 
-std::vector<Ipv4> ipv4(const std::string& host) {
+std::vector<Ipv4> hostAddresses(const std::string& host) {
     std::vector<Ipv4> found;
     try {
         const Addresses all = addresses(host, 1, SOCK_DGRAM);

@@ -155,7 +155,7 @@ bool isOf(const DriverLine::Datagram& datagram, const std::vector<Ipv4>& address
 /** Listens until the device at this host has identified itself; ignores other devices. */
 std::optional<std::string> overhear(const Probe& probe, const DriverLine& line, const std::string& host,
                                     std::chrono::milliseconds patience) {
-    const std::vector<Ipv4> addresses = ipv4(host == "::1" ? "127.0.0.1" : host);
+    const std::vector<Ipv4> addresses = hostAddresses(host == "::1" ? "127.0.0.1" : host);
     const auto end = Clock::now() + patience;
     while (Clock::now() < end) {
         const auto received =
