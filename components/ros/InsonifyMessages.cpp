@@ -1,9 +1,9 @@
 #include "components/ros/InsonifyMessages.hpp"
 
-#include <cassert>
 #include <string_view>
 
 #include "components/ros/Stamps.hpp"
+#include "types/Check.hpp"
 #include "types/RequireSound.hpp"
 
 namespace insonify::ros {
@@ -32,7 +32,7 @@ void copyFieldsByName(const From& from, To& to) {
             if constexpr (requires { assign(value, target); })
                 assign(value, target);
             else
-                assert(!"fields of the same name have types that do not match");
+                INSONIFY_CHECK(false && "fields of the same name have types that match", wanted.name);
         };
         From::describe(from, give);
     };

@@ -10,6 +10,7 @@
 #include "components/sonar/beams/RangeResponse.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/plan/Effects.hpp"
+#include "types/Check.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -171,6 +172,8 @@ EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), respons
 }
 
 bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread) {
+    INSONIFY_CHECK(thread < scratch_.size(), thread, scratch_.size());
+    INSONIFY_CHECK((cell + 1) * numbers() <= cells_.size(), cell, numbers(), cells_.size());
     Scratch& scratch = scratch_[thread];
     const double quantum = std::sqrt(solid_angle / rules.strength_scale) / quanta_per_unit;
     const size_t cells = response_.cells(), samples = response_.samples(), stride = cells / samples;
@@ -186,11 +189,15 @@ bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, 
 }
 
 std::span<float> EchoField::energies(size_t thread) {
+    INSONIFY_CHECK(thread < scratch_.size(), thread, scratch_.size());
     std::ranges::fill(scratch_[thread].energies, 0.0f);
     return scratch_[thread].energies;
 }
 
 void EchoField::addEnergies(size_t cell, std::span<const float> intensities, size_t thread) {
+    INSONIFY_CHECK(thread < scratch_.size(), thread, scratch_.size());
+    INSONIFY_CHECK((cell + 1) * numbers() <= cells_.size(), cell, numbers(), cells_.size());
+    INSONIFY_CHECK(intensities.size() == response_.cells(), intensities.size(), response_.cells());
     Scratch& scratch = scratch_[thread];
     for (size_t k = 0; k < response_.cells(); ++k)
         scratch.sorted[response_.place(k)] = scratch.sorted[response_.place(k) + 1] = 0;
@@ -246,6 +253,8 @@ void EchoField::form(ThreadPool& threads) {
 }
 
 void EchoField::add(size_t beam, double range, std::complex<double> field) {
+    INSONIFY_CHECK((beam + 1) * numbers() <= beams().size(), beam, numbers(), beams().size());
+    INSONIFY_CHECK(std::isfinite(range) && std::isfinite(std::abs(field)), range, field.real(), field.imag());
     const double width = response_.sampleWidth();
     const double first = std::max(0.0, binAt(range - response_.reach(), width));
     const double last = binAt(range + response_.reach(), width);

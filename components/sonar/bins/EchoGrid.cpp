@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "types/Check.hpp"
+
 namespace insonify::sonar {
 
 Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, bool of_fields) {
@@ -64,6 +66,8 @@ void EchoGrid::finishBeam(size_t beam, std::span<float> padded, types::Sonar& pi
 }
 
 void EchoGrid::finish(types::Sonar& ping, ThreadPool& threads) {
+    INSONIFY_CHECK(ping.bins.size() == beam_count_ * bin_count_, ping.bins.size(), beam_count_, bin_count_);
+    INSONIFY_CHECK(!response_ || padded_.size() >= static_cast<size_t>(threads.size()), padded_.size());
     if (passes()) return;
     const auto eachOf = [&](size_t count, const auto& work) {
         threads.run([&](int part, int parts) {

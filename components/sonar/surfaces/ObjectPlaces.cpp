@@ -10,6 +10,7 @@
 
 #include "components/sonar/surfaces/NearestPoint.hpp"
 #include "types/Angle.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -124,6 +125,8 @@ void ObjectPlaces::joinExtents() {
 }
 
 void ObjectPlaces::place(const types::Snapshot& snapshot) {
+    for (const types::MovedObject& moved : snapshot.moved)
+        INSONIFY_CHECK(moved.object < world_from_object_.size(), moved.object, world_from_object_.size());
     for (size_t i = 0; i < geometry_.objects.size(); ++i)
         world_from_object_[i] = geometry_.objects[i].world_from_object;
     for (const types::MovedObject& moved : snapshot.moved) world_from_object_[moved.object] = moved.world_from_object;
