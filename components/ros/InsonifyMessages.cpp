@@ -4,7 +4,7 @@
 
 #include "components/ros/Stamps.hpp"
 #include "types/Check.hpp"
-#include "types/RequireSound.hpp"
+#include "types/Samples.hpp"
 
 namespace insonify::ros {
 namespace {

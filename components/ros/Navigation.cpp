@@ -5,7 +5,7 @@
 
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/RequireSound.hpp"
+#include "types/Samples.hpp"
 #include "types/WorldFrame.hpp"
 
 namespace insonify::ros {

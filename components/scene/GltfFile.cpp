@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "types/ConfigError.hpp"
-#include "types/Reason.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/surfaces/Sightlines.hpp"
-#include "types/RecurringDiagnostic.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::sonar {
 
