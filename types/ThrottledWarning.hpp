@@ -44,7 +44,7 @@ public:
     std::map<std::string, uint64_t> byReason() const;
     /** Returns "3 messages dropped; the last: ..." for the first event, and then at most once per interval if there are
      *  new events; else empty. */
-    std::string takeWarning(Clock::time_point now = Clock::now());
+    std::string consumeWarning(Clock::time_point now = Clock::now());
     /** Returns a line for each reason: "3 messages dropped: /auv/odometry: ...". */
     std::vector<std::string> summary() const;
 

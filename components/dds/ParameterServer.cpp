@@ -58,8 +58,8 @@ std::string quotedText(const std::string& text) {
 
 /** Formats a value as a setter accepts it. @param is_text whether the property is a text; else texts are YAML.
  *  Throws std::runtime_error for an unknown type. */
-std::string yamlOf(const ParameterValue& value, bool is_text) {
-    const auto listOf = [](const auto& items, const auto& text) {
+std::string yaml(const ParameterValue& value, bool is_text) {
+    const auto list = [](const auto& items, const auto& text) {
         std::vector<std::string> texts;
         for (const auto& item : items) texts.push_back(text(item));
         return fmt::format("[{}]", fmt::join(texts, ", "));
@@ -71,12 +71,12 @@ std::string yamlOf(const ParameterValue& value, bool is_text) {
         case ParameterType::Integer: return std::to_string(value.integer_value);
         case ParameterType::Double: return realText(value.double_value);
         case ParameterType::String: return is_text ? quotedText(value.string_value) : value.string_value;
-        case ParameterType::ByteArray: return listOf(value.byte_array_value, whole);
+        case ParameterType::ByteArray: return list(value.byte_array_value, whole);
         case ParameterType::BoolArray:
-            return listOf(value.bool_array_value, [](uint8_t item) { return item ? "true" : "false"; });
-        case ParameterType::IntegerArray: return listOf(value.integer_array_value, whole);
-        case ParameterType::DoubleArray: return listOf(value.double_array_value, realText);
-        case ParameterType::StringArray: return listOf(value.string_array_value, quotedText);
+            return list(value.bool_array_value, [](uint8_t item) { return item ? "true" : "false"; });
+        case ParameterType::IntegerArray: return list(value.integer_array_value, whole);
+        case ParameterType::DoubleArray: return list(value.double_array_value, realText);
+        case ParameterType::StringArray: return list(value.string_array_value, quotedText);
     }
     throw std::runtime_error(fmt::format("a parameter has no type {}", value.type));
 }
@@ -135,7 +135,7 @@ SetParametersResult setOne(types::DeploymentControl& deployment, const std::stri
     std::string operation = parameter.name;
     operation[dot + 1] = types::raised(operation[dot + 1]);
     operation.insert(dot + 1, "set");
-    deployment.call(operation, {yamlOf(parameter.value, info->type == "string")});
+    deployment.call(operation, {yaml(parameter.value, info->type == "string")});
     return {true, ""};
 } catch (const std::exception& error) {
     return {false, parameter.name + ": " + types::reasonOf(error)};

@@ -73,7 +73,7 @@ using Encode = std::function<void(const Sample&, const TopicOptions&, Bytes&)>;
 
 /** Returns the encoder; empty if a Sample cannot be converted to the message. */
 template <class Sample>
-Encode<Sample> encoderOf(MessageType type) {
+Encode<Sample> encoder(MessageType type) {
     return withMessage(type, [&]<class Message>(std::type_identity<Message>) -> Encode<Sample> {
         if constexpr (Fills<Sample, Message>)
             return [message = Message{}](const Sample& sample, const TopicOptions& options, Bytes& bytes) mutable {
@@ -88,7 +88,7 @@ Encode<Sample> encoderOf(MessageType type) {
 
 template <class Sample>
 bool canBe(MessageType type) {
-    return encoderOf<Sample>(type) != nullptr;
+    return encoder<Sample>(type) != nullptr;
 }
 
 /** Returns the types of messages that a Sample can become, as in YAML: "nav_msgs/Odometry, ...". */
@@ -121,7 +121,7 @@ public:
                 types::ThrottledWarning& drops)
         : topic_(topic.topic),
           options_(optionsOf(config, topic, frame_prefix)),
-          encode_(encoderOf<Sample>(topic.type)),
+          encode_(encoder<Sample>(topic.type)),
           writer_(writerOf(node, config, topic)),
           drops_(drops) {
         node.addWriter(writer_.handle());
@@ -134,13 +134,13 @@ public:
 
     /** Sets the device's frequency [kHz], which is used if the topic does not name one, and what is known of its
      *  bins. */
-    void takeSonar(double khz, const types::ReturnRules& returns) {
+    void setSonar(double khz, const types::ReturnRules& returns) {
         if (!names_frequency_) options_.messages.frequency_khz = khz;
         options_.messages.returns = returns;
     }
 
     /** Returns a remedy once, if a message was larger than Linux's default receive buffers; else an empty text. */
-    std::string takeSizeWarning() {
+    std::string consumeSizeWarning() {
         constexpr size_t usual_buffer = 212'992;  // net.core.rmem_default [B]
         if (maximum_ <= usual_buffer || std::exchange(size_is_reported_, true)) return "";
         const bool can_shrink =

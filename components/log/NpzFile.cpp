@@ -79,7 +79,7 @@ std::string npyHeader(const std::string& type, const std::vector<size_t>& shape)
 }
 
 /** Returns the code points of a UTF-8 text; each byte outside of a complete, shortest sequence is U+FFFD. */
-std::u32string codePointsOf(const std::string& text) {
+std::u32string codePoints(const std::string& text) {
     constexpr char32_t replacement = 0xFFFD, first_surrogate = 0xD800, last_surrogate = 0xDFFF, last = 0x10FFFF;
     constexpr char32_t shortest[] = {0, 0x80, 0x800, 0x10000};  // by the number of further bytes
     std::u32string points;
@@ -133,7 +133,7 @@ void NpzFile::end() {
 
 void NpzFile::texts(const std::string& name, const std::vector<size_t>& shape, const std::vector<std::string>& values) {
     std::vector<std::u32string> wide;
-    for (const std::string& value : values) wide.push_back(codePointsOf(value));
+    for (const std::string& value : values) wide.push_back(codePoints(value));
     size_t longest = 1;
     for (const std::u32string& text : wide) longest = std::max(longest, text.size());
     begin(name, "<U" + std::to_string(longest), shape);

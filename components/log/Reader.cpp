@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "components/log/TypeNames.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
@@ -124,7 +124,7 @@ std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_d
     return std::make_unique<pocolog::Reader>(path, at_damage);
 }
 
-std::optional<std::filesystem::path> propertyLogOf(const Reader& log) {
+std::optional<std::filesystem::path> propertyLog(const Reader& log) {
     const std::filesystem::path path = log.path().parent_path() / "properties.0.log";
     if (path == log.path() || !std::filesystem::is_regular_file(path)) return {};
     const auto properties = openLog(path);

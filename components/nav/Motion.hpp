@@ -43,7 +43,7 @@ public:
 
     /** Returns the warning about a pause before the last pose; empty without one. It is repeated only after ten poses
      *  in time (types::RecurringDiagnostic). */
-    std::string takeWarning();
+    std::string consumeWarning();
 
 private:
     Motion middle() const;

@@ -31,7 +31,7 @@ Array gridOf(const char* name, const auto& numbers, const auto& sample) {
     return {name, typeOf<Number>(), numbers.data(), {sample.beam_count, sample.bin_count}, 2};
 }
 
-Array listOf(const char* name, const void* numbers, uint64_t size) { return {name, "f8", numbers, {size}, 1}; }
+Array list(const char* name, const void* numbers, uint64_t size) { return {name, "f8", numbers, {size}, 1}; }
 
 /** Reports numbers outside the ranges of their properties. */
 struct RangeCheck {
@@ -69,8 +69,8 @@ public:
     }
     std::vector<Array> arrays() const override {
         std::vector<Array> arrays{gridOf("bins", ping_->bins, *ping_),
-                                  listOf("bearings", ping_->bearings.data(), ping_->bearings.size()),
-                                  listOf("ranges", ranges_.data(), ranges_.size())};
+                                  list("bearings", ping_->bearings.data(), ping_->bearings.size()),
+                                  list("ranges", ranges_.data(), ranges_.size())};
         if (truth_) addTruth(arrays, *truth_);
         return arrays;
     }
@@ -118,9 +118,9 @@ public:
         const auto cube = [&](const char* name, const char* type, const void* numbers) {
             return Array{name, type, numbers, {count_, first_->beam_count, first_->bin_count}, 3};
         };
-        std::vector<Array> arrays{cube("bins", "f4", bins_.data()), listOf("times", times_.data(), count_),
-                                  listOf("bearings", first_->bearings.data(), first_->bearings.size()),
-                                  listOf("ranges", ranges_.data(), ranges_.size())};
+        std::vector<Array> arrays{cube("bins", "f4", bins_.data()), list("times", times_.data(), count_),
+                                  list("bearings", first_->bearings.data(), first_->bearings.size()),
+                                  list("ranges", ranges_.data(), ranges_.size())};
         const types::SonarTruth shape;
         types::SonarTruth::forEachArray(shape, [&](const char* name, const auto& numbers, auto) {
             using Number = typename std::remove_cvref_t<decltype(numbers)>::value_type;
@@ -161,13 +161,13 @@ struct PictureHandle final : Handle {
 struct PoseHandle final : Handle {
     double numbers[8];  ///< Time [s], place [m], quaternion w, x, y, z.
     Json facts() const override { return {{"kind", "pose"}}; }
-    std::vector<Array> arrays() const override { return {listOf("numbers", numbers, std::size(numbers))}; }
+    std::vector<Array> arrays() const override { return {list("numbers", numbers, std::size(numbers))}; }
 };
 
 struct NumberHandle final : Handle {
     double number = 0;
     Json facts() const override { return {{"kind", "number"}}; }
-    std::vector<Array> arrays() const override { return {listOf("number", &number, 1)}; }
+    std::vector<Array> arrays() const override { return {list("number", &number, 1)}; }
 };
 
 /** A text, or a number without a fraction. */

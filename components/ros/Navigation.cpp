@@ -1,5 +1,3 @@
-#include "components/ros/Navigation.hpp"
-
 #include <cmath>
 #include <glm/matrix.hpp>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "components/sonar/bins/BinLevels.hpp"
+#include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/bins/EchoField.hpp"
 #include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/plan/EchoRules.hpp"
@@ -166,7 +166,7 @@ SonarConfig smallSonar(bool coherent) {
 }
 
 /** Returns what a ping of an effect that is wrong fails with. */
-std::string failureOf(Wrong wrong, bool coherent) {
+std::string failure(Wrong wrong, bool coherent) {
     addEffect(std::make_unique<BreakerEffect>());
     SonarConfig config = smallSonar(coherent);
     config.effects["breaker"]["wrong"] = static_cast<double>(wrong);
@@ -179,17 +179,17 @@ std::string failureOf(Wrong wrong, bool coherent) {
 TEST(SeamCheckTest, WhatAnEffectDoesWrongIsFoundAtTheSeam) {
     using testing::EndsWith;
     using testing::HasSubstr;
-    EXPECT_THAT(failureOf(Wrong::NotANumber, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 7, nan")));
-    EXPECT_THAT(failureOf(Wrong::Negative, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 39, -1")));
-    EXPECT_THAT(failureOf(Wrong::FewerBins, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 159, 4, 40")));
-    EXPECT_THAT(failureOf(Wrong::BinBeyond, false),
+    EXPECT_THAT(failure(Wrong::NotANumber, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 7, nan")));
+    EXPECT_THAT(failure(Wrong::Negative, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 39, -1")));
+    EXPECT_THAT(failure(Wrong::FewerBins, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 159, 4, 40")));
+    EXPECT_THAT(failure(Wrong::BinBeyond, false),
                 AllOf(HasSubstr("Effects.cpp:"), EndsWith("bin < ping.bins.size() does not hold; bin, "
                                                           "ping.bins.size(): 160, 160")));
-    EXPECT_THAT(failureOf(Wrong::BeamBeyond, true), AllOf(HasSubstr("EchoField.cpp:"), HasSubstr("; beam, ")));
-    EXPECT_THAT(failureOf(Wrong::NowhereEcho, true), AllOf(HasSubstr("EchoField.cpp:"), EndsWith(": nan, 1, 0")));
-    EXPECT_THAT(failureOf(Wrong::FewEnergies, true),
+    EXPECT_THAT(failure(Wrong::BeamBeyond, true), AllOf(HasSubstr("EchoField.cpp:"), HasSubstr("; beam, ")));
+    EXPECT_THAT(failure(Wrong::NowhereEcho, true), AllOf(HasSubstr("EchoField.cpp:"), EndsWith(": nan, 1, 0")));
+    EXPECT_THAT(failure(Wrong::FewEnergies, true),
                 AllOf(HasSubstr("EchoField.cpp:"), HasSubstr("intensities.size(), response_.cells(): 3, ")));
-    EXPECT_THAT(failureOf(Wrong::ThreadBeyond, true), AllOf(HasSubstr("EchoField.cpp:"), EndsWith(": 2, 2")));
+    EXPECT_THAT(failure(Wrong::ThreadBeyond, true), AllOf(HasSubstr("EchoField.cpp:"), EndsWith(": 2, 2")));
 }
 
 TEST(SeamCheckTest, APoseThatIsNoneIsFoundWhateverDrawsTheScene) {

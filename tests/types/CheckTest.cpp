@@ -22,12 +22,12 @@ using testing::StartsWith;
 template <int a, int b>
 constexpr int sum = a + b;
 
-std::string failureOf(const auto& check) { return test::errorOf<CheckFailure>(check); }
+std::string failure(const auto& check) { return test::errorOf<CheckFailure>(check); }
 
 TEST(CheckTest, AFailureSaysPlaceConditionAndValues) {
     const size_t bin = 50, bins = 40;
     const double share = 0.25;
-    const std::string text = failureOf([&] { INSONIFY_CHECK(bin < bins, bin, bins, share, "beam"); });
+    const std::string text = failure([&] { INSONIFY_CHECK(bin < bins, bin, bins, share, "beam"); });
     EXPECT_THAT(text, MatchesRegex("an error of the program in CheckTest.cpp:[0-9]+: bin < bins does not hold; "
                                    "bin, bins, share, \"beam\": 50, 40, 0.25, beam"));
     EXPECT_THAT(text, StartsWith("an error of the program in CheckTest.cpp:" + std::to_string(__LINE__ - 3) + ": "));
@@ -35,14 +35,14 @@ TEST(CheckTest, AFailureSaysPlaceConditionAndValues) {
 
 TEST(CheckTest, AFailureWithoutValuesSaysPlaceAndCondition) {
     const double share = 0.25;
-    EXPECT_THAT(failureOf([&] { INSONIFY_CHECK(share > 1); }), EndsWith(": share > 1 does not hold"));
+    EXPECT_THAT(failure([&] { INSONIFY_CHECK(share > 1); }), EndsWith(": share > 1 does not hold"));
 }
 
 TEST(CheckTest, ConditionsAndValuesMayHaveCommasAndNestedTemplates) {
     const std::map<int, std::pair<int, std::map<int, int>>> all{{1, {2, {{3, 4}}}}};
-    EXPECT_THAT(failureOf([&] { INSONIFY_CHECK((sum<1, 2> == 4), sum<1, 2>, std::max<int>(5, sum<3, 4>)); }),
+    EXPECT_THAT(failure([&] { INSONIFY_CHECK((sum<1, 2> == 4), sum<1, 2>, std::max<int>(5, sum<3, 4>)); }),
                 EndsWith(": (sum<1, 2> == 4) does not hold; sum<1, 2>, std::max<int>(5, sum<3, 4>): 3, 7"));
-    EXPECT_THAT(failureOf([&] {
+    EXPECT_THAT(failure([&] {
                     INSONIFY_CHECK((all == std::map<int, std::pair<int, std::map<int, int>>>{}),
                                    (std::get<1>(std::tuple<int, std::pair<int, int>>{1, {2, 3}}).second), all.size());
                 }),
@@ -60,7 +60,7 @@ TEST(CheckTest, ValuesAreNumbersTextsAndVectors) {
     const float tenth = 0.1f;
     const std::string name = "sonar";
     const Vector way{1, -0.5, std::numeric_limits<double>::quiet_NaN()};
-    EXPECT_THAT(failureOf([&] {
+    EXPECT_THAT(failure([&] {
                     INSONIFY_CHECK(false, uint64_t{1} << 63, int64_t{-5}, uint8_t{7}, true, tenth, 1e300, name,
                                    std::string_view("a"), way);
                 }),

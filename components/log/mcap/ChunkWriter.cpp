@@ -16,7 +16,7 @@ constexpr size_t chunk_size = 1 << 20;                                        //
 constexpr size_t chunk_header_size = record_header_size + 3 * 8 + 4 + 4 + 8;  // header of an uncompressed chunk [B]
 constexpr size_t max_ids = std::numeric_limits<uint16_t>::max();
 
-uint32_t crcOf(const char* data, size_t size, uint32_t before = 0) {
+uint32_t crc(const char* data, size_t size, uint32_t before = 0) {
     return static_cast<uint32_t>(crc32_z(before, reinterpret_cast<const Bytef*>(data), size));
 }
 
@@ -56,7 +56,7 @@ void ChunkWriter::open() {
 void ChunkWriter::append(const std::vector<char>& bytes) {
     if (const std::vector<char> head = std::exchange(head_, {}); !head.empty()) append(head);
     file_->append(bytes.data(), bytes.size());
-    crc_ = crcOf(bytes.data(), bytes.size(), crc_);
+    crc_ = crc(bytes.data(), bytes.size(), crc_);
 }
 
 void ChunkWriter::putSchema(RecordWriter& out, size_t number) const {
@@ -152,7 +152,7 @@ void ChunkWriter::closeChunk(ChunkIndex& index) {
     head.number(chunk_first_ns_);
     head.number(chunk_last_ns_);
     head.number(size);
-    head.number(crcOf(chunk_.data() + chunk_header_size, size));
+    head.number(crc(chunk_.data() + chunk_header_size, size));
     head.text("");
     head.number(size);
     head.end();
@@ -273,7 +273,7 @@ std::vector<char> ChunkWriter::summaryBytes() const {
     out.number(offsets);
     const uint64_t length = 8 + 8 + 4;
     std::memcpy(bytes.data() + bytes.size() - 24, &length, sizeof length);
-    out.number(crcOf(bytes.data(), bytes.size()));
+    out.number(crc(bytes.data(), bytes.size()));
     out.raw(magic);
     return bytes;
 }

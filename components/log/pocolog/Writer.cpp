@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "components/log/TypeNames.hpp"
-#include "components/log/pocolog/Metadata.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "types/Check.hpp"

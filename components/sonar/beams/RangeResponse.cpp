@@ -39,7 +39,7 @@ void RangeResponse::spread(std::span<const float> echoes, std::span<float> bins)
 
 bool isShort(const acoustics::Pulse& pulse, const BinGrid& grid) { return pulse.resolution() < grid.bin_width / 2; }
 
-double rangeCellOf(const SonarConfig& config) {
+double rangeCell(const SonarConfig& config) {
     const BinGrid grid = makeBinGrid(config);
     const double bin = grid.bin_width;
     return config.pulse ? std::max(bin, acoustics::Pulse(*config.pulse, grid.speed_of_sound).resolution()) : bin;

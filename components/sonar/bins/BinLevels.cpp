@@ -1,7 +1,6 @@
-#include "components/sonar/bins/BinLevels.hpp"
-
 #include <cmath>
 
+#include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Check.hpp"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "components/sonar/base/Counters.hpp"
-#include "components/sonar/bins/Limb.hpp"
+#include "components/sonar/bins/Estimators.hpp"
 #include "components/sonar/plan/Effect.hpp"
 #include "types/Check.hpp"
 
@@ -45,7 +45,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void coverAll(const Cells& cells
 }
 
 /** Returns the estimator with the features of a plan. */
-const EstimatorEntry& estimatorOf(const Features& features) {
+const EstimatorEntry& estimator(const Features& features) {
     Features known;
     for (const auto& all : {physicalEstimators(), nearestEstimators(), meanEstimators()})
         for (const EstimatorEntry& entry : all) known = known | entry.features;
@@ -177,7 +177,7 @@ LobeSlopes CellDeposit::lobeSlopes(int i) const {
 }
 
 CellDeposit::CellDeposit(const EchoRules& rules, const WaterView& water, bool bent, const EchoSums& to)
-    : rules_(rules), water_(water), bent_(bent), to_(to), estimator_(estimatorOf(rules.features)) {
+    : rules_(rules), water_(water), bent_(bent), to_(to), estimator_(estimator(rules.features)) {
     INSONIFY_CHECK(to.sums && to.first_beam >= 0, to.first_beam);
 }
 

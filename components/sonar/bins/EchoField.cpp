@@ -104,7 +104,7 @@ INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* inte
 }  // namespace
 
 FieldResponse::FieldResponse(const RenderPlan& plan) {
-    const FieldSampling sampling = fieldSamplingOf(plan);
+    const FieldSampling sampling = fieldSampling(plan);
     samples_ = static_cast<size_t>(plan.grid.bin_count * sampling.samples);
     stride_ = static_cast<size_t>(sampling.parts / sampling.samples);
     sample_width_ = plan.grid.bin_width / sampling.samples;

@@ -13,7 +13,7 @@ Beamformer::Rules boxRules(Beamformer::Pattern sent, const RenderPlan& plan, boo
     return {std::move(sent), half, of_fields ? std::sqrt(floor) : floor, of_fields, half};
 }
 
-Beamformer beamformerOf(const RenderPlan& plan) {
+Beamformer beamformer(const RenderPlan& plan) {
     const Directivity& directivity = *plan.directivity;
     const auto zoneRules = [&](size_t zone) {
         if (directivity.hasBoxes()) return boxRules([&](double a, double) { return directivity.sentAzimuth(a); }, plan);
@@ -47,11 +47,11 @@ EchoGrid::EchoGrid(const RenderPlan& plan, int threads)
         response_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound), plan.grid);
     if (response_)
         padded_.assign(static_cast<size_t>(threads), std::vector<float>(bin_count_ + 2 * response_->margin()));
-    takeQuality(plan);
+    updateQuality(plan);
 }
 
-void EchoGrid::takeQuality(const RenderPlan& plan) {
-    if (plan.has(Pass::Beamform)) beamformer_ = beamformerOf(plan);
+void EchoGrid::updateQuality(const RenderPlan& plan) {
+    if (plan.has(Pass::Beamform)) beamformer_ = beamformer(plan);
     if (!passes()) echoes_.resize(plan.cells.size() * bin_count_);
 }
 

@@ -101,7 +101,9 @@ public:
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& /*geometry*/) const override {
         return std::make_unique<ImperfectBeams>(plan);
     }
-    std::string takeOut(SonarConfig& config) const override { return takenOut(config.imperfections, "imperfections"); }
+    std::string removeFrom(SonarConfig& config) const override {
+        return removeBlock(config.imperfections, "imperfections");
+    }
 };
 
 }  // namespace

@@ -9,8 +9,7 @@
 
 #include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/multipath/PathCells.hpp"
-#include "components/sonar/multipath/SharedBins.hpp"
-#include "components/sonar/multipath/WayPatterns.hpp"
+#include "components/sonar/multipath/PathPatterns.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
 #include "types/Check.hpp"
 
@@ -32,9 +31,9 @@ struct PlacedSender {
 
 class EchoesOfOthers final : public ForeignEchoes {
 public:
-    explicit EchoesOfOthers(const RenderPlan& plan) : plan_(plan), receiver_(plan) { takeQuality(); }
+    explicit EchoesOfOthers(const RenderPlan& plan) : plan_(plan), receiver_(plan) { updateQuality(); }
 
-    void takeQuality() override {
+    void updateQuality() override {
         patterns_.emplace(plan_);
         bin_count_ = static_cast<size_t>(summedGrid(plan_).bin_count);
     }
@@ -53,7 +52,7 @@ private:
 
     const RenderPlan& plan_;
     Receiver receiver_;
-    std::optional<WayPatterns> patterns_;
+    std::optional<PathPatterns> patterns_;
     size_t bin_count_ = 0;  ///< Sums of a cell [1].
     std::vector<PlacedSender> senders_;
     std::vector<double> lengths_;              ///< Lengths of the boxes that pulses become [m].
@@ -75,7 +74,7 @@ void EchoesOfOthers::begin(const types::Snapshot& snapshot) {
     lengths_.clear();
     const glm::dquat sonar_from_world = glm::conjugate(snapshot.sonar.orientation);
     for (const auto& sent : snapshot.transmissions) {
-        const Reception received = receiver_.receptionOf(*sent, snapshot.time);
+        const Reception received = receiver_.reception(*sent, snapshot.time);
         // The shortest path is half of the straight one; pulses sent too late for it are not received.
         const glm::dvec3 place = sonar_from_world * (sent->sonar.position - snapshot.sonar.position);
         if (received.offset + glm::length(place) / 2 >= plan_.grid.range_max) continue;

@@ -14,12 +14,12 @@
 
 namespace insonify::sonar {
 PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geometry)
-    : plan_(plan), absorption_(makeAbsorption(plan.config).intensityPerMetre()), shape_(echoShapeOf(plan)) {
+    : plan_(plan), absorption_(makeAbsorption(plan.config).intensityPerMetre()), shape_(echoShape(plan)) {
     means_.reserve(static_cast<size_t>(plan.grid.bin_count));
-    takeScene(geometry);
+    setScene(geometry);
 }
 
-void PointTargets::takeScene(const types::Geometry& geometry) {
+void PointTargets::setScene(const types::Geometry& geometry) {
     walls_.reset();
     if (plan_.has(Pass::Walls)) walls_.emplace(plan_);
     ways_.emplace(plan_.config, geometry, walls_ ? &*walls_ : nullptr);
@@ -28,10 +28,10 @@ void PointTargets::takeScene(const types::Geometry& geometry) {
 std::optional<BeamAngles> PointTargets::directionOf(const glm::dvec3& way) const {
     const bool conical = plan_.features.has(Feature::Conical);
     if (conical && way.x < 0) return {};
-    return beamAnglesOf(way, conical);
+    return beamAngles(way, conical);
 }
 
-std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out, const TargetWay& back,
+std::optional<PointTargets::Return> PointTargets::returnOf(const TargetPath& out, const TargetPath& back,
                                                            double strength_db) const {
     const auto sent = directionOf(out.direction), received = directionOf(back.direction);
     const double range = 0.5 * (out.length + back.length);
@@ -48,7 +48,7 @@ std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out,
                   out.walls + back.walls > 0};
 }
 
-double PointTargets::inPhase(const TargetWay& way) const {
+double PointTargets::inPhase(const TargetPath& way) const {
     if (!way.by_surface || !plan_.config.frequency_khz) return 1;
     const double wavelength = plan_.grid.speed_of_sound / (1e3 * *plan_.config.frequency_khz);
     return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, way.sine_grazing);
@@ -140,11 +140,11 @@ bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) con
     return received;
 }
 
-std::optional<TargetWay> PointTargets::bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target) {
+std::optional<TargetPath> PointTargets::bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target) {
     const glm::dvec3 from_sonar = snapshot.targets[target].position - snapshot.sonar.position;
     const auto received = bent.received(glm::conjugate(snapshot.sonar.orientation) * from_sonar, target);
     if (!received) return {};
-    TargetWay way;
+    TargetPath way;
     way.length = glm::length(received->place);
     way.direction = received->place / way.length;
     way.power = received->focus;
@@ -161,11 +161,11 @@ size_t PointTargets::add(PingInMaking& to) {
         const types::PointTarget& target = snapshot.targets[i];
         const uint64_t own = named ? types::hashedName((*snapshot.target_names)[i]) : i;
         bool any = false;
-        std::span<const TargetWay> ways = ways_->waysTo(target.position);
+        std::span<const TargetPath> ways = ways_->waysTo(target.position);
         const auto way = to.bent && !ways.empty() ? bentWay(*to.bent, snapshot, i) : std::nullopt;
         if (to.bent) ways = {way ? &*way : nullptr, way ? 1u : 0u};
-        for (const TargetWay& out : ways)
-            for (const TargetWay& back : ways) {
+        for (const TargetPath& out : ways)
+            for (const TargetPath& back : ways) {
                 const auto pair =
                     static_cast<uint64_t>((&out - ways.data()) * std::ssize(ways) + (&back - ways.data()));
                 any |= addPair(out, back, target.strength_db, to, types::hashed(time, own, pair));
@@ -175,7 +175,7 @@ size_t PointTargets::add(PingInMaking& to) {
     return received;
 }
 
-bool PointTargets::addPair(const TargetWay& out, const TargetWay& back, double strength_db, PingInMaking& to,
+bool PointTargets::addPair(const TargetPath& out, const TargetPath& back, double strength_db, PingInMaking& to,
                            uint64_t key) {
     if (&out == &back && out.arrivals) return addRinging(out, strength_db, to, key);
     if (out.arrivals || back.arrivals) return addRinging(out, back, strength_db, to, key);
@@ -184,11 +184,11 @@ bool PointTargets::addPair(const TargetWay& out, const TargetWay& back, double s
     return to.field ? addTo(*to.field, *echo, key) : addTo(to, *echo);
 }
 
-bool PointTargets::addRinging(const TargetWay& way, double strength_db, PingInMaking& to, uint64_t key) {
+bool PointTargets::addRinging(const TargetPath& way, double strength_db, PingInMaking& to, uint64_t key) {
     const EchoTrain& train = way.arrivals->both;
     bool any = false;
     for (size_t k = 0; k < train.size(); ++k) {
-        TargetWay rung = way;
+        TargetPath rung = way;
         rung.arrivals = nullptr;
         rung.length += train[k].late;
         rung.power *= std::sqrt(std::max(train[k].weight, 0.0));
@@ -197,7 +197,7 @@ bool PointTargets::addRinging(const TargetWay& way, double strength_db, PingInMa
     return any;
 }
 
-bool PointTargets::addRinging(const TargetWay& out, const TargetWay& back, double strength_db, PingInMaking& to,
+bool PointTargets::addRinging(const TargetPath& out, const TargetPath& back, double strength_db, PingInMaking& to,
                               uint64_t key) {
     constexpr double min_share = 1e-6;
     const EchoTrain none, &there = out.arrivals ? out.arrivals->once : none,
@@ -206,7 +206,7 @@ bool PointTargets::addRinging(const TargetWay& out, const TargetWay& back, doubl
     for (size_t j = 0; j < there.size(); ++j)
         for (size_t k = 0; k < here.size(); ++k) {
             if (!(there[j].weight * here[k].weight > min_share)) continue;
-            TargetWay rung = out, returned = back;
+            TargetPath rung = out, returned = back;
             rung.arrivals = returned.arrivals = nullptr;
             rung.power *= there[j].weight * here[k].weight;
             rung.length += there[j].late + here[k].late;
@@ -216,7 +216,7 @@ bool PointTargets::addRinging(const TargetWay& out, const TargetWay& back, doubl
     return any;
 }
 
-bool PointTargets::addAlong(const TargetWay& way, double strength_db, PingInMaking& to) {
+bool PointTargets::addAlong(const TargetPath& way, double strength_db, PingInMaking& to) {
     return addPair(way, way, strength_db, to, 0);
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "components/gpu/EglContext.hpp"
+#include "components/gpu/Objects.hpp"
 #include "components/gpu/Program.hpp"
-#include "components/gpu/ReadBack.hpp"
 #include "types/Check.hpp"
 
 namespace insonify::sonar {

@@ -249,12 +249,12 @@ struct RayVisibility::Tree {
 
 RayVisibility::RayVisibility(const types::Geometry& geometry, std::span<const uint32_t> deforming)
     : here_(std::make_unique<Tree>()), before_(std::make_unique<Tree>()) {
-    takeScene(geometry, deforming);
+    setScene(geometry, deforming);
 }
 
 RayVisibility::~RayVisibility() = default;
 
-void RayVisibility::takeScene(const types::Geometry& geometry, std::span<const uint32_t> deforming) {
+void RayVisibility::setScene(const types::Geometry& geometry, std::span<const uint32_t> deforming) {
     geometry_ = &geometry;
     moves_.resize(geometry.objects.size());
     here_->is_built = before_->is_built = false;

@@ -1,9 +1,8 @@
-#include "components/sonar/rays/TileDirections.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "components/sonar/rays/TileCells.hpp"
 #include "types/Check.hpp"
 #include "types/VectorMath.hpp"
 

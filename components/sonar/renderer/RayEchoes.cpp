@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "components/sonar/base/ThreadPool.hpp"
-#include "components/sonar/bins/BinLevels.hpp"
+#include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/bins/EchoField.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/bins/Truth.hpp"
@@ -21,11 +21,10 @@
 #include "components/sonar/rays/MeshesAhead.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
-#include "components/sonar/rays/TileDirections.hpp"
-#include "components/sonar/rays/TilePatches.hpp"
+#include "components/sonar/rays/TileCells.hpp"
 #include "components/sonar/surfaces/DeformedMeshes.hpp"
 #include "components/sonar/surfaces/FacetLobes.hpp"
-#include "components/sonar/surfaces/ObjectPlaces.hpp"
+#include "components/sonar/surfaces/ObjectPlacements.hpp"
 #include "types/Check.hpp"
 
 namespace insonify::sonar {
@@ -59,11 +58,11 @@ struct Strip {
 class RayEchoes final : public EchoRenderer {
 public:
     RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
-    void takeQuality() override;
-    bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
+    void updateQuality() override;
+    bool setScene(types::GeometryPtr geometry, bool same_plan) override;
     bool changePlan() override;
     void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) override;
-    void takeShapes(const types::Snapshot& snapshot) override;
+    void updateShapes(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool forget() override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
@@ -95,8 +94,8 @@ private:
         }
     };
     /** Computes what depends on scene and plan, such as the facets of materials with a specular lobe. */
-    void takeLaws();
-    void takePlan();
+    void updateLaws();
+    void updatePlan();
     void shareOut();
     int beamsTogether() const {
         return std::min(view_.cells.beams, (3 + view_.cells.beam_columns) / view_.cells.beam_columns);
@@ -147,7 +146,7 @@ private:
     WaterMirror surface_;             ///< Ends rays that have passed walls.
     std::optional<EchoGrid> grid_;    ///< For energies,
     std::optional<EchoField> field_;  ///< or for fields.
-    std::unique_ptr<ObjectPlaces> places_;
+    std::unique_ptr<ObjectPlacements> places_;
     RayVisibility visibility_;
     std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
     std::vector<MeshFacts::Planes> planes_;  ///< One for each mesh.
@@ -182,12 +181,12 @@ RayEchoes::RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEf
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
     for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
-    takeScene(geometry_, false);
+    setScene(geometry_, false);
 }
 
 void RayEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
     deformed_ = meshes;
-    takeScene(std::move(geometry), true);
+    setScene(std::move(geometry), true);
     if (!meshes) return;
     size_t triangles = 0;
     for (const uint32_t object : meshes->objects())
@@ -195,8 +194,8 @@ void RayEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
     bends_ = triangles <= max_bent;
 }
 
-void RayEchoes::takeShapes(const types::Snapshot& snapshot) {
-    visibility_.takeShapes();
+void RayEchoes::updateShapes(const types::Snapshot& snapshot) {
+    visibility_.updateShapes();
     threads_.run([&](int part, int parts) {
         deformed_->take(snapshot, static_cast<size_t>(part), static_cast<size_t>(parts));
         const std::vector<uint32_t>& objects = deformed_->objects();
@@ -211,11 +210,11 @@ void RayEchoes::takeShapes(const types::Snapshot& snapshot) {
     });
 }
 
-bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
+bool RayEchoes::setScene(types::GeometryPtr geometry, bool same_plan) {
     const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // kept until unused
     if (before != geometry_)
-        visibility_.takeScene(
-            *geometry_, deformed_ ? std::span<const uint32_t>(deformed_->objects()) : std::span<const uint32_t>());
+        visibility_.setScene(*geometry_,
+                             deformed_ ? std::span<const uint32_t>(deformed_->objects()) : std::span<const uint32_t>());
     normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
     std::vector<MeshFacts::Planes> planes;
     std::vector<MeshFacts::Curves> curves;
@@ -231,14 +230,14 @@ bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     }
     planes_ = std::move(planes);  // shared data is kept, because the predecessors are destroyed after the new are made
     curves_ = std::move(curves);
-    takeLaws();
-    if (ray_paths_) ray_paths_->takeScene(*geometry_);
-    if (!same_plan) takePlan();
+    updateLaws();
+    if (ray_paths_) ray_paths_->setScene(*geometry_);
+    if (!same_plan) updatePlan();
     return true;
 }
 
-void RayEchoes::takeLaws() {
-    places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
+void RayEchoes::updateLaws() {
+    places_ = std::make_unique<ObjectPlacements>(*geometry_, reach(plan_), true);
     std::vector<MeshFacts::Facets> facets;
     for (size_t i = 0; i < geometry_->meshes.size(); ++i)
         facets.push_back(MeshFacts::of(geometry_->meshes.shared(i))->facets(worldFromMesh(*geometry_, i), plan_.laws));
@@ -254,8 +253,8 @@ bool RayEchoes::changePlan() {
     grid_.reset();
     field_.reset();
     truth_rules_.reset();
-    takeLaws();
-    takePlan();
+    updateLaws();
+    updatePlan();
     return true;
 }
 
@@ -267,7 +266,7 @@ bool RayEchoes::forget() {
     return true;
 }
 
-void RayEchoes::takePlan() {
+void RayEchoes::updatePlan() {
     levels_ = BinLevels(plan_.config, summedGrid(plan_));
     surface_ = WaterMirror(plan_.config);
     if (plan_.profile || plan_.config.motion_in_ping) {
@@ -275,17 +274,17 @@ void RayEchoes::takePlan() {
     } else {
         ray_paths_.reset();
     }
-    takeQuality();
+    updateQuality();
 }
 
-void RayEchoes::takeQuality() {
+void RayEchoes::updateQuality() {
     rules_ = makeEchoRules(plan_, effects_);
     view_.cells = makeAngularView(plan_);
     if (plan_.features.has(Feature::Speckle)) {
         field_.emplace(plan_, threads_.size());
         truth_rules_ = makeEnergyRules(plan_, effects_);
     } else if (grid_) {
-        grid_->takeQuality(plan_);
+        grid_->updateQuality(plan_);
     } else {
         grid_.emplace(plan_, threads_.size());
     }
@@ -329,7 +328,7 @@ void RayEchoes::makeTruth() {
 }
 
 void RayEchoes::place(const types::Snapshot& snapshot) {
-    water_ = waterViewOf(snapshot);
+    water_ = waterView(snapshot);
     surface_.place(snapshot, plan_.grid.range_max);
     places_->place(snapshot);
     visibility_.place(snapshot);

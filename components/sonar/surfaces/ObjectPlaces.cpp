@@ -1,5 +1,3 @@
-#include "components/sonar/surfaces/ObjectPlaces.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <numeric>
 
 #include "components/sonar/surfaces/NearestPoint.hpp"
+#include "components/sonar/surfaces/ObjectPlacements.hpp"
 #include "types/Angle.hpp"
 #include "types/Check.hpp"
 
@@ -64,7 +63,7 @@ std::vector<std::array<int64_t, 3>> cornersWithin(const types::Mesh& mesh, const
 
 }  // namespace
 
-ObjectPlaces::ObjectPlaces(const types::Geometry& geometry, const Reach& reach, bool all)
+ObjectPlacements::ObjectPlacements(const types::Geometry& geometry, const Reach& reach, bool all)
     : geometry_(geometry), reach_(reach), all_(all), meshes_(MeshFacts::ofAll(geometry)) {
     records_.resize(geometry.objects.size());
     scratch_.reserve(4096);
@@ -74,7 +73,7 @@ ObjectPlaces::ObjectPlaces(const types::Geometry& geometry, const Reach& reach, 
     findSurfaces();
 }
 
-void ObjectPlaces::findSurfaces() {
+void ObjectPlacements::findSurfaces() {
     const std::vector<types::Object>& objects = geometry_.objects;
     std::vector<Box> boxes;
     for (size_t i = 0; i < objects.size(); ++i) boxes.push_back(placedBox(box(i), objects[i].world_from_object));
@@ -109,7 +108,7 @@ void ObjectPlaces::findSurfaces() {
         if (each.size() > 1) surfaces_.push_back(std::move(each));
 }
 
-void ObjectPlaces::joinExtents() {
+void ObjectPlacements::joinExtents() {
     for (const std::vector<size_t>& members : surfaces_) {
         float near = 0, far = std::numeric_limits<float>::max();
         for (const size_t i : members) {
@@ -124,7 +123,7 @@ void ObjectPlaces::joinExtents() {
     }
 }
 
-void ObjectPlaces::place(const types::Snapshot& snapshot) {
+void ObjectPlacements::place(const types::Snapshot& snapshot) {
     for (const types::MovedObject& moved : snapshot.moved)
         INSONIFY_CHECK(moved.object < world_from_object_.size(), moved.object, world_from_object_.size());
     for (size_t i = 0; i < geometry_.objects.size(); ++i)
@@ -136,7 +135,7 @@ void ObjectPlaces::place(const types::Snapshot& snapshot) {
     joinExtents();
 }
 
-bool ObjectPlaces::reaches(const glm::dvec3& centre, double radius) const {
+bool ObjectPlacements::reaches(const glm::dvec3& centre, double radius) const {
     const double distance = glm::length(centre);
     if (!(distance > radius)) return true;
     if (distance - radius > reach_.range_max) return false;
@@ -147,7 +146,7 @@ bool ObjectPlaces::reaches(const glm::dvec3& centre, double radius) const {
     return outward <= radius;
 }
 
-vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, double nearest_of_sphere) {
+vec4 ObjectPlacements::extent(size_t index, const glm::dmat4& m, double nearest_of_sphere) {
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 p(corner & 1 ? box(index).high.x : box(index).low.x,
@@ -167,7 +166,7 @@ vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, double nearest_of_s
     return vec4(nearest > 1e-6 ? (1 + slack) / nearest : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
 }
 
-void ObjectPlaces::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
+void ObjectPlacements::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     const glm::dmat3 linear(sonar_from_object);
     const double scale = std::sqrt(dot2(linear[0]) + dot2(linear[1]) + dot2(linear[2]));  // upper bound
     const Box& box = this->box(index);

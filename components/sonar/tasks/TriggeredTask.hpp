@@ -72,7 +72,7 @@ protected:
     void resetTrigger();
     /** Takes the input of the next ping, if there is one, into takenScene(), usedPose() and begun(). Returns whether
      * there was one. */
-    bool takeNext();
+    bool readNext();
     /** Evaluates the input of the next ping. Returns the reason for refusing it, or null. */
     const char* refusal();
     types::Snapshot& takenScene() { return taken_.scene; }
@@ -100,14 +100,14 @@ private:
     /** Updates the periods, and evaluates the displacement since the snapshot before. */
     void followSnapshot(const types::Snapshot& scene);
     /** Takes the next pose of `given_pose`, in the newest snapshot's scene. Poses wait until there is a snapshot. */
-    bool takeGiven();
+    bool readInputs();
     /** Takes the scene of a snapshot. In realtime its sonar pose is extrapolated to now, within its
      *  `max_extrapolation`. */
-    void takeScene(const types::Snapshot& scene);
+    void setScene(const types::Snapshot& scene);
     void applySettings(const types::SonarSettings& asked);
     /** Takes the next settings (in realtime the newest), in the newest snapshot's scene. They wait until there is a
      *  snapshot. */
-    bool takeAsked();
+    bool consumeRequest();
 
     BinGrid grid_;
     std::optional<Mark> before_;
