@@ -12,7 +12,6 @@
 
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
-#include "types/Reason.hpp"
 
 namespace insonify::types {
 namespace {

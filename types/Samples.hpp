@@ -5,6 +5,7 @@
 #include <array>
 #include <concepts>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -231,6 +232,13 @@ const char* diagnosticOf(const T& sample) {
         return sample.diagnostic();
     else
         return nullptr;
+}
+
+/** Throws an Error such as "<what> has other numbers of bins than it says" for a sample that contradicts itself.
+ *  `where` are the arguments of the Error before its text. */
+template <class Error = std::invalid_argument, class Sample, class... Where>
+void requireSound(const Sample& sample, const std::string& what, const Where&... where) {
+    if (const char* const diagnostic = diagnosticOf(sample)) throw Error(where..., what + " " + diagnostic);
 }
 
 }  // namespace insonify::types

@@ -15,7 +15,6 @@
 #include "components/loader/ComponentLibrary.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
-#include "types/Reason.hpp"
 
 namespace insonify::command {
 namespace {

@@ -37,8 +37,9 @@ Json defaultJson(const PropertyInfo& property) {
 Json boundOf(double bound) { return std::isfinite(bound) ? Json(bound) : Json(nullptr); }
 
 Json propertyJson(const PropertyInfo& property) {
-    return {{"name", property.name},        {"type", property.type},        {"unit", property.unit},
-            {"default", defaultJson(property)}, {"min", boundOf(property.min)}, {"max", boundOf(property.max)},
+    return {{"name", property.name},        {"type", property.type},
+            {"unit", property.unit},        {"default", defaultJson(property)},
+            {"min", boundOf(property.min)}, {"max", boundOf(property.max)},
             {"doc", property.doc}};
 }
 

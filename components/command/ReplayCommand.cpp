@@ -18,7 +18,7 @@
 #include "components/deployer/StopSignal.hpp"
 #include "components/log/LoggerClock.hpp"
 #include "components/log/Reader.hpp"
-#include "types/Reason.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::command {
 

@@ -11,7 +11,7 @@
 
 #include "components/ros/Cdr.hpp"
 #include "types/Ascii.hpp"
-#include "types/Reason.hpp"
+#include "types/ConfigError.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::dds {

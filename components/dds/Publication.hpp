@@ -12,6 +12,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Samples.hpp"
 #include "components/ros/Stamps.hpp"
+#include "types/Check.hpp"
 #include "types/ConfigError.hpp"
 #include "types/ThrottledWarning.hpp"
 
@@ -158,6 +159,8 @@ public:
         if (!writer_.hasReaders()) return false;
         try {
             encode_(sample, options_, bytes_);
+        } catch (const types::CheckFailure&) {
+            throw;
         } catch (const std::logic_error& error) {
             drops_.add(topic_ + ": " + error.what());
             return false;

@@ -13,7 +13,6 @@
 
 #include "components/framework/Deployment.hpp"
 #include "components/framework/DynamicPorts.hpp"
-#include "components/framework/Event.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"

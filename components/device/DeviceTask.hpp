@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "components/device/wire/Network.hpp"
-#include "components/framework/Event.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"

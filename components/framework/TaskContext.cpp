@@ -8,7 +8,7 @@
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
-#include "types/Reason.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -325,5 +325,7 @@ bool TaskContext::cycle() {
     if (!environment_->rehearsing) cycles_.add(seconds);
     return isRunning() && taken_ != taken && triggered();
 }
+
+void Event::raise() { owner_.activity().trigger(); }
 
 }  // namespace insonify::framework

@@ -62,6 +62,9 @@ struct Environment {
     /** Returns the time since the start of the run. In a run by the wall clock it continues evenly when that clock is
      *  set. */
     types::Time elapsed() const { return run_time ? run_time() : now() - start_time(); }
+    /** Returns whether a task that cannot write its file drops and counts samples instead of ending the run. This is so
+     *  in realtime by the wall clock, where the other tasks cannot wait. Valid from startHook on. */
+    bool mayLose() const { return deployment && !lockstep && wall_clock; }
 };
 
 class Activity;
@@ -242,6 +245,22 @@ private:
     Statistics cycles_;
     Timing timing_;
     Stages stages_;
+};
+
+/** Wakes a task from outside its deployment: for a message, a device.
+ *
+ *      framework::Event arrived_{this};  // and where it arrives, on any thread: arrived_.raise();
+ *
+ *  In realtime the task then runs a cycle, unless it has a period. The task needs no other activity. */
+class Event {
+public:
+    explicit Event(TaskContext* owner) : owner_(*owner) { owner->enlist(this); }
+    Event(const Event&) = delete;
+    Event& operator=(const Event&) = delete;
+    void raise();
+
+private:
+    TaskContext& owner_;
 };
 
 }  // namespace insonify::framework

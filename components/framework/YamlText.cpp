@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "types/ConfigError.hpp"
-#include "types/Reason.hpp"
 
 namespace insonify::framework {
 

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "types/Check.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::log {
@@ -65,6 +66,7 @@ std::string endRecords(uint64_t count, uint64_t central_size, uint64_t central) 
 
 /** Returns the header of an .npy file, padded so that the data begin at a multiple of 64 bytes. */
 std::string npyHeader(const std::string& type, const std::vector<size_t>& shape) {
+    INSONIFY_CHECK(type.size() >= 3, type);
     std::string tuple;
     for (const size_t extent : shape) tuple += std::to_string(extent) + ",";
     std::string dictionary = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, tuple);
@@ -113,6 +115,7 @@ void NpzFile::begin(const std::string& name, const std::string& type, const std:
 }
 
 void NpzFile::append(const void* data, size_t size) {
+    INSONIFY_CHECK(!entries_.empty());
     if (size == 0) return;  // zlib restarts at a null pointer
     Entry& entry = entries_.back();
     file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));

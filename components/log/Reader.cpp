@@ -6,6 +6,7 @@
 #include "components/log/TypeNames.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
+#include "types/Check.hpp"
 #include "types/DidYouMean.hpp"
 #include "types/Elapsed.hpp"
 
@@ -43,6 +44,8 @@ void Reader::readInto(const SampleRef& at, types::SampleRoom room) try {
     decode(at, room);
     restoreBins(streams_[at.stream].metadata, room);
 } catch (const types::ConfigError&) {
+    throw;
+} catch (const types::CheckFailure&) {
     throw;
 } catch (const std::runtime_error& error) {
     failSample(at, error.what());

@@ -7,7 +7,6 @@
 #include <set>
 #include <system_error>
 
-#include "components/framework/MayLose.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/log/Stream.hpp"
 #include "types/ConfigError.hpp"
@@ -76,7 +75,7 @@ std::vector<std::string> LoggerTask::notices() const {
     return all;
 }
 
-bool LoggerTask::heals() const { return framework::mayLose(environment()); }
+bool LoggerTask::heals() const { return environment().mayLose(); }
 
 void LoggerTask::followHealth() {
     const LogHealth before = std::exchange(health_, thread_->health());

@@ -7,7 +7,7 @@
 
 #include "types/Mount.hpp"
 #include "types/Pose.hpp"
-#include "types/RecurringDiagnostic.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::nav {
 

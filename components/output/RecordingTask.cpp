@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "components/framework/MayLose.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::output {
@@ -16,7 +15,7 @@ void RecordingTask::prepareFiles(const RecordingConfig& config) const try {
 void RecordingTask::openFiles(const RecordingConfig& config) {
     health_ = {};
     if (!config.file && !config.video) return;
-    const auto at_failure = framework::mayLose(environment()) ? AtPictureFailure::Count : AtPictureFailure::Throw;
+    const auto at_failure = environment().mayLose() ? AtPictureFailure::Count : AtPictureFailure::Throw;
     writer_ = std::make_unique<PictureWriter>(PictureFiles(config, outputPath("")), at_failure);
 }
 

@@ -1,6 +1,5 @@
 #include "components/output/XtfTask.hpp"
 
-#include "components/framework/MayLose.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/output/PictureFiles.hpp"
 
@@ -53,7 +52,7 @@ void XtfTask::write(const types::Sonar& line) {
 
 void XtfTask::put() {
     if (!file_) return void(++lost_);
-    const bool may_lose = framework::mayLose(environment());
+    const bool may_lose = environment().mayLose();
     try {
         if (!may_lose) return file_->append(bytes_);
         const bool is_lost = !file_->tryAppend(bytes_);

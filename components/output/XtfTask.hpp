@@ -8,7 +8,7 @@
 #include "components/output/ByteFile.hpp"
 #include "components/recordings/Xtf.hpp"
 #include "types/Range.hpp"
-#include "types/RecurringDiagnostic.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::output {
 

@@ -4,7 +4,6 @@
 #include <tuple>
 
 #include "components/framework/DynamicPorts.hpp"
-#include "components/framework/Event.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "types/Pose.hpp"

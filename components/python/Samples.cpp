@@ -12,7 +12,7 @@
 #include "components/output/FanImage.hpp"
 #include "types/Image.hpp"
 #include "types/Pose.hpp"
-#include "types/RequireSound.hpp"
+#include "types/Samples.hpp"
 
 namespace insonify::python {
 namespace {

@@ -8,9 +8,9 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/receiver/Receiver.hpp"
-#include "types/RecurringDiagnostic.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::receiver {
 

@@ -14,7 +14,6 @@
 #include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
-#include "types/Reason.hpp"
 
 namespace insonify::recordings {
 

@@ -12,6 +12,7 @@
 #include "components/recordings/XtfLayout.hpp"
 #include "types/Angle.hpp"
 #include "types/BeamArc.hpp"
+#include "types/Check.hpp"
 #include "types/Quaternion.hpp"
 
 namespace insonify::recordings {
@@ -23,10 +24,12 @@ public:
     Block(std::vector<char>& bytes, size_t size) : bytes_(bytes), at_(bytes.size()) { bytes.resize(at_ + size); }
     template <class T>
     void put(size_t offset, T value) {
+        INSONIFY_CHECK(at_ + offset + sizeof value <= bytes_.size(), at_, offset, bytes_.size());
         std::memcpy(bytes_.data() + at_ + offset, &value, sizeof value);
     }
     void putFloat(size_t offset, double value) { put(offset, static_cast<float>(value)); }
     void putText(size_t offset, const std::string& text, size_t room) {
+        INSONIFY_CHECK(at_ + offset + room <= bytes_.size(), at_, offset, room, bytes_.size());
         std::memcpy(bytes_.data() + at_ + offset, text.data(), std::min(text.size(), room));
     }
 

@@ -11,7 +11,7 @@
 #include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/RequireSound.hpp"
+#include "types/Samples.hpp"
 #include "types/WorldPlaces.hpp"
 
 namespace insonify::ros {

@@ -1,10 +1,10 @@
 #include "components/ros/InsonifyMessages.hpp"
 
-#include <cassert>
 #include <string_view>
 
 #include "components/ros/Stamps.hpp"
-#include "types/RequireSound.hpp"
+#include "types/Check.hpp"
+#include "types/Samples.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -32,7 +32,7 @@ void copyFieldsByName(const From& from, To& to) {
             if constexpr (requires { assign(value, target); })
                 assign(value, target);
             else
-                assert(!"fields of the same name have types that do not match");
+                INSONIFY_CHECK(false && "fields of the same name have types that match", wanted.name);
         };
         From::describe(from, give);
     };

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "components/ros/Stamps.hpp"
-#include "types/RequireSound.hpp"
+#include "types/Samples.hpp"
 #include "types/WorldFrame.hpp"
 
 namespace insonify::ros {

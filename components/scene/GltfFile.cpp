@@ -10,7 +10,6 @@
 #include <type_traits>
 
 #include "types/ConfigError.hpp"
-#include "types/Reason.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -19,8 +19,8 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "types/ConfigError.hpp"
-#include "types/RecurringDiagnostic.hpp"
 #include "types/Snapshot.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::scene {
 

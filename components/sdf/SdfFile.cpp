@@ -18,7 +18,6 @@
 
 #include "components/scene/Scene.hpp"
 #include "types/ConfigError.hpp"
-#include "types/Reason.hpp"
 
 namespace insonify::sdf {
 namespace {

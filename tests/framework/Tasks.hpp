@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "components/framework/Deployment.hpp"
-#include "components/framework/Event.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/TaskContext.hpp"
 
 namespace insonify::test {
 

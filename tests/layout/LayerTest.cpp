@@ -127,6 +127,19 @@ TEST(LayerTest, ACircleIsFound) {
     EXPECT_EQ(inCircles(folders(sources)), (std::vector<std::string>{"b", "c"}));
 }
 
+/** Code of a header would differ between targets with and without checks. */
+TEST(LayerTest, ChecksAreInSourceFiles) {
+    size_t checks = 0;
+    for (const Source& source : product())
+        for (size_t line = 0; line < source.lines.size(); ++line) {
+            if (source.path == "types/Check.hpp" || source.lines[line].find("INSONIFY_CHECK(") == std::string::npos)
+                continue;
+            EXPECT_FALSE(source.path.ends_with(".hpp")) << source.path << ":" << line + 1;
+            ++checks;
+        }
+    EXPECT_GT(checks, 40u);
+}
+
 TEST(LayerTest, TheTreeIsNoLargerThanItWas) {
     for (const Figure& figure : figuresOfTheTree()) {
         std::printf("%7zu of at most %7zu  %s\n", figure.value, figure.bound, figure.name.c_str());

@@ -1,14 +1,21 @@
 // An effect that follows the rays of pings gets every ray once and every cell once, for any number of parts and
-// threads.
+// threads. What an effect does wrong is found by the checks at the seams.
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <cmath>
 #include <random>
 
+#include "components/sonar/bins/Accumulator.hpp"
+#include "components/sonar/bins/EchoField.hpp"
+#include "components/sonar/bins/Truth.hpp"
+#include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/rays/TileCells.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -98,6 +105,130 @@ TEST(PingEffectTest, RaysAndCellsAreVisitedOnceInEveryPing) {
         for (size_t k = 0; k < ping.bins.size(); ++k)
             ASSERT_EQ(ping.bins[k], hides ? added : plain.bins[k] + added) << i << ", bin " << k;
     }
+}
+
+/** What an effect of a library may do wrong. */
+enum class Wrong {
+    NotANumber,    ///< In a bin of a ping.
+    Negative,      ///< In a bin of a cell, by threads of the pool.
+    FewerBins,     ///< In a ping.
+    BinBeyond,     ///< Reports a bin behind the last.
+    BeamBeyond,    ///< Adds an echo to a beam behind the last.
+    NowhereEcho,   ///< Adds an echo at no range.
+    FewEnergies,   ///< Adds energies to fewer range cells than there are.
+    ThreadBeyond,  ///< Uses the buffer of a thread that does not exist.
+};
+
+class BreaksPings final : public PingEffect {
+public:
+    explicit BreaksPings(Wrong wrong) : wrong_(wrong) {}
+    bool followsRays() const override { return wrong_ == Wrong::Negative; }
+    bool addEnergies(const TracedPing&, size_t, std::span<float> bins) override {
+        bins.back() = -1;
+        return true;
+    }
+    void addEchoes(PingInMaking& made) override {
+        if (wrong_ == Wrong::BinBeyond) made.report(made.ping.bins.size(), false);
+        if (wrong_ == Wrong::BeamBeyond) made.field->add(made.ping.beam_count, 3, 1);
+        if (wrong_ == Wrong::NowhereEcho) made.field->add(0, std::nan(""), 1);
+        if (wrong_ == Wrong::FewEnergies) made.field->addEnergies(0, std::vector<float>(3), 0);
+        if (wrong_ == Wrong::ThreadBeyond) made.field->energies(2);
+    }
+    void addToBins(types::Sonar& ping) override {
+        if (wrong_ == Wrong::NotANumber) ping.bins[7] = std::numeric_limits<float>::quiet_NaN();
+        if (wrong_ == Wrong::FewerBins) ping.bins.pop_back();
+    }
+
+private:
+    Wrong wrong_;
+};
+
+struct BreakerEffect final : Effect {
+    std::string key() const override { return "breaker"; }
+    std::vector<types::Field> numbers() const override { return {{"wrong", "1", "what it does wrong", 0, 100}}; }
+    bool plan(const types::Geometry&, RenderPlan& plan) const override {
+        return plan.config.effects.contains("breaker");
+    }
+    std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry&) const override {
+        return std::make_unique<BreaksPings>(static_cast<Wrong>(plan.config.effects.at("breaker").at("wrong")));
+    }
+};
+
+SonarConfig smallSonar(bool coherent) {
+    SonarConfig config =
+        test::sonarOf({.beams = 4, .width_deg = 20, .height_deg = 20, .bins = 40, .rows = 40, .columns = 2});
+    config.visibility = Visibility::Cpu;
+    if (coherent) {
+        config.frequency_khz = 500;
+        config.speckle.emplace().coherent = true;
+    }
+    return config;
+}
+
+/** Returns what a ping of an effect that is wrong fails with. */
+std::string failure(Wrong wrong, bool coherent) {
+    addEffect(std::make_unique<BreakerEffect>());
+    SonarConfig config = smallSonar(coherent);
+    config.effects["breaker"]["wrong"] = static_cast<double>(wrong);
+    const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::wall(3)}));
+    SonarRenderer renderer(config, snapshot.geometry, {.threads = 2});
+    types::Sonar ping;
+    return test::errorOf<types::CheckFailure>([&] { renderer.render(snapshot, ping); });
+}
+
+TEST(SeamCheckTest, WhatAnEffectDoesWrongIsFoundAtTheSeam) {
+    using testing::EndsWith;
+    using testing::HasSubstr;
+    EXPECT_THAT(failure(Wrong::NotANumber, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 7, nan")));
+    EXPECT_THAT(failure(Wrong::Negative, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 39, -1")));
+    EXPECT_THAT(failure(Wrong::FewerBins, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 159, 4, 40")));
+    EXPECT_THAT(failure(Wrong::BinBeyond, false),
+                AllOf(HasSubstr("Effects.cpp:"), EndsWith("bin < ping.bins.size() does not hold; bin, "
+                                                          "ping.bins.size(): 160, 160")));
+    EXPECT_THAT(failure(Wrong::BeamBeyond, true), AllOf(HasSubstr("EchoField.cpp:"), HasSubstr("; beam, ")));
+    EXPECT_THAT(failure(Wrong::NowhereEcho, true), AllOf(HasSubstr("EchoField.cpp:"), EndsWith(": nan, 1, 0")));
+    EXPECT_THAT(failure(Wrong::FewEnergies, true),
+                AllOf(HasSubstr("EchoField.cpp:"), HasSubstr("intensities.size(), response_.cells(): 3, ")));
+    EXPECT_THAT(failure(Wrong::ThreadBeyond, true), AllOf(HasSubstr("EchoField.cpp:"), EndsWith(": 2, 2")));
+}
+
+TEST(SeamCheckTest, APoseThatIsNoneIsFoundWhateverDrawsTheScene) {
+    for (const Visibility visibility : {Visibility::Cpu, Visibility::Gl})
+        for (const bool turned : {true, false}) {
+            SonarConfig config = smallSonar(false);
+            config.visibility = visibility;
+            types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::wall(3)}));
+            SonarRenderer renderer(config, snapshot.geometry);
+            (turned ? snapshot.sonar.orientation.x : snapshot.sonar.position.y) = std::nan("");
+            types::Sonar ping;
+            EXPECT_THAT(test::errorOf<types::CheckFailure>([&] { renderer.render(snapshot, ping); }),
+                        testing::EndsWith(turned ? ": nan" : ", nan, 0)"));
+        }
+}
+
+TEST(SeamCheckTest, SumsThatOverflowAndSizesThatDifferAreFound) {
+    const types::GeometryPtr scene = test::sceneOf({test::wall(3)});
+    const RenderPlan plan = makeRenderPlan(smallSonar(false), *scene);
+    const EchoRules rules = makeEchoRules(plan, PingEffects(plan, *scene));
+    const BinLevels levels(plan.config, plan.grid);
+    const std::vector<uint64_t> sums(100), full(100, uint64_t{1} << 63);
+    std::vector<float> bins(40), more(41);
+    EXPECT_FALSE(levels.fill(rules, sums.data(), 0.01, bins));
+    const auto failure = [&](const std::vector<uint64_t>& of, double angle, std::span<float> to) {
+        return test::errorOf<types::CheckFailure>([&] { levels.fill(rules, of.data(), angle, to); });
+    };
+    EXPECT_THAT(failure(sums, 0.01, more), testing::EndsWith(": 41, 40"));
+    EXPECT_THAT(failure(sums, 0, bins), testing::EndsWith("solid_angle: 0"));
+    EXPECT_THAT(failure(full, 0.01, bins), testing::EndsWith("any: 9223372036854775808"));
+    TruthTable table(2, 40);
+    types::SonarTruth truth;
+    truth.object.resize(80);
+    EXPECT_THAT(test::errorOf<types::CheckFailure>([&] { table.report(2, 0, truth, {}); }),
+                testing::EndsWith("beam, bins_, used_.size(): 2, 40, 80"));
+    EXPECT_THAT(test::errorOf<types::CheckFailure>([&] { table.report(1, 2, truth, {}); }),
+                testing::EndsWith(": 2, 40, 80"));
+    EXPECT_THAT(test::errorOf<types::CheckFailure>([&] { table.merge(0, TruthTable(2, 41), 0); }),
+                testing::EndsWith(": 41, 40"));
 }
 
 /** An effect that does nothing, with its own key. */

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "types/Reason.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::types {
 namespace {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "types/Check.hpp"
+
 namespace insonify::device {
 namespace {
 
@@ -57,6 +59,7 @@ std::optional<size_t> hexadecimal(std::span<const uint8_t, 4> digits) {
 Bytes SeaNetMessage::packet() const {
     Bytes bytes(frame_size + payload.size());
     const size_t length = bytes.size() - outside;
+    INSONIFY_CHECK(length <= UINT16_MAX, length);
     const bool counted = type != SeaNetType::HeadData && payload.size() + 3 <= UINT8_MAX;
     bytes[0] = start;
     std::ranges::copy(fmt::format("{:04X}", length), bytes.begin() + 1);

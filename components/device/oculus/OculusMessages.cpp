@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "types/Check.hpp"
+
 namespace insonify::device {
 namespace {
 
@@ -113,6 +115,7 @@ double OculusFire::rateHz() const {
 }
 
 void OculusResult::settle() {
+    INSONIFY_CHECK(bearings.size() == beam_count, bearings.size(), beam_count);
     image_offset = static_cast<uint32_t>(fixedSize() + 2 * bearings.size() + before_image.size());
     image_size = static_cast<uint32_t>(image.size());
     message_size = static_cast<uint32_t>(image_offset + image.size() + after_image.size());
@@ -165,6 +168,7 @@ Bytes bytesOf(const OculusResult& result) {
     visitResult(result, writer);
     writer.bytes.reserve(writer.bytes.size() + 2 * result.bearings.size() + result.before_image.size() +
                          result.image.size() + result.after_image.size());
+    INSONIFY_CHECK(writer.bytes.size() == result.fixedSize(), writer.bytes.size(), result.fixedSize());
     for (const int16_t bearing : result.bearings) writer(bearing);
     for (const Bytes* part : {&result.before_image, &result.image, &result.after_image})
         writer.bytes.insert(writer.bytes.end(), part->begin(), part->end());

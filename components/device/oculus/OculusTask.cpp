@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/framework/MayLose.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -95,7 +94,7 @@ void OculusTask::record(const Bytes& message) {
     try {
         const Bytes item = bytesOf(itemOf(now().seconds(), message));
         const std::vector<char> bytes(item.begin(), item.end());
-        if (!framework::mayLose(environment())) return recorded_->append(bytes);
+        if (!environment().mayLose()) return recorded_->append(bytes);
         if (recorded_->tryAppend(bytes)) return;
         countUnrecorded("the disk is slower than the pings");
     } catch (const std::exception& failure) {
@@ -110,7 +109,7 @@ void OculusTask::countUnrecorded(const std::string& why) {
 }
 
 void OculusTask::endRecord(const std::exception& failure) {
-    if (!framework::mayLose(environment())) throw;
+    if (!environment().mayLose()) throw;
     countUnrecorded(failure.what());
     recorded_.reset();
     error(failure.what() + std::string("; the recording ends here, and further pings are not in it"));

@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "types/Check.hpp"
+
 namespace insonify::device {
 namespace {
 
@@ -14,6 +16,7 @@ uint16_t sumOf(std::span<const uint8_t> bytes) {
 }  // namespace
 
 Bytes PingFrame::bytes() const {
+    INSONIFY_CHECK(payload.size() <= UINT16_MAX, payload.size());
     Bytes bytes = {'B', 'R'};
     bytes.reserve(header_size + payload.size() + sum_size);
     append(bytes, static_cast<uint16_t>(payload.size()));

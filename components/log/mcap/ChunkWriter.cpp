@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "types/Check.hpp"
+
 namespace insonify::log::mcap {
 namespace {
 
@@ -155,6 +157,8 @@ void ChunkWriter::closeChunk(ChunkIndex& index) {
     head.number(size);
     head.end();
     const uint64_t length = chunk_.size() - record_header_size;
+    INSONIFY_CHECK(header.size() == chunk_header_size, header.size(), chunk_header_size);
+    INSONIFY_CHECK(chunk_.size() >= chunk_header_size, chunk_.size());
     std::memcpy(header.data() + 1, &length, sizeof length);
     std::ranges::copy(header, chunk_.begin());
 

@@ -9,6 +9,7 @@
 #include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/Ascii.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::log::mcap {
 namespace {
@@ -178,6 +179,8 @@ void SampleWriter::put(size_t stream, types::Time received, types::Time time, ty
     };
     try {
         std::visit(encode, sample);
+    } catch (const types::CheckFailure&) {
+        throw;
     } catch (const std::logic_error& error) {
         fail(stream, error.what());
     }

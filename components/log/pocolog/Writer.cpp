@@ -7,6 +7,7 @@
 #include "components/log/TypeNames.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Wire.hpp"
+#include "types/Check.hpp"
 #include "types/Elapsed.hpp"
 
 namespace insonify::log::pocolog {
@@ -94,6 +95,8 @@ size_t Writer::declareRaw(const std::string& name, const std::string& type, cons
         block.scalar(static_cast<uint32_t>(text->size()));
         block.bytes(text->data(), text->size());
     }
+    INSONIFY_CHECK(declarations_.size() - stream.declaration == sizeof(BlockHeader) + size, declarations_.size(),
+                   stream.declaration, size);
     append(declarations_.data() + stream.declaration, declarations_.size() - stream.declaration);
     return streams_.size() - 1;
 }
@@ -140,6 +143,7 @@ size_t Writer::beginSample() {
 }
 
 void Writer::endSample(size_t number, size_t start, types::Time received, types::Time time) {
+    INSONIFY_CHECK(buffer_.size() >= start + sizeof(BlockHeader) + data_header_size, buffer_.size(), start);
     const size_t size = buffer_.size() - start - sizeof(BlockHeader);
     if (size > std::numeric_limits<uint32_t>::max()) {
         buffer_.resize(start);

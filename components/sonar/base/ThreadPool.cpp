@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "types/Check.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::sonar {
@@ -37,6 +38,7 @@ void ThreadPool::start(Call call, const void* context) {
     process_.require("this pool of threads");
     {
         std::lock_guard lock(mutex_);
+        INSONIFY_CHECK(busy_ == 0, busy_);  // one job at a time
         call_ = call;
         context_ = context;
         busy_ = waking_ = static_cast<int>(workers_.size());

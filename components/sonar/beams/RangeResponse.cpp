@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "types/Check.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -31,6 +32,7 @@ RangeResponse::RangeResponse(const acoustics::Pulse& pulse, const BinGrid& grid)
 }
 
 void RangeResponse::spread(std::span<const float> echoes, std::span<float> bins) const {
+    INSONIFY_CHECK(echoes.size() == bins.size() + 2 * margin(), echoes.size(), bins.size(), margin());
     std::ranges::fill(bins, 0.0f);
     convolve(echoes.data(), taps_, bins.data(), bins.size());
 }

@@ -5,6 +5,7 @@
 #include "components/sonar/bins/EchoField.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 
@@ -20,6 +21,8 @@ BinLevels::BinLevels(const SonarConfig& config, const BinGrid& grid)
 }
 
 bool BinLevels::fill(const EchoRules& rules, const uint64_t* sums, double solid_angle, std::span<float> bins) const {
+    INSONIFY_CHECK(bins.size() <= factor_.size(), bins.size(), factor_.size());
+    INSONIFY_CHECK(solid_angle > 0 && std::isfinite(solid_angle), solid_angle);
     const double quantum = solid_angle / (quanta_per_unit * rules.strength_scale);
     const bool physical = rules.features.has(Feature::Physical);
     uint64_t any = 0;
@@ -33,6 +36,7 @@ bool BinLevels::fill(const EchoRules& rules, const uint64_t* sums, double solid_
             bins[j] = intensity(j, weight ? static_cast<double>(sum) / static_cast<double>(weight) : 0);
         }
     }
+    INSONIFY_CHECK(any >> 63 == 0, any);  // strengthScale() leaves half of 64 bits
     return any != 0;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "types/Check.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -129,6 +130,7 @@ Beamformer::Band Beamformer::bandOf(const Beam& beam, const Fan& cells, const Ru
 }
 
 void Beamformer::sumGroup(size_t group, std::span<const float> echoes) {
+    INSONIFY_CHECK(group < groupCount() && cellsIn(group) <= group_cells, group, groupCount());
     static constexpr float items[group_cells] = {1, 1, 1, 1, 1, 1, 1, 1};
     float* sum = &grouped_[group * bin_count_];
     std::fill(sum, sum + bin_count_, 0.0f);
@@ -136,6 +138,8 @@ void Beamformer::sumGroup(size_t group, std::span<const float> echoes) {
 }
 
 void Beamformer::form(size_t beam, std::span<const float> echoes, std::span<float> bins) const {
+    INSONIFY_CHECK(bins.size() == bin_count_, bins.size(), bin_count_);
+    INSONIFY_CHECK(echoes.size() == groups_.back() * bin_count_, echoes.size(), groups_.back(), bin_count_);
     std::ranges::fill(bins, 0.0f);
     size_t from = 0;
     for (const BandsTo& bands : bands_) {

@@ -8,6 +8,7 @@
 #include "components/sonar/base/Counters.hpp"
 #include "components/sonar/bins/Estimators.hpp"
 #include "components/sonar/plan/Effect.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -52,6 +53,16 @@ const EstimatorEntry& estimator(const Features& features) {
     throw std::logic_error("no estimator has the features of the plan");
 }
 
+/** Returns the first cell before the first beam, or with a plane, a direction or a strength that is not finite. */
+int firstWrong(const Cells& cells, int first_beam) {
+    for (int i = 0; i < cells.count; ++i) {
+        const double all = cells.normal_x[i] + cells.normal_y[i] + cells.normal_z[i] + cells.distance[i] +
+                           cells.cos_az[i] + cells.sin_az[i] + cells.cos_el[i] + cells.sin_el[i] + cells.strength[i];
+        if (!std::isfinite(all) || cells.beam[i] < first_beam) return i;
+    }
+    return cells.count;
+}
+
 }  // namespace
 
 PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules,
@@ -79,6 +90,9 @@ PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, co
 }
 
 void CellDeposit::cover() {
+    INSONIFY_CHECK(cells.count <= Cells::capacity, cells.count);
+    INSONIFY_CHECK(cells.of_bodies_count <= cells.count, cells.of_bodies_count, cells.count);
+    INSONIFY_CHECK(firstWrong(cells, to_.first_beam) == cells.count, firstWrong(cells, to_.first_beam), cells.count);
     const double near_edge = rules_.edges.front(), far_edge = rules_.edges[static_cast<size_t>(rules_.bins.bin_count)];
     coverAll(cells, near_edge, far_edge, covered);
     bendCells(near_edge, far_edge);
@@ -161,7 +175,9 @@ LobeSlopes CellDeposit::lobeSlopes(int i) const {
 }
 
 CellDeposit::CellDeposit(const EchoRules& rules, const WaterView& water, bool bent, const EchoSums& to)
-    : rules_(rules), water_(water), bent_(bent), to_(to), estimator_(estimator(rules.features)) {}
+    : rules_(rules), water_(water), bent_(bent), to_(to), estimator_(estimator(rules.features)) {
+    INSONIFY_CHECK(to.sums && to.first_beam >= 0, to.first_beam);
+}
 
 void CellDeposit::finish() {
     for (size_t i = 0; i < rules_.own.size() && !to_.behind_walls; ++i)

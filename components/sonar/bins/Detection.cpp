@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "components/sonar/plan/Effect.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -28,6 +29,9 @@ DetectionRules DetectionRules::of(const RenderPlan& plan) {
 }
 
 void Detector::take(const types::Sonar& ping, const DetectionConfig& config, const DetectionRules& rules) {
+    INSONIFY_CHECK(ping.bins.size() == size_t{ping.beam_count} * ping.bin_count, ping.bins.size(), ping.beam_count,
+                   ping.bin_count);
+    INSONIFY_CHECK(rules.water.empty() || rules.water.size() == ping.bins.size(), rules.water.size());
     ping_ = &ping;
     gate_share_ = shareOf(-config.gate_db);
     tables_.take(ping, ping.bin_count, rules.returns);
@@ -48,6 +52,7 @@ void Detector::take(const types::Sonar& ping, const DetectionConfig& config, con
 }
 
 Detection Detector::at(uint32_t beam, double place, size_t bin) const {
+    INSONIFY_CHECK(beam < ping_->beam_count && bin < ping_->bin_count, beam, bin, ping_->beam_count, ping_->bin_count);
     const size_t at = size_t{beam} * ping_->bin_count + bin;
     return {std::max(place * ping_->binWidth(), range_min_), ping_->bins[at], levels_[at], bin};
 }

@@ -10,6 +10,7 @@
 #include "components/sonar/beams/RangeResponse.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/plan/Effects.hpp"
+#include "types/Check.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -149,6 +150,8 @@ double FieldResponse::amplitude(size_t sample, double range) const {
 }
 
 void FieldResponse::addEcho(double range, std::complex<double> field, std::span<float> fields) const {
+    INSONIFY_CHECK(fields.size() == 2 * samples_, fields.size(), samples_);
+    INSONIFY_CHECK(std::isfinite(range) && std::isfinite(std::abs(field)), range, field.real(), field.imag());
     const double first = std::max(0.0, binAt(range - reach_, sample_width_));
     const double last = binAt(range + reach_, sample_width_);
     for (auto sample = static_cast<size_t>(first); sample < samples_ && static_cast<double>(sample) <= last; ++sample) {
@@ -231,6 +234,8 @@ EchoField::EchoField(const RenderPlan& plan, int threads)
 }
 
 bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread) {
+    INSONIFY_CHECK(thread < scratch_.size(), thread, scratch_.size());
+    INSONIFY_CHECK(cell < plan_.cells.size(), cell, plan_.cells.size());
     Scratch& scratch = scratch_[thread];
     const double quantum = std::sqrt(solid_angle / rules.strength_scale) / quanta_per_unit;
     const size_t cells = response_.cells(), samples = response_.samples(), stride = cells / samples;
@@ -246,6 +251,7 @@ bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, 
 }
 
 std::span<float> EchoField::energies(size_t /*cell*/, size_t thread) {
+    INSONIFY_CHECK(thread < scratch_.size(), thread, scratch_.size());
     std::ranges::fill(scratch_[thread].energies, 0.0f);
     return scratch_[thread].energies;
 }

@@ -44,7 +44,8 @@ private:
     std::vector<Tap> taps_;
 };
 
-/** The fields of a plan's beams, formed of those of its azimuth cells; the cells themselves in a plan that forms none. */
+/** The fields of a plan's beams, formed of those of its azimuth cells; the cells themselves in a plan that forms none.
+ */
 class FieldBeams {
 public:
     /** `numbers`: of a cell's or beam's fields, samples times real, imaginary. */

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "components/sonar/plan/Effects.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 
@@ -55,6 +56,11 @@ void EchoGrid::setQuality(const RenderPlan& plan) {
     if (!passes()) echoes_.resize(plan.cells.size() * bin_count_);
 }
 
+void EchoGrid::begin(const types::Snapshot& /*snapshot*/, types::Sonar& ping) {
+    INSONIFY_CHECK(ping.bins.size() == beam_count_ * bin_count_, ping.bins.size(), beam_count_, bin_count_);
+    bins_ = ping.bins.data();
+}
+
 bool EchoGrid::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread) {
     const std::span<float> bins = energies(cell, thread);
     const bool received = levels().fill(rules, sums, solid_angle, bins);
@@ -73,6 +79,7 @@ void EchoGrid::finishBeam(size_t beam, std::span<float> padded) const {
 }
 
 void EchoGrid::finish(ThreadPool& threads) {
+    INSONIFY_CHECK(!response_ || padded_.size() >= static_cast<size_t>(threads.size()), padded_.size());
     if (passes()) return;
     const auto eachOf = [&](size_t count, const auto& work) {
         threads.run([&](int part, int parts) {

@@ -27,7 +27,7 @@ class EchoGrid final : public Accumulator {
 public:
     EchoGrid(const RenderPlan& plan, int threads);
     void setQuality(const RenderPlan& plan) override;
-    void begin(const types::Snapshot& /*snapshot*/, types::Sonar& ping) override { bins_ = ping.bins.data(); }
+    void begin(const types::Snapshot& snapshot, types::Sonar& ping) override;
     bool fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread) override;
     std::span<float> energies(size_t cell, size_t /*thread*/) override {
         return {(passes() ? bins_ : echoes_.data()) + cell * bin_count_, bin_count_};

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "components/sonar/plan/Effects.hpp"
+#include "types/Check.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -98,6 +99,7 @@ void TruthTable::addRest(size_t at, const ObjectEcho& added) {
 }
 
 void TruthTable::merge(size_t beam, const TruthTable& other, size_t of) {
+    INSONIFY_CHECK(other.bins_ == bins_, other.bins_, bins_);
     for (size_t bin = 0; bin < bins_; ++bin) {
         const size_t from = of * bins_ + bin;
         for (size_t i = 0; i < other.objectsAt(from); ++i) add(beam, bin, other.echo(from, i));
@@ -133,6 +135,9 @@ void TruthTable::reportBin(size_t at, size_t to, uint64_t water, types::SonarTru
 }
 
 void TruthTable::report(size_t beam, size_t to, types::SonarTruth& truth, std::span<const uint64_t> water) const {
+    INSONIFY_CHECK((beam + 1) * bins_ <= used_.size(), beam, bins_, used_.size());
+    INSONIFY_CHECK((to + 1) * bins_ <= truth.object.size(), to, bins_, truth.object.size());
+    INSONIFY_CHECK(water.empty() || water.size() == bins_, water.size(), bins_);
     bool echo_beyond = false;
     for (size_t bin = bins_; bin-- > 0;) {
         const size_t from = beam * bins_ + bin, at = to * bins_ + bin;
@@ -177,6 +182,7 @@ void WaterTruth::take(const EchoRules& rules, const uint64_t* sums, size_t cell,
     constexpr double maximum = 0x1p54;  // limit of a cell, so that a beam's sum does not overflow
     const int32_t beam = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
     if (beam < 0) return;
+    INSONIFY_CHECK(thread < intensities_.size(), thread, intensities_.size());
     std::vector<float>& intensities = intensities_[thread];
     std::ranges::fill(intensities, 0.0f);
     addOwnSums(rules, sums, cell, solid_angle, intensities);
@@ -240,6 +246,7 @@ void PathTruth::begin() {
 void PathTruth::show(size_t cell, size_t bin, const ObjectEcho& echo) {
     const int32_t beam = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
     if (beam < 0 || echo.energy == 0) return;
+    INSONIFY_CHECK(bin < sum_count_, bin, sum_count_);
     const std::lock_guard one_at_a_time(alone_[static_cast<size_t>(beam)]);
     shown_.add(static_cast<size_t>(beam), bin / (sum_count_ / bin_count_), echo);
 }

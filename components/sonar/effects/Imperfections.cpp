@@ -6,6 +6,7 @@
 
 #include "components/sonar/effects/Places.hpp"
 #include "components/sonar/plan/Effect.hpp"
+#include "types/Check.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::sonar {
@@ -33,6 +34,7 @@ public:
                      : 0.0f) {}
 
     void addToBins(types::Sonar& ping) override {
+        INSONIFY_CHECK(factors_.size() == ping.beam_count, factors_.size(), ping.beam_count);
         if (own_.clock_jitter_us > 0) jitter(ping);
         if (share_ > 0) mix(ping);
         for (size_t beam = 0; beam < ping.beam_count; ++beam) {

@@ -11,6 +11,7 @@
 #include "components/sonar/multipath/PathCells.hpp"
 #include "components/sonar/multipath/PathPatterns.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -172,6 +173,7 @@ void EchoesOfOthers::deposit(const PlacedSender& sender, const TracedPing& ping,
 }
 
 bool EchoesOfOthers::addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) {
+    INSONIFY_CHECK(bins.size() == bin_count_ && cell < plan_.cells.size(), bins.size(), bin_count_, cell);
     const double quantum = quantumOf(ping);
     bool any = false;
     thread_local std::vector<double> facing;  // cumulated up to each bin

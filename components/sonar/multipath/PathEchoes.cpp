@@ -17,6 +17,7 @@
 #include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "types/Angle.hpp"
+#include "types/Check.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::sonar {
@@ -567,6 +568,7 @@ std::span<float> PathEchoes::direct(size_t cell) {
 }
 
 bool PathEchoes::addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) {
+    INSONIFY_CHECK(bins.size() == bin_count_ && cell < plan_.cells.size(), bins.size(), bin_count_, cell);
     if (records_truth_ && !direct_.empty()) std::ranges::copy(bins, direct(cell).begin());
     const double quantum = quantumOf(ping);
     const uint64_t* sums = sums_.data() + cell * bins.size();

@@ -9,6 +9,7 @@
 
 #include "components/sonar/bins/EchoField.hpp"
 #include "types/Angle.hpp"
+#include "types/Check.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::sonar {
@@ -111,6 +112,7 @@ bool PointTargets::addTo(PingInMaking& to, const Return& echo) const {
         const double power = powerIn(plan_.beams[beam], echo);
         if (!(power > 0)) continue;
         const size_t first = beam * to.ping.bin_count + first_bin_;
+        INSONIFY_CHECK(first + means_.size() <= to.ping.bins.size(), first, means_.size(), to.ping.bins.size());
         float* bins = &to.ping.bins[first];
         for (size_t i = 0; i < means_.size(); ++i) {
             const auto added = static_cast<float>(echo.intensity * power * means_[i]);

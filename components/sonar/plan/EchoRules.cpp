@@ -9,6 +9,7 @@
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Angle.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -117,6 +118,8 @@ EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects) {
     rules.middles.resize(rules.middles.size() + bins_at_once);
     if (rules.features.has(Feature::ElevationPattern) && !plan.traces_rays) tabulateElevation(plan, rules);
     effects.giveRules(rules);
+    INSONIFY_CHECK(rules.strength_scale > 0 && rules.strength_scale <= 1, rules.strength_scale);
+    INSONIFY_CHECK(std::is_sorted(rules.edges.rbegin(), rules.edges.rend()), rules.edges.front(), rules.edges.size());
     return rules;
 }
 

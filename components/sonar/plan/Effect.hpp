@@ -48,11 +48,7 @@ struct PingInMaking {
     types::SonarTruth* truth;  ///< That of its surfaces, of the sorted beams; null where no truth is recorded.
 
     /** Records that most of a bin is the echo of neither a surface nor the water, and whether it has passed walls. */
-    void report(size_t bin, bool passes_walls) const {
-        if (!truth || truth->object[bin] != types::SonarTruth::no_object) return;
-        truth->path[bin] = passes_walls ? types::SonarTruth::through_wall : uint8_t{0};
-        truth->share[bin] = 0;
-    }
+    void report(size_t bin, bool passes_walls) const;
 };
 
 /** An effect in the pings of one renderer, with the state that it keeps from ping to ping. No call for a ping

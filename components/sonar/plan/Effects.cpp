@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "components/sonar/plan/EchoRules.hpp"
+#include "types/Check.hpp"
 #include "types/DidYouMean.hpp"
 
 namespace insonify::sonar {
@@ -115,6 +116,13 @@ void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics) {
             checkNumbers("effects." + key + ".", (*found)->numbers(), numbers, diagnostics);
     }
     for (const Effect* effect : effects()) effect->check(config, diagnostics);
+}
+
+void PingInMaking::report(size_t bin, bool passes_walls) const {
+    INSONIFY_CHECK(bin < ping.bins.size(), bin, ping.bins.size());
+    if (!truth || truth->object[bin] != types::SonarTruth::no_object) return;
+    truth->path[bin] = passes_walls ? types::SonarTruth::through_wall : uint8_t{0};
+    truth->share[bin] = 0;
 }
 
 PingEffects::PingEffects(const RenderPlan& plan, const types::Geometry& geometry) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "components/sonar/base/Counters.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -97,6 +98,7 @@ void Culler::addClusters(const Query& query, std::span<const types::Cluster> clu
             ranges.back().index_count += cluster.index_count;
         else
             ranges.push_back({id, cluster.first_index, cluster.index_count, cluster.material});
+        INSONIFY_CHECK(ranges.size() <= draw_range_limit_, ranges.size(), draw_range_limit_);
     }
 }
 

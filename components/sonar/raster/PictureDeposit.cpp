@@ -8,6 +8,7 @@
 #include "components/gpu/EglContext.hpp"
 #include "components/gpu/Objects.hpp"
 #include "components/gpu/Program.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -209,6 +210,7 @@ std::span<const uint64_t> PictureDeposit::finish() {
         for (Taken& picture : pictures_)
             if (picture.taken) picture.view.pixels = static_cast<const uint32_t*>(picture.words.wait());
     }
+    INSONIFY_CHECK(firstBeam(columns_.size()) == setup_.beam_count, firstBeam(columns_.size()), setup_.beam_count);
     threads_.run([&](int part, int) { depositPart(static_cast<size_t>(part)); });
     return sums_;
 }

@@ -15,6 +15,7 @@
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
 #include "components/sonar/surfaces/MeshFacts.hpp"
+#include "types/Check.hpp"
 #include "types/Hash.hpp"
 #include "types/VectorMath.hpp"
 
@@ -403,6 +404,8 @@ void RayVisibility::placeMovers(const types::Snapshot& snapshot) {
 
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::trace(std::span<const TileRays> rays,
                                                                           std::span<TileHits> hits) const {
+    INSONIFY_CHECK(here_->is_built);
+    INSONIFY_CHECK(rays.size() <= tiles_at_once && rays.size() == hits.size(), rays.size(), hits.size());
     std::array<RTCRayHit16, tiles_at_once> all;
     const Rows world(world_from_sonar_);
     for (size_t i = 0; i < rays.size(); ++i) {

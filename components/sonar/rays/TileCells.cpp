@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "components/sonar/base/Counters.hpp"
+#include "types/Check.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -234,11 +235,16 @@ INSONIFY_VECTOR_CLONES TileRays TileDirections::product(const Angles& across, co
 }
 
 TileRays TileDirections::rays(const AngularView& view, int column, int row) const {
+    INSONIFY_CHECK(row >= 0 && static_cast<size_t>(row / tile_.rows) < rows_.size(), row, tile_.rows, rows_.size());
+    INSONIFY_CHECK(column >= 0 && static_cast<size_t>(column / strip_columns_ + 1) * tiles_across_ <= columns_.size(),
+                   column, strip_columns_, columns_.size());
     const auto tile = static_cast<size_t>(column % strip_columns_ / tile_.columns);
     const Angles& across = columns_[static_cast<size_t>(column / strip_columns_) * tiles_across_ + tile];
     const Angles& up = rows_[static_cast<size_t>(row / tile_.rows)];
     TileRays rays = product(across, up);
     rays.active = across.active & up.active;
+    const glm::vec3 first(rays.x[0], rays.y[0], rays.z[0]);
+    INSONIFY_CHECK(std::abs(glm::length(first) - 1) < 1e-5f, first);
     if (!view.conical) return rays;
     for (int i = 0; i < tile_samples; ++i) {
         const glm::vec3 ray(view.direction(across.at[i], up.at[i]));

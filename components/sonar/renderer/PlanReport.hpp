@@ -8,8 +8,8 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/surfaces/Sightlines.hpp"
 #include "types/Plan.hpp"
-#include "types/RecurringDiagnostic.hpp"
 #include "types/Snapshot.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::sonar {
 

@@ -23,6 +23,7 @@
 #include "components/sonar/surfaces/DeformedMeshes.hpp"
 #include "components/sonar/surfaces/FacetLobes.hpp"
 #include "components/sonar/surfaces/ObjectPlacements.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -329,6 +330,7 @@ void RayEchoes::place(const types::Snapshot& snapshot) {
     }
     if (ray_paths_) ray_paths_->place(snapshot);
     placeRuns();
+    INSONIFY_CHECK(runs_.size() == scene().commands.size(), runs_.size(), scene().commands.size());
     ahead_.take(snapshot.ahead, plan_.laws);
 }
 
@@ -355,6 +357,7 @@ std::span<TracedTile> RayEchoes::trace(const Part& part, Worker& worker) const {
     };
     for (int column = begin; column < end; column += view_.shape.all.columns)
         for (int row = part.first_row; row < part.first_row + part.rows; row += view_.shape.all.rows) {
+            INSONIFY_CHECK(count < worker.tiles.size(), count, worker.tiles.size());
             TracedTile& tile = worker.tiles[count];
             tile = {column, row, end, &worker.hits[count]};
             ++count;
@@ -369,6 +372,7 @@ bool RayEchoes::gather(const Part& part, Worker& worker) {
     Strip& strip = strips_[part.strip];
     if (strip.parts == 1) return true;
     const std::lock_guard alone(strip.mutex);
+    INSONIFY_CHECK(strip.left > 0 && strip.sums.size() == worker.sums.size(), strip.left, strip.sums.size());
     for (size_t i = 0; i < strip.sums.size(); ++i) strip.sums[i] += worker.sums[i];
     if (--strip.left > 0) return false;
     std::copy(strip.sums.begin(), strip.sums.end(), worker.sums.begin());
@@ -456,6 +460,7 @@ void RayEchoes::depositPart(const Part& part, std::span<TracedTile> tiles, Worke
 }
 
 void RayEchoes::workOn(const Part& part, Worker& worker) {
+    INSONIFY_CHECK(part.first_beam + part.beams <= view_.cells.beams, part.first_beam, part.beams, view_.cells.beams);
     const std::span<TracedTile> tiles = trace(part, worker);
     worker.lap(DrawStage);
     effects_.followRays(tracedPing(), tiles);

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -12,6 +16,7 @@
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
 #include "components/sonar/surfaces/DeformedMeshes.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -23,6 +28,16 @@ std::vector<uint32_t> deformable(const types::Geometry& geometry) {
         if (geometry.meshes[static_cast<size_t>(geometry.objects[i].mesh)].deformation)
             objects.push_back(static_cast<uint32_t>(i));
     return objects;
+}
+
+bool isFinite(const glm::dvec3& place) {
+    return std::isfinite(place.x) && std::isfinite(place.y) && std::isfinite(place.z);
+}
+
+/** Returns the first bin that is negative or not finite. */
+size_t firstWrong(const std::vector<float>& bins) {
+    const auto wrong = [](float bin) { return !(bin >= 0 && bin <= std::numeric_limits<float>::max()); };
+    return static_cast<size_t>(std::ranges::find_if(bins, wrong) - bins.begin());
 }
 
 }  // namespace
@@ -166,6 +181,9 @@ SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geome
 SonarRenderer::~SonarRenderer() = default;
 
 void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) {
+    INSONIFY_CHECK(std::abs(glm::length(snapshot.sonar.orientation) - 1) < 1e-6,
+                   glm::length(snapshot.sonar.orientation));
+    INSONIFY_CHECK(isFinite(snapshot.sonar.position), snapshot.sonar.position);
     parts_->stages = empty_stages;
     if (!snapshot.deformed.empty() || parts_->deformed) {
         const auto start = std::chrono::steady_clock::now();
@@ -200,6 +218,9 @@ void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) 
     parts_->effects.addEchoes(made);
     echoes.detect(ping);
     parts_->effects.addToBins(ping);
+    INSONIFY_CHECK(ping.bins.size() == size_t{ping.beam_count} * ping.bin_count, ping.bins.size(), ping.beam_count,
+                   ping.bin_count);
+    INSONIFY_CHECK(firstWrong(ping.bins) == ping.bins.size(), firstWrong(ping.bins), ping.bins[firstWrong(ping.bins)]);
     parts_->plan.beams.toTableOrder(std::span(ping.bins), ping.bin_count);
     parts_->stages[BeamStage].seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

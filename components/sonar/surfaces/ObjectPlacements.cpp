@@ -9,7 +9,9 @@
 #include <numeric>
 
 #include "components/sonar/surfaces/NearestPoint.hpp"
+#include "components/sonar/surfaces/ObjectPlacements.hpp"
 #include "types/Angle.hpp"
+#include "types/Check.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -126,6 +128,8 @@ void ObjectPlacements::joinExtents() {
 void ObjectPlacements::place(const types::Snapshot& snapshot) {
     for (size_t i = 0; i < geometry_.objects.size(); ++i)
         world_from_object_[i] = geometry_.objects[i].world_from_object;
+    for (const types::MovedObject& moved : snapshot.moved)
+        INSONIFY_CHECK(moved.object < world_from_object_.size(), moved.object, world_from_object_.size());
     for (const types::MovedObject& moved : snapshot.moved) world_from_object_[moved.object] = moved.world_from_object;
     const glm::dmat3 rotation(sonarFromWorld(snapshot.sonar));
     for (size_t i = 0; i < world_from_object_.size(); ++i)
