@@ -1,6 +1,7 @@
 #pragma once
 #include "components/device/ping/PingDevice.hpp"
 #include "components/device/ping/PingProtocol.hpp"
+#include "components/sonars/Sonars.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::device {
@@ -109,7 +110,7 @@ struct Ping1dProfile {
 
 /** Properties of a Ping1D that are not set over the wire. */
 struct Ping1dConfig {
-    double max_range = 100;
+    double max_range = sonars::sonar("ping1d").modes.front().range_max;
     int profile_samples = 200;
     double nearest = 0;  ///< Nearer returns are blanked: the sonar's `range_min` or its receiver's; not a key [m].
 
