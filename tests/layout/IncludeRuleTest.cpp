@@ -48,7 +48,7 @@ std::set<std::string> neighboursOf(const Source& source) {
 }
 
 /** "pocolog" for components/log/pocolog/...: a format of logs; empty for the common part. */
-std::string backEndOf(const Source& source) {
+std::string backEnd(const Source& source) {
     const std::string log = "components/log/";
     const size_t end = source.path.find('/', log.size());
     return source.path.starts_with(log) && end != std::string::npos ? source.path.substr(log.size(), end - log.size())
@@ -57,7 +57,7 @@ std::string backEndOf(const Source& source) {
 
 /** Log formats are hidden behind the common part: no other folder includes a format, and no format includes another. */
 bool reachesBehindTheLog(const Source& source, const Source& target) {
-    const std::string own = backEndOf(source), wanted = backEndOf(target);
+    const std::string own = backEnd(source), wanted = backEnd(target);
     return !wanted.empty() && (source.folder() != "log" || (!own.empty() && own != wanted));
 }
 
@@ -89,7 +89,7 @@ std::vector<Source> ourSources() {
 
 TEST(IncludeRuleTest, ComponentsMeetInTypesOnly) {
     for (const Source& source : ourSources())
-        for (const Include& include : includesOf(source))
+        for (const Include& include : includes(source))
             EXPECT_TRUE(!include.ours || mayInclude(source, {include.target, {}}))
                 << source.path << " includes " << include.target;
 }
@@ -137,7 +137,7 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
         return std::any_of(first, last, [&](const auto& home) { return home.second == folder; });
     };
     for (const Source& source : ourSources())
-        for (const Include& include : includesOf(source))
+        for (const Include& include : includes(source))
             for (const auto& [prefix, home] : homes)
                 EXPECT_TRUE(include.ours || !include.target.starts_with(prefix) || livesIn(prefix, source.folder()))
                     << source.path << " includes " << include.target;

@@ -10,7 +10,7 @@ using types::Time;
 
 const Time second{1'000'000}, dummy_period{100'000};
 
-Time periodOf(const OculusFire& fire) { return Time::fromSeconds(1 / fire.rateHz()); }
+Time period(const OculusFire& fire) { return Time::fromSeconds(1 / fire.rateHz()); }
 
 /** In high frequency the device's gain is at least 40 %; a driver's 0 to 100 % are mapped to the rest. */
 double usedGain(const OculusFire& fire) { return fire.mode == 2 ? 40 + 0.6 * fire.gain_percent : fire.gain_percent; }
@@ -25,7 +25,7 @@ const sonars::SonarMode& oculusMode(const sonars::SonarFigures& figures, uint8_t
     return figures.modes[number == 2 && figures.modes.size() > 1 ? 1 : 0];
 }
 
-std::optional<OculusModel> oculusModelOf(uint16_t part) {
+std::optional<OculusModel> oculusModel(uint16_t part) {
     for (const OculusModel model : {OculusModel::M370s, OculusModel::M750d, OculusModel::M1200d, OculusModel::M3000d})
         if (figures(model).part == part) return model;
     return std::nullopt;
@@ -96,7 +96,7 @@ bool OculusEmulator::isDue(Time now) {
         if (now < asked_.deadline(2.0 * static_cast<double>(asked_.size()))) return false;
         ++lost_;
     }
-    return now >= last_ping_ + periodOf(fire_);
+    return now >= last_ping_ + period(fire_);
 }
 
 Time OculusEmulator::follow(Time clock) {
@@ -131,10 +131,10 @@ OculusEmulator::Due OculusEmulator::workAt(Time now, Time clock) {
     if (isDue(now)) {
         due.ask = settingsOf(fire_, clock);
         asked_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {now, *due.ask, fire_});
-        const Time planned = last_ping_ + periodOf(fire_);  // keeps the rate even if a cycle is late
-        last_ping_ = now - planned < periodOf(fire_) ? planned : now;
+        const Time planned = last_ping_ + period(fire_);  // keeps the rate even if a cycle is late
+        last_ping_ = now - planned < period(fire_) ? planned : now;
     }
-    due.next = std::min(due.next, asked_.empty() ? last_ping_ + periodOf(fire_) : now + second);
+    due.next = std::min(due.next, asked_.empty() ? last_ping_ + period(fire_) : now + second);
     return due;
 }
 

@@ -27,7 +27,7 @@ const sonars::SonarFigures& figures(OculusModel model);
  *  frequency. */
 const sonars::SonarMode& oculusMode(const sonars::SonarFigures& figures, uint8_t number);
 /** Returns the model of a part number; none: unknown. */
-std::optional<OculusModel> oculusModelOf(uint16_t part);
+std::optional<OculusModel> oculusModel(uint16_t part);
 
 /** Properties of an Oculus that drivers do not set. */
 struct OculusConfig {

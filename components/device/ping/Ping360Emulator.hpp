@@ -169,8 +169,8 @@ private:
     void proceed(types::Time now) override;
     std::optional<types::Time> nextWork() const override;
 
-    void takeTransducer(PingClient client, const Ping360Transducer& asked);
-    void takeAutoTransmit(PingClient client, const Ping360AutoTransmit& asked);
+    void applyTransducer(PingClient client, const Ping360Transducer& asked);
+    void applyAutoTransmit(PingClient client, const Ping360AutoTransmit& asked);
     void reset(bool bootloader, types::Time now);
     bool begin(types::Time now);
     void turnTo(const Ping360Transducer& asked, types::Time now);

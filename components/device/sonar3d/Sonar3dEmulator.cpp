@@ -36,7 +36,7 @@ double numberIn(const Json& json, const char* what) {
     return json.get<double>();
 }
 
-const Json& memberOf(const Json& json, const char* name) {
+const Json& member(const Json& json, const char* name) {
     if (!json.is_object() || !json.contains(name)) throw bad(fmt::format("the body must be an object with {}", name));
     return json[name];
 }
@@ -152,7 +152,7 @@ struct Sonar3dEmulator::Api {
     }
 
     void setRange(const Json& json) {
-        const double min = numberIn(memberOf(json, "min"), "min"), max = numberIn(memberOf(json, "max"), "max");
+        const double min = numberIn(member(json, "min"), "min"), max = numberIn(member(json, "max"), "max");
         const double longest = device.device_.longest_range;
         if (min < 0 || min >= max || max > longest)
             throw bad(fmt::format("a range of {:g} to {:g} m; must be 0 <= min < max <= {:g}", min, max, longest));
@@ -180,7 +180,7 @@ struct Sonar3dEmulator::Api {
     }
 
     void setUdp(const Json& json) {
-        const std::string mode = textIn(memberOf(json, "mode"), "mode");
+        const std::string mode = textIn(member(json, "mode"), "mode");
         const std::string ip = textIn(json.value("unicast_destination_ip", Json("")), "unicast_destination_ip");
         const double port = numberIn(json.value("unicast_destination_port", Json(0)), "unicast_destination_port");
         const bool unicast = mode == "unicast";
@@ -208,7 +208,7 @@ struct Sonar3dEmulator::Api {
     void describeTime() {
         paths["time/status"].get = [this] { return timeStatus(); };
         paths["time/manual"].post = taking([this](const Json& json) {
-            const std::string text = textIn(memberOf(json, "now"), "now");
+            const std::string text = textIn(member(json, "now"), "now");
             const auto set = isoTime(text);
             if (!set) throw bad(fmt::format("now is \"{}\"; must be like 2026-11-23T03:10:05Z", text));
             if (state.ntp_synced) throw Refused{409, "the time is synchronised already"};
@@ -218,13 +218,13 @@ struct Sonar3dEmulator::Api {
                                  return Json{{"ntp_address", state.ntp_address}};
                              },
                              taking([this](const Json& json) {
-                                 const std::string address = textIn(memberOf(json, "ntp_address"), "ntp_address");
+                                 const std::string address = textIn(member(json, "ntp_address"), "ntp_address");
                                  if (address.empty() || address.find_first_of(" /") != std::string::npos)
                                      throw bad("ntp_address must be a host, or \"auto\"");
                                  state.ntp_address = address;
                              })};
         paths["time/ntp/force-sync"].post = [this](const Json& json) {
-            if (numberIn(memberOf(json, "timeout_seconds"), "timeout_seconds") < 0)
+            if (numberIn(member(json, "timeout_seconds"), "timeout_seconds") < 0)
                 throw bad("timeout_seconds must not be negative");
             device.shift_.reset();
             state.ntp_synced = true;
@@ -335,7 +335,7 @@ void Sonar3dEmulator::send(const Bytes& packet) {
         outlet_.send(device_.multicast_address, static_cast<uint16_t>(device_.multicast_port), packet);
 }
 
-void Sonar3dEmulator::takePing(const types::DepthMap& map) {
+void Sonar3dEmulator::setPing(const types::DepthMap& map) {
     const auto asked = asked_.take(steady_.steady(map.time));
     if (!asked) return;
     warned_ = false;

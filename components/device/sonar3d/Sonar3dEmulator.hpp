@@ -84,7 +84,7 @@ public:
      *  before it was set back by more than a second is requested again. */
     types::Time follow(types::Time clock);
     /** Takes a requested ping, even a late one: ranges and strengths by direction. */
-    void takePing(const types::DepthMap& map);
+    void setPing(const types::DepthMap& map);
     /** Sends due requests; returns when the next is due. */
     std::optional<types::Time> tick(types::Time clock);
     const Sonar3dState& state() const { return state_; }
