@@ -38,7 +38,7 @@ std::vector<std::string> wordsAfter(const std::string& command) {
         for (const auto& entry : registry.list()) words.push_back(entry.type);
     }
     if (command == " init")
-        for (const SonarPreset& preset : sonarPresets()) words.emplace_back(preset.name);
+        for (const sonars::SonarFigures* sonar : starterSonars()) words.push_back(sonar->name);
     if (command == " completion") words = {"bash", "zsh"};
     return words;
 }
@@ -153,7 +153,12 @@ void addCompletionCommand(CLI::App& app, Action& action) {
 
 void addManCommand(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("man", "Prints the manual page")->group("");
-    command->callback([&app, &action] { action = [&app] { return printMan(app); }; });
+    command->callback([&app, &action] {
+        action = [&app] {
+            describeSonars(*app.get_subcommand("init"));
+            return printMan(app);
+        };
+    });
 }
 
 }  // namespace insonify::command

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <system_error>
 
 #include "components/command/CommandLine.hpp"
@@ -71,10 +72,10 @@ std::string shellWord(const std::string& text) {
 }
 
 int init(const fs::path& folder, const std::string& sonar) {
-    const SonarPreset& preset = sonarPreset(sonar);
-    const std::string deployment = starterDeployment(preset);
-    std::vector<NewFile> files{{folder / (std::string(preset.name) + ".yml"), deployment}};
-    for (const StarterFile& file : starterFiles(preset)) files.push_back({folder / file.name, file.bytes});
+    const sonars::SonarFigures& figures = starterSonar(sonar);
+    const std::string deployment = starterDeployment(figures);
+    std::vector<NewFile> files{{folder / (figures.name + ".yml"), deployment}};
+    for (const StarterFile& file : starterFiles(figures)) files.push_back({folder / file.name, file.bytes});
     refuseOverwriting(files);
     std::error_code error;
     fs::create_directories(folder, error);
@@ -86,30 +87,34 @@ int init(const fs::path& folder, const std::string& sonar) {
     for (const NewFile& file : files) console::printResult("{}\n", file.path.string());
     const std::string word = shellWord(folder.string());
     console::printResult("next: insonify run {}\n", word);
-    if (preset.isFan())
+    if (figures.isFan())
         console::printResult("or:   insonify dataset {} --sweep {} --out set\n", word,
                              shellWord((folder / "sweep.yml").string()));
     return 0;
 }
 
-std::string presetNames() {
-    std::string names;
-    for (const SonarPreset& preset : sonarPresets()) names += (names.empty() ? "" : ", ") + std::string(preset.name);
-    return names;
-}
-
 }  // namespace
+
+void describeSonars(CLI::App& init) {
+    std::string names;
+    for (const sonars::SonarFigures* sonar : starterSonars()) names += (names.empty() ? "" : ", ") + sonar->name;
+    init.get_option("--sonar")->description("one of " + names)->default_str(starterSonars().front()->name);
+}
 
 void addInitCommand(CLI::App& app, Action& action) {
     struct Options {
-        std::string folder, sonar = sonarPresets().front().name;
+        std::string folder;
+        std::optional<std::string> sonar;
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command =
         app.add_subcommand("init", "Makes a folder with a first deployment, its scene, trajectories and sweep");
     command->add_option("DIR", options->folder, "a folder, made if it is not there")->required();
-    command->add_option("--sonar", options->sonar, "one of " + presetNames())->type_name("NAME")->capture_default_str();
-    command->callback([options, &action] { action = [options] { return init(options->folder, options->sonar); }; });
+    command->add_option("--sonar", options->sonar)->type_name("NAME");
+    command->preparse_callback([command](size_t) { describeSonars(*command); });
+    command->callback([options, &action] {
+        action = [options] { return init(options->folder, options->sonar.value_or(starterSonars().front()->name)); };
+    });
 }
 
 }  // namespace insonify::command

@@ -6,23 +6,37 @@
 
 #include "components/acoustics/Absorption.hpp"
 #include "components/acoustics/SoundSpeed.hpp"
+#include "components/framework/ConfigReader.hpp"
+#include "types/Embed.hpp"
 
-// The files are embedded in the command, so that an installed command needs no path to them.
-#define INSONIFY_EMBED(symbol, file)                                                                     \
-    __asm__(".pushsection .rodata\n.balign 16\n" #symbol "_begin:\n.incbin \"" INSONIFY_STARTER "/" file \
-            "\"\n" #symbol "_end:\n.byte 0\n.popsection\n");                                             \
-    extern "C" const char symbol##_begin[], symbol##_end[];
-
-INSONIFY_EMBED(insonify_starter_scene, "scene.glb")
-INSONIFY_EMBED(insonify_starter_script, "make_scene.py")
-INSONIFY_EMBED(insonify_starter_pass, "pass.csv")
-INSONIFY_EMBED(insonify_starter_hover, "hover.csv")
-INSONIFY_EMBED(insonify_starter_fan, "fan.yml")
-INSONIFY_EMBED(insonify_starter_scanning, "scanning.yml")
-INSONIFY_EMBED(insonify_starter_grid, "grid.yml")
-INSONIFY_EMBED(insonify_starter_sweep, "sweep.yml")
+INSONIFY_EMBED(insonify_starter_scene, INSONIFY_STARTER
+               "/"
+               "scene.glb")
+INSONIFY_EMBED(insonify_starter_script, INSONIFY_STARTER
+               "/"
+               "make_scene.py")
+INSONIFY_EMBED(insonify_starter_pass, INSONIFY_STARTER
+               "/"
+               "pass.csv")
+INSONIFY_EMBED(insonify_starter_hover, INSONIFY_STARTER
+               "/"
+               "hover.csv")
+INSONIFY_EMBED(insonify_starter_fan, INSONIFY_STARTER
+               "/"
+               "fan.yml")
+INSONIFY_EMBED(insonify_starter_scanning, INSONIFY_STARTER
+               "/"
+               "scanning.yml")
+INSONIFY_EMBED(insonify_starter_grid, INSONIFY_STARTER
+               "/"
+               "grid.yml")
+INSONIFY_EMBED(insonify_starter_sweep, INSONIFY_STARTER
+               "/"
+               "sweep.yml")
 
 namespace insonify::command {
+
+using sonars::SonarFigures, sonars::SonarMode, sonars::SonarStarter;
 
 namespace {
 
@@ -34,12 +48,12 @@ const acoustics::Water water{.temperature_celsius = 12, .salinity_psu = 35, .dep
 double speedOfSound() { return static_cast<double>(static_cast<float>(acoustics::soundSpeed(water))); }
 
 /** Returns the duration of a tone with the maker's range resolution [s]. */
-double toneSeconds(const SonarPreset& preset) { return 2 * preset.range_resolution / speedOfSound(); }
+double toneSeconds(const SonarFigures& sonar) { return 2 * sonar.modes.front().range_resolution / speedOfSound(); }
 
 /** Returns the template for a sonar of its kind. */
-std::string_view templateFor(const SonarPreset& preset) {
-    if (preset.isGrid()) return between(insonify_starter_grid_begin, insonify_starter_grid_end);
-    if (preset.isFan()) return between(insonify_starter_fan_begin, insonify_starter_fan_end);
+std::string_view templateFor(const SonarFigures& sonar) {
+    if (sonar.isGrid()) return between(insonify_starter_grid_begin, insonify_starter_grid_end);
+    if (sonar.isFan()) return between(insonify_starter_fan_begin, insonify_starter_fan_end);
     return between(insonify_starter_scanning_begin, insonify_starter_scanning_end);
 }
 
@@ -56,60 +70,81 @@ std::string aligned(const std::string& text) {
     return all;
 }
 
-std::string absorptionBlock(const SonarPreset& preset, double db_per_m) {
+std::string absorptionBlock(double frequency_khz, double db_per_m) {
     constexpr double highest_khz = 1000;  // limit of Francois and Garrison's law
-    if (preset.frequency_khz > highest_khz)
+    if (frequency_khz > highest_khz)
         return fmt::format("{{db_per_m: {:.2f}}}  # one way; laws of absorption are for up to {:g} kHz", db_per_m,
                            highest_khz);
     return "{law: francois_garrison}";
 }
 
 /** Returns a chirp or a tone with the maker's resolution: ACOUSTICS.md 5.10. */
-std::string pulseBlock(const SonarPreset& preset) {
+std::string pulseBlock(const SonarFigures& sonar) {
     constexpr double chirp_width = 0.886;
-    const double seconds = toneSeconds(preset);
-    const std::string pulse = preset.sends_tones ? fmt::format("duration_us: {:.3g}", 1e6 * seconds)
-                                                 : fmt::format("bandwidth_khz: {:.3g}", 1e-3 * chirp_width / seconds);
-    return fmt::format("{{{}}}  # resolves {:.3g} mm", pulse, 1e3 * preset.range_resolution);
+    const double seconds = toneSeconds(sonar);
+    const std::string pulse = sonar.starter->sends_tones
+                                  ? fmt::format("duration_us: {:.3g}", 1e6 * seconds)
+                                  : fmt::format("bandwidth_khz: {:.3g}", 1e-3 * chirp_width / seconds);
+    return fmt::format("{{{}}}  # resolves {:.3g} mm", pulse, 1e3 * sonar.modes.front().range_resolution);
 }
 
 /** Returns the bandwidth of the noise behind the matched filter, 1 / duration of the pulse [kHz]. */
-double noiseBandwidth(const SonarPreset& preset) {
+double noiseBandwidth(const SonarFigures& sonar) {
     constexpr double of_chirps = 30;  // no data sheet has their duration
-    return preset.sends_tones ? 1e-3 / toneSeconds(preset) : of_chirps;
+    return sonar.starter->sends_tones ? 1e-3 / toneSeconds(sonar) : of_chirps;
 }
 
 }  // namespace
 
-double SonarPreset::range() const { return bin_count * 1e-6 * bin_us * speedOfSound(); }
-
-std::string starterDeployment(const SonarPreset& preset) {
-    const double db_per_m = acoustics::francoisGarrison(preset.frequency_khz, water);
-    using fmt::arg;
-    return aligned(fmt::format(
-        fmt::runtime(templateFor(preset)), arg("name", preset.name), arg("title", preset.title),
-        arg("source", preset.source), arg("summary", preset.summary), arg("frequency", preset.frequency_khz),
-        arg("range", fmt::format("{:.10g}", preset.range())), arg("range_min", preset.range_min),
-        arg("range_max", preset.range_max), arg("bins", preset.bin_count), arg("bin_us", preset.bin_us),
-        arg("width", preset.beam_width_deg), arg("height", preset.beam_height_deg), arg("period", preset.period_s),
-        arg("columns", preset.columns_per_beam), arg("beams", preset.beam_count), arg("fov", preset.field_of_view_deg),
-        arg("spacing", preset.field_of_view_deg / preset.beam_count), arg("pitch", preset.pitch_deg),
-        arg("step", preset.step_deg), arg("speed", preset.step_deg / preset.period_s),
-        arg("turn", preset.step_deg > 0 ? static_cast<int>(90 / preset.step_deg) : 0), arg("rows", preset.row_count),
-        arg("rows_fov", preset.rows_field_of_view_deg), arg("absorption", fmt::format("{:.2f}", db_per_m)),
-        arg("absorption_block", absorptionBlock(preset, db_per_m)), arg("pulse", pulseBlock(preset)),
-        arg("noise_note",
-            preset.sends_tones ? "" : ", 33 us as a guess: a matched filter passes no more noise of a chirp"),
-        arg("noise_khz", fmt::format("{:.3g}", noiseBandwidth(preset))), arg("reference", preset.reference_db)));
+std::vector<const SonarFigures*> starterSonars() {
+    std::vector<const SonarFigures*> all;
+    for (const SonarFigures& sonar : sonars::sonars())
+        if (sonar.starter) all.push_back(&sonar);
+    return all;
 }
 
-std::vector<StarterFile> starterFiles(const SonarPreset& preset) {
+const SonarFigures& starterSonar(const std::string& name) {
+    std::vector<std::string> known;
+    for (const SonarFigures* sonar : starterSonars()) {
+        if (sonar->name == name) return *sonar;
+        known.push_back(sonar->name);
+    }
+    throw types::ConfigError("", "--sonar", "there is no sonar " + name + "; " + framework::suggestion(name, known));
+}
+
+double starterRange(const SonarFigures& sonar) {
+    return sonar.starter->bin_count * 1e-6 * sonar.starter->bin_us * speedOfSound();
+}
+
+std::string starterDeployment(const SonarFigures& sonar) {
+    const SonarMode& mode = sonar.modes.front();
+    const SonarStarter& starter = *sonar.starter;
+    const double db_per_m = acoustics::francoisGarrison(mode.frequency_khz, water);
+    using fmt::arg;
+    return aligned(fmt::format(
+        fmt::runtime(templateFor(sonar)), arg("name", sonar.name), arg("title", sonar.title),
+        arg("source", starter.note), arg("summary", starter.summary), arg("frequency", mode.frequency_khz),
+        arg("range", fmt::format("{:.10g}", starterRange(sonar))), arg("range_min", mode.range_min),
+        arg("range_max", mode.range_max), arg("bins", starter.bin_count), arg("bin_us", starter.bin_us),
+        arg("width", mode.beam_width_deg), arg("height", mode.beam_height_deg), arg("period", starter.period),
+        arg("columns", starter.columns_per_beam), arg("beams", mode.beam_count), arg("fov", mode.field_of_view_deg),
+        arg("spacing", mode.field_of_view_deg / mode.beam_count), arg("pitch", starter.pitch_deg),
+        arg("step", mode.step_deg), arg("speed", mode.step_deg / starter.period),
+        arg("turn", mode.step_deg > 0 ? static_cast<int>(90 / mode.step_deg) : 0), arg("rows", mode.row_count),
+        arg("rows_fov", mode.rows_field_of_view_deg), arg("absorption", fmt::format("{:.2f}", db_per_m)),
+        arg("absorption_block", absorptionBlock(mode.frequency_khz, db_per_m)), arg("pulse", pulseBlock(sonar)),
+        arg("noise_note",
+            starter.sends_tones ? "" : ", 33 us as a guess: a matched filter passes no more noise of a chirp"),
+        arg("noise_khz", fmt::format("{:.3g}", noiseBandwidth(sonar))), arg("reference", starter.reference_db)));
+}
+
+std::vector<StarterFile> starterFiles(const SonarFigures& sonar) {
     std::vector<StarterFile> files{
         {"scene.glb", between(insonify_starter_scene_begin, insonify_starter_scene_end)},
         {"make_scene.py", between(insonify_starter_script_begin, insonify_starter_script_end)},
         {"pass.csv", between(insonify_starter_pass_begin, insonify_starter_pass_end)},
         {"hover.csv", between(insonify_starter_hover_begin, insonify_starter_hover_end)}};
-    if (preset.isFan())
+    if (sonar.isFan())
         files.push_back({"sweep.yml", between(insonify_starter_sweep_begin, insonify_starter_sweep_end)});
     return files;
 }

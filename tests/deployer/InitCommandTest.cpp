@@ -6,6 +6,7 @@
 #include "tests/deployer/Command.hpp"
 
 using namespace insonify::command;
+using insonify::sonars::SonarFigures;
 using namespace insonify::deployer;
 using testing::HasSubstr;
 
@@ -13,7 +14,7 @@ namespace {
 
 /** Arguments of a run without the noise of the sea; a 3-D sonar's range images have no noise anyway. */
 std::vector<std::string> quietly(std::vector<std::string> words, const std::string& sonar) {
-    if (!sonarPreset(sonar).isGrid()) words.insert(words.end(), {"--set", "noise.ambient=null"});
+    if (!starterSonar(sonar).isGrid()) words.insert(words.end(), {"--set", "noise.ambient=null"});
     return words;
 }
 
@@ -24,7 +25,7 @@ size_t echoesReceived(const TestFolder& folder, const std::string& sonar) {
     EXPECT_THAT(callInsonify(folder, quietly({"run", sonar, "--pings", "1", "--out", sonar + "/out"}, sonar)),
                 succeeds());
     const std::string log = sonar + "/out/" + sonar + ".0.log";
-    const bool grid = sonarPreset(sonar).isGrid();
+    const bool grid = starterSonar(sonar).isGrid();
     const std::string stream = grid ? "sonar.range_image" : "receiver.ping", array = grid ? "distances" : "bins";
     EXPECT_THAT(callInsonify(folder, {"log", "export", log, "--stream", stream, "--to", sonar + ".npz"}), succeeds());
     const Outcome counted = python(folder, "import numpy; b = numpy.load('" + sonar + ".npz')['" + array +
@@ -60,16 +61,16 @@ size_t annotatedTyres(const TestFolder& folder, const std::string& annotations) 
 
 /** Settings that hide almost everything in a ping: only its last hundredth, or only returns above the source's
  *  level. */
-std::string almostNothing(const SonarPreset& preset) {
-    if (preset.isGrid()) return "sonar.detection.threshold_db=0";
-    return "sonar.range_min=" + std::to_string(0.99 * preset.range());
+std::string almostNothing(const SonarFigures& figures) {
+    if (figures.isGrid()) return "sonar.detection.threshold_db=0";
+    return "sonar.range_min=" + std::to_string(0.99 * starterRange(figures));
 }
 
 /** Returns the pixels of echoes in the first picture of a run with a property set. */
 int brightPixels(const TestFolder& folder, const std::string& sonar, const std::string& assignment) {
     const std::string out = "out_" + assignment;
     std::vector<std::string> words{"run", ".", "--pings", "1", "--out", out, "--set", assignment};
-    if (sonarPreset(sonar).isGrid()) words.insert(words.end(), {"--set", "view.every=1"});
+    if (starterSonar(sonar).isGrid()) words.insert(words.end(), {"--set", "view.every=1"});
     EXPECT_THAT(callInsonify(folder, quietly(words, sonar)), succeeds());
     for (const char* name : {"fan_000000.png", "disc_000000.png", "range_000000.png"}) {
         const cv::Mat picture = cv::imread((folder / out / name).string(), cv::IMREAD_GRAYSCALE);
@@ -85,7 +86,7 @@ class InitPresetTest : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> presetNames() {
     std::vector<std::string> names;
-    for (const SonarPreset& preset : sonarPresets()) names.emplace_back(preset.name);
+    for (const SonarFigures* figures : starterSonars()) names.push_back(figures->name);
     return names;
 }
 
@@ -126,21 +127,24 @@ TEST(InitCommandTest, AFrequencyThatNoImagingSonarHasIsAWarning) {
 TEST_P(InitPresetTest, MakesAPictureOfTheScene) {
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
-    const SonarPreset& preset = sonarPreset(GetParam());
-    const int empty = brightPixels(folder, GetParam(), almostNothing(preset)),
-              rasterised = brightPixels(folder, GetParam(), "sonar.range_min=" + std::to_string(preset.range_min));
-    EXPECT_GT(rasterised, empty + (preset.isFan() || preset.isGrid() ? 5000 : 50));
+    const SonarFigures& figures = starterSonar(GetParam());
+    const int empty = brightPixels(folder, GetParam(), almostNothing(figures)),
+              rasterised =
+                  brightPixels(folder, GetParam(), "sonar.range_min=" + std::to_string(figures.modes[0].range_min));
+    EXPECT_GT(rasterised, empty + (figures.isFan() || figures.isGrid() ? 5000 : 50));
 }
 
 TEST_P(InitPresetTest, HasTheBeamWidthOfItsDataSheetAndAPulse) {
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
-    const SonarPreset& preset = sonarPreset(GetParam());
+    const SonarFigures& figures = starterSonar(GetParam());
     const Outcome beam = callInsonify(folder, {"beam", ".", "--json"});
     ASSERT_EQ(beam.code, 0) << beam.err;
     const json cuts = json::parse(beam.out);
-    EXPECT_NEAR(cuts["azimuth"]["width_3db_deg"], preset.beam_width_deg, 0.01 * preset.beam_width_deg);
-    EXPECT_NEAR(cuts["elevation"]["width_3db_deg"], preset.beam_height_deg, 0.01 * preset.beam_height_deg);
+    EXPECT_NEAR(cuts["azimuth"]["width_3db_deg"], figures.modes[0].beam_width_deg,
+                0.01 * figures.modes[0].beam_width_deg);
+    EXPECT_NEAR(cuts["elevation"]["width_3db_deg"], figures.modes[0].beam_height_deg,
+                0.01 * figures.modes[0].beam_height_deg);
     EXPECT_THAT(readFile(folder / (GetParam() + ".yml")), HasSubstr("pulse: {"));
 }
 
@@ -150,13 +154,13 @@ TEST_P(InitPresetTest, BinsOfWholeMicrosecondsReachTheConfiguredRange) {
     const Outcome ran = callInsonify(folder, {"run", ".", "--pings", "1", "--out", "out"});
     EXPECT_EQ(ran.code, 0);
     EXPECT_THAT(ran.err, testing::Not(HasSubstr("range reached"))) << ran.err;
-    const SonarPreset& preset = sonarPreset(GetParam());
-    EXPECT_LE(preset.range(), preset.range_max);
-    EXPECT_THAT(readFile(folder / (GetParam() + ".yml")), HasSubstr(preset.source));
+    const SonarFigures& figures = starterSonar(GetParam());
+    EXPECT_LE(starterRange(figures), figures.modes[0].range_max);
+    EXPECT_THAT(readFile(folder / (GetParam() + ".yml")), HasSubstr(figures.starter->note));
 }
 
 TEST_P(InitPresetTest, EachPictureOfAFanShowsAnObjectOnTheFloor) {
-    if (!sonarPreset(GetParam()).isFan()) GTEST_SKIP() << "data sets have whole pictures of fans only";
+    if (!starterSonar(GetParam()).isFan()) GTEST_SKIP() << "data sets have whole pictures of fans only";
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
     writeFile(folder / "pass.yml",

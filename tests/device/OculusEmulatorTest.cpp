@@ -309,14 +309,14 @@ TEST_F(OculusEmulatorTest, ADriverThatLeavesTheSpeedOfSoundToTheDeviceNeverAsksF
 }
 
 TEST(OculusModelTest, EveryModelHasItsPartNumberAndModes) {
-    const auto part = [](OculusModel model) { return capabilities(model).part; };
+    const auto part = [](OculusModel model) { return figures(model).part; };
     EXPECT_EQ(part(OculusModel::M370s), 1041);
     EXPECT_EQ(part(OculusModel::M750d), 1032);
     EXPECT_EQ(part(OculusModel::M1200d), 1042);
     EXPECT_EQ(part(OculusModel::M3000d), 2203);
-    EXPECT_EQ(capabilities(OculusModel::M3000d).mode(2).frequency_khz, 3000);
-    EXPECT_EQ(capabilities(OculusModel::M3000d).mode(2).longest_range, 5);
-    EXPECT_EQ(capabilities(OculusModel::M370s).mode(2).frequency_khz, 375) << "it has no second mode";
+    EXPECT_EQ(oculusMode(figures(OculusModel::M3000d), 2).frequency_khz, 3000);
+    EXPECT_EQ(oculusMode(figures(OculusModel::M3000d), 2).range_max, 5);
+    EXPECT_EQ(oculusMode(figures(OculusModel::M370s), 2).frequency_khz, 375) << "it has no second mode";
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "components/device/ping/Ping1dMessages.hpp"
-#include "components/device/ping/Ping360Messages.hpp"
+#include "components/device/ping/Ping1dEmulator.hpp"
+#include "components/device/ping/Ping360Emulator.hpp"
 #include "components/device/ping/PingProtocol.hpp"
 #include "tests/device/ByteStrings.hpp"
 

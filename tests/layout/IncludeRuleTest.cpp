@@ -14,7 +14,7 @@ namespace {
 const std::map<std::string, std::set<std::string>> neighbours = {
     {"dataset", {"console", "log", "output", "pose"}},
     {"dds", {"ros"}},
-    {"device", {"console", "output", "recordings"}},  // readJson, ByteFile
+    {"device", {"console", "output", "recordings", "sonars"}},  // readJson, ByteFile
     {"framework", {"loader"}},
     {"gazebo", {"meshes", "scene"}},
     {"log", {"ros"}},
@@ -29,6 +29,7 @@ const std::map<std::string, std::set<std::string>> neighbours = {
     {"sdf", {"meshes", "scene"}},
     {"sonar", {"acoustics", "gpu", "shaders"}},
     {"study", {"acoustics", "noise", "output", "receiver", "recordings", "scene", "sonar"}},
+    {"sonars", {"framework"}},
     {"survey", {"scene"}},
     {"video", {"output"}},
     {"viewer", {"console", "ros"}},

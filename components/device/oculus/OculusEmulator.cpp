@@ -17,27 +17,22 @@ double usedGain(const OculusFire& fire) { return fire.mode == 2 ? 40 + 0.6 * fir
 
 }  // namespace
 
-const OculusCapabilities& capabilities(OculusModel model) {
-    static const OculusCapabilities all[] = {
-        {1041, {375, 0.2, 200, 130, 20, 8e-3}, std::nullopt},
-        {1032, {750, 0.1, 120, 130, 20, 4e-3}, OculusMode{1200, 0.1, 40, 70, 12, 2.5e-3}},
-        {1042, {1200, 0.1, 40, 130, 20, 2.5e-3}, OculusMode{2100, 0.1, 10, 60, 12, 2.5e-3}},
-        {2203, {1200, 0.1, 30, 130, 20, 2.5e-3}, OculusMode{3000, 0.1, 5, 40, 20, 2e-3}},
-    };
-    return all[static_cast<size_t>(model)];
+const sonars::SonarFigures& figures(OculusModel model) {
+    return sonars::sonar("oculus_" + std::string(types::EnumNames<OculusModel>::names[static_cast<size_t>(model)]));
+}
+
+const sonars::SonarMode& oculusMode(const sonars::SonarFigures& figures, uint8_t number) {
+    return figures.modes[number == 2 && figures.modes.size() > 1 ? 1 : 0];
 }
 
 std::optional<OculusModel> oculusModel(uint16_t part) {
     for (const OculusModel model : {OculusModel::M370s, OculusModel::M750d, OculusModel::M1200d, OculusModel::M3000d})
-        if (capabilities(model).part == part) return model;
+        if (figures(model).part == part) return model;
     return std::nullopt;
 }
 
 OculusEmulator::OculusEmulator(const OculusConfig& config, Time started)
-    : config_(config),
-      capabilities_(capabilities(config.model)),
-      encoder_(config.code_bits),
-      started_(steady_.read(started)) {
+    : config_(config), figures_(figures(config.model)), encoder_(config.code_bits), started_(steady_.read(started)) {
     fire_.rate = OculusFire::standby;
 }
 
@@ -65,11 +60,11 @@ void OculusEmulator::take(std::span<const uint8_t> message) {
 std::optional<OculusFire> OculusEmulator::possible(OculusFire fire) const {
     for (const double number : {fire.range, fire.gain_percent, fire.speed_of_sound, fire.salinity})
         if (!std::isfinite(number)) return std::nullopt;
-    fire.mode = fire.mode == 2 && capabilities_.high ? 2 : 1;
+    fire.mode = fire.mode == 2 && figures_.modes.size() > 1 ? 2 : 1;
     fire.gain_percent = std::clamp(fire.gain_percent, 0.0, 100.0);
     if (fire.speed_of_sound != 0) fire.speed_of_sound = std::clamp(fire.speed_of_sound, 1300.0, 1700.0);
     const bool metres = (fire.flags & OculusFire::range_in_metres) != 0;
-    const double shortest = mode(fire).shortest_range, longest = mode(fire).longest_range;
+    const double shortest = mode(fire).range_min, longest = mode(fire).range_max;
     fire.range =
         metres ? std::clamp(fire.range, shortest, longest) : std::clamp(fire.range, 100 * shortest / longest, 100.0);
     return fire;
@@ -77,7 +72,7 @@ std::optional<OculusFire> OculusEmulator::possible(OculusFire fire) const {
 
 double OculusEmulator::rangeOf(const OculusFire& fire) const {
     const bool metres = (fire.flags & OculusFire::range_in_metres) != 0;
-    return metres ? fire.range : std::max(mode(fire).shortest_range, fire.range / 100 * mode(fire).longest_range);
+    return metres ? fire.range : std::max(mode(fire).range_min, fire.range / 100 * mode(fire).range_max);
 }
 
 types::SonarSettings OculusEmulator::settingsOf(const OculusFire& fire, Time now) const {
@@ -89,7 +84,7 @@ types::SonarSettings OculusEmulator::settingsOf(const OculusFire& fire, Time now
     settings.gain_db = std::lerp(config_.gain_min_db, config_.gain_max_db, usedGain(fire) / 100);
     settings.field_of_view = types::Angle::fromDeg(mode(fire).field_of_view_deg);
     settings.beam_height = types::Angle::fromDeg(mode(fire).beam_height_deg);
-    const double finest = std::floor(settings.range / mode(fire).finest_bin * (1 + 1e-9));
+    const double finest = std::floor(settings.range / mode(fire).range_resolution * (1 + 1e-9));
     settings.bin_count = static_cast<uint32_t>(std::clamp(finest, 1.0, static_cast<double>(config_.bin_count)));
     settings.beam_count = (fire.flags & OculusFire::beams_512) != 0 ? 512 : 256;
     return settings;
@@ -127,7 +122,7 @@ OculusEmulator::Due OculusEmulator::workAt(Time now, Time clock) {
     if (clients_.empty()) return due;
     if (inStandby()) {
         if (now >= last_dummy_ + dummy_period) {
-            due.dummy = oculusDummy(static_cast<uint16_t>(config_.serial_number), capabilities_.part);
+            due.dummy = oculusDummy(static_cast<uint16_t>(config_.serial_number), static_cast<uint16_t>(figures_.part));
             last_dummy_ = now;
         }
         due.next = std::min(due.next, last_dummy_ + dummy_period);
@@ -158,7 +153,7 @@ OculusResult OculusEmulator::resultOf(const Asked& asked, const types::Sonar& co
     result.fire.header = {.source = static_cast<uint16_t>(config_.serial_number),
                           .id = static_cast<uint16_t>(OculusId::PingResult),
                           .version = std::min<uint16_t>(asked.fire.header.version, asked.fire.isVersion2() ? 2 : 1),
-                          .part = capabilities_.part};
+                          .part = static_cast<uint16_t>(figures_.part)};
     result.fire.gain_percent = usedGain(asked.fire);
     result.number = number_++;
     result.frequency_hz = 1e3 * asked.settings.frequency_khz;
@@ -177,9 +172,8 @@ OculusResult OculusEmulator::resultOf(const Asked& asked, const types::Sonar& co
 Bytes OculusEmulator::statusBytes() const {
     OculusStatus status;
     status.header.source = static_cast<uint16_t>(config_.serial_number);
-    status.header.part = capabilities_.part;
+    status.header.part = status.part = static_cast<uint16_t>(figures_.part);
     status.device_id = static_cast<uint32_t>(config_.serial_number);
-    status.part = capabilities_.part;
     status.address = ipv4(config_.device_address).value_or(Ipv4{});
     status.mask = {255, 255, 255, 0};
     const uint16_t serial = status.header.source;

@@ -10,6 +10,7 @@
 #include "components/device/AskedPings.hpp"
 #include "components/device/OculusPing.hpp"
 #include "components/device/oculus/OculusMessages.hpp"
+#include "components/sonars/Sonars.hpp"
 #include "types/Describe.hpp"
 #include "types/Elapsed.hpp"
 #include "types/Sonar.hpp"
@@ -18,28 +19,13 @@
 
 namespace insonify::device {
 
-/** Their capabilities are from the maker's data sheets. */
+/** The models with figures in components/sonars/sonars.yml. */
 enum class OculusModel { M370s, M750d, M1200d, M3000d };
 
-/** One of the two frequencies of a model. */
-struct OculusMode {
-    double frequency_khz = 0;
-    double shortest_range = 0, longest_range = 0;  ///< [m]
-    double field_of_view_deg = 0, beam_height_deg = 0;
-    double finest_bin = 0;  ///< [m]
-};
-
-struct OculusCapabilities {
-    uint16_t part = 0;  ///< Part number, as on the wire.
-    OculusMode low;
-    std::optional<OculusMode> high;
-
-    /** Returns the mode of a fire message: 2 is the high frequency, if the model has one; all other numbers are the low
-     *  frequency. */
-    const OculusMode& mode(uint8_t number) const { return number == 2 && high ? *high : low; }
-};
-
-const OculusCapabilities& capabilities(OculusModel model);
+const sonars::SonarFigures& figures(OculusModel model);
+/** Returns the mode of a fire message: 2 is the high frequency, if the model has one; all other numbers are the low
+ *  frequency. */
+const sonars::SonarMode& oculusMode(const sonars::SonarFigures& figures, uint8_t number);
 /** Returns the model of a part number; none: unknown. */
 std::optional<OculusModel> oculusModel(uint16_t part);
 
@@ -129,10 +115,10 @@ private:
     bool isDue(types::Time now);
     OculusResult resultOf(const Asked& asked, const types::Sonar& codes);
     Bytes statusBytes() const;
-    const OculusMode& mode(const OculusFire& fire) const { return capabilities_.mode(fire.mode); }
+    const sonars::SonarMode& mode(const OculusFire& fire) const { return oculusMode(figures_, fire.mode); }
 
     OculusConfig config_;
-    const OculusCapabilities& capabilities_;
+    const sonars::SonarFigures& figures_;
     OculusEncoder encoder_;
     types::SteadyTime steady_;
     bool was_set_back_ = false;  ///< By more than a second since the last tick.

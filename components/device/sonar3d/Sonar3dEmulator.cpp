@@ -18,7 +18,6 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr double low_opening_deg = 90, high_opening_deg = 40, columns = 256;  // between the outermost columns
 constexpr double millimetre = 1e-3;  // unit of a pixel, within the limit of 16 bits
 constexpr double strongest_pixel = 255;
 constexpr double slowest = 1000, fastest = 2000;  // [m/s]
@@ -284,8 +283,9 @@ void Sonar3dEmulator::ask(types::Time now) {
     settings.range = state_.range_max;
     settings.frequency_khz = frequencyKhz(state_);
     settings.speed_of_sound = speedOfSound();
-    const double opening_deg = state_.high_frequency ? high_opening_deg : low_opening_deg;
-    settings.field_of_view = types::Angle::fromDeg(opening_deg * columns / (columns - 1));  // to the edges of the beams
+    const sonars::SonarMode& mode = Sonar3dDevice::mode(state_.high_frequency);
+    const double columns = mode.beam_count;  // the opening is between the outermost, field_of_view to the edges
+    settings.field_of_view = types::Angle::fromDeg(mode.field_of_view_deg * columns / (columns - 1));
     Sonar3dState asked = state_;
     asked.speed_of_sound = settings.speed_of_sound;
     asked_.add(now, now + types::Time::fromSeconds(2 * settings.range / settings.speed_of_sound), std::move(asked));

@@ -7,6 +7,7 @@
 #include "components/device/AskedPings.hpp"
 #include "components/device/sonar3d/Rip2.hpp"
 #include "components/device/wire/Http.hpp"
+#include "components/sonars/Sonars.hpp"
 #include "types/DepthMap.hpp"
 #include "types/Elapsed.hpp"
 #include "types/SonarSettings.hpp"
@@ -15,14 +16,18 @@ namespace insonify::device {
 
 /** Properties of a Sonar 3D-15 that are not set over its API. */
 struct Sonar3dDevice {
-    double longest_range = 15;         ///< The API's limit [m].
-    double low_frequency_khz = 1200;   ///< 90 x 40 degrees, 5 pings a second.
-    double high_frequency_khz = 2400;  ///< 40 x 40 degrees, 20 pings a second.
-    double temperature_celsius = 12;   ///< In the housing, and for the automatic speed of sound.
+    double longest_range = mode(false).range_max;          ///< The API's limit [m].
+    double low_frequency_khz = mode(false).frequency_khz;  ///< 90 x 40 degrees, 5 pings a second.
+    double high_frequency_khz = mode(true).frequency_khz;  ///< 40 x 40 degrees, 20 pings a second.
+    double temperature_celsius = 12;                       ///< In the housing, and for the automatic speed of sound.
     std::string multicast_address = "224.0.0.96";
     int multicast_port = 4747;
     bool compressed = true;
 
+    /** Returns the maker's figures of the mode of low or high frequency. */
+    static const sonars::SonarMode& mode(bool high_frequency) {
+        return sonars::sonar("sonar_3d_15").modes[high_frequency ? 1 : 0];
+    }
     static void describe(auto& self, auto& visit) {
         visit({"longest_range", "m", "max range of the API", 1, 65}, self.longest_range);
         visit({"low_frequency_khz", "kHz", "of the mode of 90 x 40 degrees, 5 pings a second", 10, 10000},
@@ -90,7 +95,7 @@ private:
     types::Time workAt(types::Time now);              ///< As tick, in steady time.
     types::Time deviceTime(types::Time stamp) const;  ///< What the device's clock shows at a stamp of ours.
     double speedOfSound() const;
-    double period() const { return state_.high_frequency ? 1.0 / 20 : 1.0 / 5; }  ///< [s]
+    double period() const { return 1 / Sonar3dDevice::mode(state_.high_frequency).rate_hz; }  ///< [s]
     double frequencyKhz(const Sonar3dState& state) const {
         return state.high_frequency ? device_.high_frequency_khz : device_.low_frequency_khz;
     }
