@@ -5,8 +5,6 @@
 
 namespace insonify::command {
 
-using namespace deployer;
-
 namespace {
 
 // Numbers and lengths of bins, columns, pitch and the level of white are chosen for the starter's scene.
