@@ -6,7 +6,6 @@
 #include <exception>
 #include <sstream>
 
-#include "components/command/RosArguments.hpp"
 #include "components/console/Console.hpp"
 #include "components/framework/ConfigReader.hpp"
 #include "components/loader/ComponentLibrary.hpp"

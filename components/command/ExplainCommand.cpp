@@ -81,7 +81,7 @@ framework::DeploymentSpec chainOf(const framework::DeploymentSpec& spec, const f
                 connection.from->typeName() == types::Sonar::type_name && writesPings(connection.to->owner()))
                 kept.insert(connection.to->owner().name());
     }
-    return restrictedTo(spec, upstreamOf(kept, whole));
+    return restrictedTo(spec, upstream(kept, whole));
 }
 
 /** Runs, as `run --pings` does, until the sonar has written a ping. */

@@ -314,7 +314,7 @@ void GridTruth::forget(size_t at, types::SonarTruth& truth) {
 }
 
 void GridTruth::shape(const types::Sonar& ping, size_t rows, types::SonarTruth& azimuths, types::SonarTruth& returns) {
-    azimuths.takeGrid(ping);
+    azimuths.copyGrid(ping);
     types::Sonar grid;
     grid.time = ping.time;
     static_cast<types::RangeBins&>(grid) = ping;
@@ -322,7 +322,7 @@ void GridTruth::shape(const types::Sonar& ping, size_t rows, types::SonarTruth& 
     grid.beam_count = static_cast<uint32_t>(rows * ping.beam_count);
     for (size_t row = 0; row < rows; ++row)
         grid.bearings.insert(grid.bearings.end(), ping.bearings.rbegin(), ping.bearings.rend());
-    returns.takeGrid(grid);
+    returns.copyGrid(grid);
     for (size_t cell = 0; cell < grid.beam_count; ++cell) forget(cell, returns);
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "components/sonar/base/ThreadPool.hpp"
-#include "components/sonar/bins/BinLevels.hpp"
+#include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarTruth.hpp"

@@ -18,10 +18,10 @@ public:
         : direct_(plan, geometry),
           echoes_(plan.config.crosstalk->echoes && plan.traces_rays ? makeForeignEchoes(plan) : nullptr) {}
 
-    void takeQuality() override {
-        if (echoes_) echoes_->takeQuality();
+    void updateQuality() override {
+        if (echoes_) echoes_->updateQuality();
     }
-    void takeScene(const types::Geometry& geometry) override { direct_.takeScene(geometry); }
+    void setScene(const types::Geometry& geometry) override { direct_.setScene(geometry); }
     void begin(const PingStart& start) override {
         snapshot_ = &start.snapshot;
         had_any_ = !start.snapshot.transmissions.empty();
@@ -66,7 +66,7 @@ public:
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& geometry) const override {
         return std::make_unique<CrosstalkInPings>(plan, geometry);
     }
-    std::string takeOut(SonarConfig& config) const override { return takenOut(config.crosstalk, crosstalk_name); }
+    std::string removeFrom(SonarConfig& config) const override { return removeBlock(config.crosstalk, crosstalk_name); }
 };
 
 }  // namespace

@@ -11,10 +11,9 @@
 #include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/multipath/PathCells.hpp"
-#include "components/sonar/multipath/SharedBins.hpp"
+#include "components/sonar/multipath/PathPatterns.hpp"
 #include "components/sonar/multipath/WallRay.hpp"
-#include "components/sonar/multipath/WayPatterns.hpp"
-#include "components/sonar/plan/ScattererLattice.hpp"
+#include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "types/Angle.hpp"
@@ -33,7 +32,7 @@ class PathEchoes final : public PingEffect {
 public:
     PathEchoes(const RenderPlan& plan, const types::Geometry& geometry);
 
-    void takeQuality() override;
+    void updateQuality() override;
     void begin(const PingStart& start) override;
     bool followsRays() const override { return true; }
     void followRays(const TracedPing& ping, std::span<const TracedTile> tiles) override;
@@ -49,7 +48,7 @@ private:
     std::span<float> direct(size_t cell);
 
     const RenderPlan& plan_;
-    std::optional<WayPatterns> patterns_;
+    std::optional<PathPatterns> patterns_;
     WaterMirror water_;
     int max_walls_;                   ///< Max thin walls of a path [1].
     std::vector<double> reflected_;   ///< Share of the power that each material reflects specularly [1].
@@ -493,9 +492,9 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
     const MirrorChain& chain = chains_[static_cast<size_t>(i)];
     const HalfWay straight = halfWay(plane, chain.image(glm::dvec3(0)), at);
     const MaterialLaws::Bistatic given = section(at, i, plane, straight);
-    const WayPatterns& patterns = *paths_.patterns_;
+    const PathPatterns& patterns = *paths_.patterns_;
     const glm::dvec3 itself = chain.turnedBack(straight.from_focus);
-    const WayPatterns::Way by_mirror = patterns.wayOf(at.middle), by_itself = patterns.wayOf(itself);
+    const PathPatterns::Way by_mirror = patterns.wayOf(at.middle), by_itself = patterns.wayOf(itself);
     const double returned = patterns.power(by_itself, by_mirror), sent = patterns.power(by_mirror, by_itself);
     // Echoes that this surface and the first mirror both reflect and scatter have their own rays from the other end.
     const bool is_direct =
@@ -526,10 +525,10 @@ PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry)
     : plan_(plan), water_(plan.config), max_walls_(plan.has(Pass::Walls) ? plan.config.max_walls : 0) {
     for (const types::Material& material : geometry.materials)
         reflected_.push_back(reflectedPower(material, bouncesOf(plan.config)));
-    takeQuality();
+    updateQuality();
 }
 
-void PathEchoes::takeQuality() {
+void PathEchoes::updateQuality() {
     patterns_.emplace(plan_);
     truth_.reset();
     bin_count_ = static_cast<size_t>(summedGrid(plan_).bin_count);

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "components/sonar/plan/ScattererLattice.hpp"
 
 namespace insonify::sonar {
 

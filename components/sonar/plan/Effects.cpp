@@ -125,16 +125,16 @@ PingEffects::PingEffects(const RenderPlan& plan, const types::Geometry& geometry
         }
 }
 
-void PingEffects::takeQuality() {
-    for (const auto& effect : all_) effect->takeQuality();
+void PingEffects::updateQuality() {
+    for (const auto& effect : all_) effect->updateQuality();
 }
 
-void PingEffects::takeScene(const types::Geometry& geometry) {
-    for (const auto& effect : all_) effect->takeScene(geometry);
+void PingEffects::setScene(const types::Geometry& geometry) {
+    for (const auto& effect : all_) effect->setScene(geometry);
 }
 
-void PingEffects::takeShapes(const types::Snapshot& snapshot) {
-    for (const auto& effect : all_) effect->takeShapes(snapshot);
+void PingEffects::updateShapes(const types::Snapshot& snapshot) {
+    for (const auto& effect : all_) effect->updateShapes(snapshot);
 }
 
 void PingEffects::begin(const PingStart& start) {

@@ -27,9 +27,9 @@ public:
     /** Plan and geometry outlive the effects. */
     PingEffects(const RenderPlan& plan, const types::Geometry& geometry);
 
-    void takeQuality();
-    void takeScene(const types::Geometry& geometry);
-    void takeShapes(const types::Snapshot& snapshot);
+    void updateQuality();
+    void setScene(const types::Geometry& geometry);
+    void updateShapes(const types::Snapshot& snapshot);
     void begin(const PingStart& start);
     void giveRules(EchoRules& rules) const;
     /** Returns why a compute shader cannot make the sums of the effects, as a clause. Empty: it can. */

@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 
 #include "components/sonar/base/Counters.hpp"
-#include "components/sonar/rays/MappedCells.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {

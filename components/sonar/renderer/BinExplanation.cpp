@@ -89,7 +89,7 @@ const char* pathText(uint8_t path) {
 }
 
 std::string effectName(const Effect& effect, SonarConfig config) {
-    if (const std::string name = effect.takeOut(config); !name.empty()) return name;
+    if (const std::string name = effect.removeFrom(config); !name.empty()) return name;
     return effect.key().empty() ? "point targets" : effect.key();
 }
 
@@ -182,7 +182,7 @@ private:
         for (size_t k = 0; k < plan().beams.size(); ++k)
             if (plan().beams.row(k) == *beam_) sorted_beam_ = k;
         const std::vector<int32_t> beams_of_cells = beamsOfCells(plan());
-        if (!beams_of_cells.empty()) weights_ = beamformerOf(plan()).weights(sorted_beam_);
+        if (!beams_of_cells.empty()) weights_ = beamformer(plan()).weights(sorted_beam_);
         for (size_t cell = 0; cell < cells; ++cell)
             shown_[cell] = beams_of_cells.empty() ? cell == sorted_beam_
                                                   : beams_of_cells[cell] == static_cast<int32_t>(sorted_beam_);
@@ -201,7 +201,7 @@ private:
         if (beam_) return double{ping_.bins[*beam_ * ping_.bin_count + bin_]};
         double sum = 0, ringing = 0;
         for (size_t i = bin_; i < ping_.bins.size(); i += ping_.bin_count) sum += double{ping_.bins[i]};
-        if (ping_.beam_count < 2 || !renderer_->takeAlike(ping_, alike_)) return sum;
+        if (ping_.beam_count < 2 || !renderer_->computeAlike(ping_, alike_)) return sum;
         for (size_t i = bin_; i < alike_.bins.size(); i += ping_.bin_count) ringing += double{alike_.bins[i]};
         return std::max(0.0, sum - (1 - 1.0 / ping_.beam_count) * ringing);
     }

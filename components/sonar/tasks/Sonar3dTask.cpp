@@ -154,7 +154,7 @@ void Sonar3dTask::shape(types::Sonar& sample) {
 void Sonar3dTask::addTo(types::Sonar& sample, int column, const SonarRenderer& renderer) {
     float* const sum = sample.bins.data() + static_cast<size_t>(column) * sample.bin_count;
     for (size_t i = 0; i < fan_.bins.size(); ++i) sum[i % fan_.bin_count] += fan_.bins[i];
-    if (fan_.beam_count < 2 || !renderer.takeAlike(fan_, alike_)) return;
+    if (fan_.beam_count < 2 || !renderer.computeAlike(fan_, alike_)) return;
     // The sonar rings once: its mean over the beams that were summed remains.
     const double too_many = 1 - 1.0 / fan_.beam_count;
     for (size_t k = 0; k < fan_.bin_count; ++k) {
