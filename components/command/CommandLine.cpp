@@ -417,6 +417,7 @@ int runCommandLine(int argc, char** argv) {
     addRunCommand(app, action);
     addCheckCommand(app, action);
     addPlanCommand(app, action);
+    addExplainCommand(app, action);
     addDescribeCommand(app, action);
     addSceneCommand(app, action);
     addBeamCommand(app, action);

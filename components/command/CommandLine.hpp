@@ -30,6 +30,7 @@ using console::Action;
 void addRunCommand(CLI::App& app, Action& action);
 void addCheckCommand(CLI::App& app, Action& action);
 void addPlanCommand(CLI::App& app, Action& action);
+void addExplainCommand(CLI::App& app, Action& action);
 void addDescribeCommand(CLI::App& app, Action& action);
 void addExamplesCommand(CLI::App& app, Action& action);
 void addInitCommand(CLI::App& app, Action& action);

@@ -13,7 +13,8 @@ namespace {
 
 /** Truth of a cell. */
 struct CellTruth {
-    int64_t object = -1;  ///< Index into Geometry::objects; -1: nothing [1].
+    int64_t object = -1;  ///< As Cells::object.
+    uint32_t beam = 0;    ///< As Cells::beam [1].
     uint32_t hits = 0;    ///< Samples of the cell [1].
     double sine_elevation = 0, sine_grazing = 0;
 };
@@ -28,7 +29,8 @@ public:
           truth_(*truth),
           channels_(rules.channels()),
           beam_numbers_(rules.sumCount()),
-          all_(all_sums) {}
+          all_(all_sums),
+          selection_(rules.selection) {}
 
     /** Sets the truth of the next deposit. */
     void setCell(const CellTruth& cell) { shown_ = cell; }
@@ -68,6 +70,7 @@ private:
     }
     void move(uint bin, uint64_t* to, int32_t row) {
         uint64_t* const own = truth_.one_beam.data() + bin * channels_;
+        if (selection_ && own[0] > 0 && !isSelected(bin, own[0])) own[0] = 0;
         const uint64_t energy = own[0];
         for (size_t channel = 0; channel < channels_; ++channel) {
             to[bin * channels_ + channel] += own[channel];
@@ -79,9 +82,19 @@ private:
                                             static_cast<uint32_t>(shown_.object), shown_.hits));
     }
 
+    bool isSelected(uint bin, uint64_t energy) const {
+        const auto object = static_cast<uint32_t>(shown_.object);
+        const uint8_t path = object & behind_walls   ? types::SonarTruth::through_wall
+                             : object & rung_in_wall ? types::SonarTruth::rung
+                                                     : uint8_t{0};
+        return selection_->keeps({object & ~(behind_walls | rung_in_wall), static_cast<uint32_t>(shown_.object >> 32),
+                                  path, shown_.beam, bin, energy, shown_.sine_elevation, shown_.sine_grazing});
+    }
+
     TruthSink truth_;
     size_t channels_, beam_numbers_;
     uint64_t* all_;
+    EchoSelection* selection_;
     CellTruth shown_;
 };
 
@@ -100,7 +113,8 @@ void sumBatch(const EchoRules& rules, const Cells& cells, const Covered& covered
         const double x = cells.normal_x[i], y = cells.normal_y[i], z = cells.normal_z[i];
         const double facing = (x * cells.cos_az[i] + y * cells.sin_az[i]) * cells.cos_el[i] + z * cells.sin_el[i];
         const double up = rules.looks_down ? -cells.cos_az[i] * cells.cos_el[i] : cells.sin_el[i];
-        estimator.setCell({cells.object[i], cells.hits[i], up, abs(facing) / sqrt(x * x + y * y + z * z)});
+        estimator.setCell({cells.object[i], cells.hits[i], static_cast<uint32_t>(cells.beam[i]), up,
+                           abs(facing) / sqrt(x * x + y * y + z * z)});
         estimator.depositCell(footprintOf(covered, i), beamOf(i), covered.strength_range[i]);
     }
 }

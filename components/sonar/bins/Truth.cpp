@@ -229,6 +229,7 @@ void TruthGrid::finish(types::SonarTruth& truth, ThreadPool& threads) const {
 
 PathTruth::PathTruth(const RenderPlan& plan, size_t bin_count)
     : beams_of_cells_(beamsOfCells(plan)),
+      selection_(plan.options.selection),
       sum_count_(bin_count),
       bin_count_(static_cast<size_t>(plan.grid.bin_count)),
       shown_(plan.beams.size(), bin_count_),

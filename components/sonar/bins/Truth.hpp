@@ -175,6 +175,7 @@ public:
     void begin();
     /** Returns the sums of energies via a path: [cell][bin], in quanta. */
     uint64_t* sums(Path path) { return sums_[path - 1].data(); }
+    bool keeps(const EchoPart& echo) const { return !selection_ || selection_->keeps(echo); }
     /** Adds an echo via any of the paths, in bin `bin` of the sums of a cell. Thread-safe. */
     void show(size_t cell, size_t bin, const ObjectEcho& echo);
     /** Takes the energies of a cell once all are summed, before they are added to the cell. `direct`: the cell's direct
@@ -192,6 +193,7 @@ private:
     void completeBin(types::SonarTruth& truth, size_t at, double water) const;
 
     std::vector<int32_t> beams_of_cells_;  ///< Empty: cells are beams.
+    EchoSelection* selection_;             ///< RenderOptions::selection.
     size_t sum_count_, bin_count_;         ///< Bins of a cell; of a beam.
     bool knows_direct_ = false;
     std::array<std::vector<uint64_t>, 3> sums_;

@@ -126,6 +126,7 @@ public:
         }
     }
     void addToBins(types::Sonar& ping) override {
+        if (is_silent) return;
         for (size_t beam = 0; beam < ping.beam_count; ++beam)
             for (size_t k = 0; k < bins_.size(); ++k) ping.bins[beam * ping.bin_count + k] += bins_[k];
     }

@@ -33,10 +33,10 @@ public:
         if (had_any_) echoes_->follow(ping, tiles);
     }
     bool addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) override {
-        return had_any_ && echoes_->addEnergies(ping, cell, bins);
+        return had_any_ && !is_silent && echoes_->addEnergies(ping, cell, bins);
     }
     void addToBins(types::Sonar& ping) override {
-        if (had_any_) received_ = direct_.add(*snapshot_, ping);
+        if (had_any_ && !is_silent) received_ = direct_.add(*snapshot_, ping);
     }
     size_t received() const override { return received_; }
     std::optional<Omitted> omissions() const override {

@@ -45,12 +45,16 @@ struct SharedBins : Bins {
     using Bins::Bins;
     void addToBin(uint cell, uint bin, double amount, double) const {
         if (!(amount > 0)) return;
+        if (truth && !truth->keeps({object, EchoPart::no_triangle, path, cell, bin, quanta(amount), sine_elevation,
+                                    sine_grazing}))
+            return;
         std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
         if (by_way) std::atomic_ref(by_way[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
         if (truth) truth->show(cell, bin, ObjectEcho::of(quanta(amount), sine_elevation, sine_grazing, object, 1));
     }
-    PathTruth* truth = nullptr;  ///< Receives each echo's truth, with the next three values; null: none.
+    PathTruth* truth = nullptr;  ///< Receives each echo's truth, with the next four values; null: none.
     uint32_t object = 0;
+    uint8_t path = 0;  ///< As types::SonarTruth::path.
     double sine_elevation = 0,
            sine_grazing = 0;     ///< Sines of the elevation at the sonar and of the grazing angle at the object [1].
     uint64_t* by_way = nullptr;  ///< Additional sums, of the current kind of path; null: none.

@@ -150,6 +150,7 @@ private:
         const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
                                             [](uint64_t name) { return name == surface_name; });
         const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
+        bins_.path = by_surface ? way : PathTruth::Bounced;
         bins_.by_way = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
         bins_.truth = &*paths_.truth_;
         bins_.object = scene_.commands[hits_.command[i]].object;

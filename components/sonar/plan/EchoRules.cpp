@@ -109,6 +109,7 @@ EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects) {
     rules.echoes_from_misses = plan.echoes_from_misses;
     rules.has_maps = plan.has(Pass::SurfaceMaps);
     rules.lattice = scattererLattice(plan);
+    rules.selection = plan.options.selection;
     if (plan.config.frequency_khz) rules.turns_per_metre = 2e3 * *plan.config.frequency_khz / bins.speed_of_sound;
     const double nearest = bins.range_min > 0 ? 1 / bins.range_min : std::numeric_limits<double>::max();
     for (int k = 0; k <= bins.bin_count; ++k)

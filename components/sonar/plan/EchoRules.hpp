@@ -63,6 +63,7 @@ struct EchoRules {
     bool looks_down = false;          ///< The sonar's x axis points down, so that elevations are above its y-z plane.
     bool echoes_from_misses = false;  ///< Whether effects process cells that are misses.
     std::vector<const PingEffect*> own;  ///< Effects with their own sums, which follow the channels.
+    EchoSelection* selection = nullptr;  ///< RenderOptions::selection.
 
     size_t channels() const { return features.has(Feature::Cerqueira2017) || features.has(Feature::Speckle) ? 2 : 1; }
     /** Returns the number of bins from one beam's first to the next beam's first. */

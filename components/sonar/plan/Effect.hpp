@@ -57,6 +57,8 @@ class PingEffect {
 public:
     virtual ~PingEffect() = default;
 
+    bool is_silent = false;  ///< Whether echoes of its own are not received in this ping (EchoSelection).
+
     /** Switches to the plan's current quality. May allocate. */
     virtual void updateQuality() {}
     /** Switches to another scene with the same materials. The scene before ends its life after the call. */

@@ -125,11 +125,11 @@ void PingInMaking::report(size_t bin, bool passes_walls) const {
     truth->share[bin] = 0;
 }
 
-PingEffects::PingEffects(const RenderPlan& plan, const types::Geometry& geometry) {
+PingEffects::PingEffects(const RenderPlan& plan, const types::Geometry& geometry) : selection_(plan.options.selection) {
     for (const Effect* effect : plan.effects)
         if (auto made = effect->make(plan, geometry)) {
             all_.push_back(std::move(made));
-            keys_.push_back(effect->key());
+            kinds_.push_back(effect);
         }
 }
 
@@ -146,6 +146,7 @@ void PingEffects::updateShapes(const types::Snapshot& snapshot) {
 }
 
 void PingEffects::begin(const PingStart& start) {
+    for (size_t i = 0; selection_ && i < all_.size(); ++i) all_[i]->is_silent = !selection_->adds(*kinds_[i]);
     for (const auto& effect : all_) effect->begin(start);
 }
 
@@ -161,7 +162,7 @@ std::string PingEffects::whyNotOnDevice() const {
     for (size_t i = 0; i < all_.size(); ++i) {
         if (!all_[i]->hasSums()) continue;
         if (!all_[i]->isOnDevice())
-            return fmt::format("the compute shader does not sum what the effect '{}' sums", keys_[i]);
+            return fmt::format("the compute shader does not sum what the effect '{}' sums", kinds_[i]->key());
         if (++with_sums > 1) return "the compute shader has sums for one effect, and this sonar has several";
     }
     return {};
@@ -187,7 +188,8 @@ void PingEffects::addToTruth(const TracedPing& ping, types::SonarTruth& truth) {
 }
 
 void PingEffects::addEchoes(PingInMaking& ping) {
-    for (const auto& effect : all_) effect->addEchoes(ping);
+    for (const auto& effect : all_)
+        if (!effect->is_silent) effect->addEchoes(ping);
 }
 
 void PingEffects::addToBins(types::Sonar& ping) {
@@ -212,7 +214,8 @@ std::vector<Omitted> PingEffects::omissions() const {
 }
 
 void addOwnSums(const EchoRules& rules, const uint64_t* sums, size_t cell, double unit, std::span<float> bins) {
-    for (size_t i = 0; i < rules.own.size(); ++i) rules.own[i]->addToCell(sums + rules.ownOffset(i), cell, unit, bins);
+    for (size_t i = 0; i < rules.own.size(); ++i)
+        if (!rules.own[i]->is_silent) rules.own[i]->addToCell(sums + rules.ownOffset(i), cell, unit, bins);
 }
 
 }  // namespace insonify::sonar

@@ -46,7 +46,8 @@ public:
 
 private:
     std::vector<std::unique_ptr<PingEffect>> all_;
-    std::vector<std::string> keys_;  ///< Effect::key() of each.
+    std::vector<const Effect*> kinds_;  ///< Of each.
+    EchoSelection* selection_;
 };
 
 /** Adds to a cell's bins the intensities of effects with their own sums. `sums` contains all sums of the cell. */

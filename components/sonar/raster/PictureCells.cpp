@@ -112,7 +112,7 @@ private:
             const PlacedRun& run = part_.picture.ranges[texel[0] - 1];
             cells_.setPlane(i, run, texel[1]);
             if (part_.picture.channels == 4) cells_.mapped[i] = static_cast<double>(std::bit_cast<float>(texel[2]));
-            if (deposit_.to().truth) cells_.object[i] = part_.picture.objects[texel[0] - 1];
+            if (deposit_.to().truth) cells_.object[i] = Cells::objectOf(part_.picture.objects[texel[0] - 1], texel[1]);
             cells_.hits[i] = 1;
         }
         cells_.beam[i] = static_cast<int>(share.beam);

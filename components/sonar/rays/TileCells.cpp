@@ -88,7 +88,7 @@ private:
                  scene_.paths->driftOf(object, tile.hits->triangle[sample], own));
         }
         if (deposit_.to().truth) {
-            cells_.object[i] = object | tile.path;
+            cells_.object[i] = Cells::objectOf(object | tile.path, tile.hits->triangle[sample]);
             cells_.hits[i] = static_cast<uint32_t>(merged);
         }
         if (++cells_.count == Cells::capacity) finish();

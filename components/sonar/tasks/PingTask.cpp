@@ -181,7 +181,16 @@ void PingTask::endListening() {
     others_received_.give(takenScene(), grid().range_max, grid().speed_of_sound);
     complete();
     swapTaken(*listening_);
-    listening_.reset();
+    heard_ = std::exchange(listening_, {});
+}
+
+PingTask::RenderedBeam PingTask::renderedBeam(size_t beam) const {
+    if (!plan_) throw std::runtime_error("there is no ping yet");
+    RenderedBeam rendered{locatedConfig(), heard_ ? heard_->scene : takenScene(), beam};
+    rendered.config.quality = {};
+    rendered.config.quality.rows = plan_->rows;
+    rendered.config.quality.columns_per_beam = plan_->columns_per_beam;
+    return rendered;
 }
 
 void PingTask::stopHook() {

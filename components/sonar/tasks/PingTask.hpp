@@ -90,6 +90,16 @@ public:
     /** Returns the configured sonar, with paths of files resolved against the deployment's folder. */
     SonarConfig locatedConfig() const;
 
+    /** A beam of the last ping, for explainBin(): the scene with its sonar pose, the quality, and the beam in it. */
+    struct RenderedBeam {
+        SonarConfig config;
+        types::Snapshot scene;
+        std::optional<size_t> beam;  ///< None: the sum over all beams.
+    };
+    /** Returns a beam of the last ping, in the ping's order. Call it on the task's thread, or when stopped. Throws
+     *  std::runtime_error before the first ping. */
+    virtual RenderedBeam renderedBeam(size_t beam) const;
+
 protected:
     /** Returns whether a ping is one rendering. The parts that each of several renderings omits are not reported. */
     virtual bool rendersOnce() const { return true; }
@@ -177,6 +187,7 @@ private:
     types::Transmission transmitted_;      ///< Everything except time and pose; made for the first ping.
     OthersReceived others_received_;
     std::optional<Taken> listening_;  ///< The ping that waits for pulses of others.
+    std::optional<Taken> heard_;      ///< The last ping that waited for them.
     double render_seconds_ = 0;       ///< Time that the last ping took [s].
     CountedPings counted_;
     uint64_t cut_off_ = 0;  ///< Pings that still waited for pulses at the stop [1].

@@ -88,16 +88,27 @@ RenderPlan Sonar3dTask::coverage(const types::Snapshot& scene) const {
     return makeRenderPlan(fan, *scene.geometry);
 }
 
+glm::dquat Sonar3dTask::uprightAt(const glm::dquat& ahead, size_t column) const {
+    const double azimuth = types::radians(config->horizontal.centreDeg(static_cast<int>(column)));
+    const glm::dquat stood_up = glm::angleAxis(types::radians(90), glm::dvec3(1, 0, 0));  // bearings become elevations
+    return ahead * glm::angleAxis(azimuth, glm::dvec3(0, 0, 1)) * stood_up;
+}
+
+PingTask::RenderedBeam Sonar3dTask::renderedBeam(size_t beam) const {
+    RenderedBeam rendered = PingTask::renderedBeam(beam);
+    rendered.scene.sonar.orientation = uprightAt(rendered.scene.sonar.orientation, beam);
+    rendered.beam.reset();
+    return rendered;
+}
+
 bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
                              types::SonarTruth* truth_of_ping) {
     const glm::dquat ahead = scene.sonar.orientation;
-    const glm::dquat stood_up = glm::angleAxis(types::radians(90), glm::dvec3(1, 0, 0));  // bearings become elevations
     bool received = false;
     renderer.setTruth(fan_, truth_of_ping ? &fan_truth_ : nullptr);
     for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i] = {renderer.stages()[i].name, 0};
     for (int column = 0; column < config->horizontal.beam_count; ++column) {
-        const double azimuth = types::radians(config->horizontal.centreDeg(column));
-        scene.sonar.orientation = ahead * glm::angleAxis(azimuth, glm::dvec3(0, 0, 1)) * stood_up;
+        scene.sonar.orientation = uprightAt(ahead, static_cast<size_t>(column));
         renderer.render(scene, fan_);
         for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i].seconds += renderer.stages()[i].seconds;
         received = renderer.hasEchoes() || renderer.othersReceived() > 0 || received;

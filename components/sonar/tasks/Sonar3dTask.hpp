@@ -75,6 +75,7 @@ public:
     framework::OutputPort<types::PointCloudPtr> soundings{this, "soundings", "the same as points in the world"};
 
     SonarConfig sonarConfig() const override { return config->upright(); }
+    RenderedBeam renderedBeam(size_t beam) const override;
 
 protected:
     bool rendersOnce() const override { return false; }
@@ -89,6 +90,8 @@ protected:
     Changes changedBy(const types::SonarSettings& requested) const override;
 
 private:
+    /** Returns the pose of the upright fan of one azimuth. */
+    glm::dquat uprightAt(const glm::dquat& ahead, size_t column) const;
     /** Writes the returns of one upright fan into a column of the map, and their truth if there is one. */
     void detect(int column, bool with_truth);
     /** Adds one upright fan to its beam of the ping, and the ring-down of the sonar once. */
