@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "components/receiver/ReceiverConfig.hpp"
+#include "types/Notice.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::receiver {
@@ -61,7 +62,7 @@ public:
     /** Returns whether the receiver leaves every ping unchanged. */
     bool isNeutral() const;
     /** Returns notices for the user: the range of the gain's clamp, and configuration without effect. */
-    std::vector<std::string> notices() const;
+    types::Notices notices() const;
 
 private:
     /** The properties of a ping that the tables depend on. */

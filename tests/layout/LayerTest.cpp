@@ -62,7 +62,7 @@ std::vector<std::string> inCircles(const Graph& graph) {
 }
 
 // What has been reached. Lower these numbers when the tree gets smaller.
-constexpr size_t max_units = 572, max_small_files = 191, max_folder = 68, max_lines = 126'853;
+constexpr size_t max_units = 569, max_small_files = 183, max_folder = 66, max_lines = 126'853;
 
 /** Number of lines of the product, without pages. */
 size_t productLines() {
@@ -138,6 +138,13 @@ TEST(LayerTest, ChecksAreInSourceFiles) {
             ++checks;
         }
     EXPECT_GT(checks, 40u);
+}
+
+/** A text says no kind, so that no code decides by a text. */
+TEST(LayerTest, OnlyTheKindOfANoticeMakesItAWarning) {
+    for (const Source& source : product())
+        for (size_t line = 0; line < source.lines.size() && source.path != "types/Notice.hpp"; ++line)
+            EXPECT_EQ(source.lines[line].find("\"Warning: "), std::string::npos) << source.path << ":" << line + 1;
 }
 
 TEST(LayerTest, TheTreeIsNoLargerThanItWas) {
