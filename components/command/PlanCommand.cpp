@@ -66,7 +66,7 @@ void printJson(const Plans& plans) {
 int showPlan(const RunOptions& options, bool json) {
     framework::Registry registry = coreTasks();
     const DeploymentSpec spec = loadSpec(options);
-    Deployment deployment(pipelineOf(spec, registry), registry);
+    Deployment deployment(pipeline(spec, registry), registry);
     const Deployment whole(spec, registry);
     std::vector<std::unique_ptr<TruthReader>> readers;
     for (const auto& task : deployment.tasks())

@@ -11,7 +11,6 @@
 #include <memory>
 
 #include "components/command/CommandLine.hpp"
-#include "components/command/RosArguments.hpp"
 #include "components/command/ShardRun.hpp"
 #include "components/command/Summary.hpp"
 #include "components/console/Console.hpp"

@@ -15,8 +15,8 @@
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/loader/ComponentLibrary.hpp"
+#include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
-#include "components/scene/MaterialNames.hpp"
 #include "components/scene/Placement.hpp"
 #include "components/scene/Scene.hpp"
 #include "types/Extent.hpp"
@@ -62,7 +62,7 @@ private:
     }
 };
 
-const char* sourceOf(const types::Material& material) {
+const char* source(const types::Material& material) {
     if (material.is_named) return "name";
     return material.has_acoustics ? "file" : "default";
 }
@@ -81,7 +81,7 @@ Json jsonOf(const std::optional<types::Shell>& shell) {
 
 Json jsonOf(const types::Material& material, size_t triangles, double area) {
     return {{"name", material.name},
-            {"source", sourceOf(material)},
+            {"source", source(material)},
             {"matter", material.matter.empty() ? Json() : Json(material.matter)},
             {"lambert_db", material.lambert_db},
             {"reflection", material.reflection},
@@ -156,7 +156,7 @@ Json animationsOf(const scene::Scene& scene) {
  * file that cannot be read. */
 Json sceneReport(const std::string& file, const scene::OmitRules& rules) {
     const scene::Scene scene = scene::withoutOmitted(scene::readScene(file), rules);
-    const types::GeometryPtr named = scene::takeNames(scene.geometry);
+    const types::GeometryPtr named = scene::applyMaterialNames(scene.geometry);
     const types::Geometry& geometry = *named;
     const types::Extent extent = types::extentOf(geometry);
     const Surfaces surfaces(geometry);

@@ -96,7 +96,7 @@ bool PublisherTask::configureHook() {
     if (named.tf_static) announceMounts(named.tf_static->topic);
     if (named.parameter_services && environment().deployment)
         parameters_.emplace(*node_, named.node.node_name, name(), *environment().deployment);
-    takeSonars();
+    readSonars();
     node_->announce();
     return true;
 }
@@ -130,29 +130,29 @@ void PublisherTask::announceMounts(const std::string& topic) {
     if (!tf_static_->write(bytes)) throw std::runtime_error("the mounts cannot be published: " + tf_static_->failure());
 }
 
-void PublisherTask::takeSonars() {
+void PublisherTask::readSonars() {
     known_changes_ = *environment().record_changes;
     inputs_.forEach([](auto& input) {
         const auto given = framework::upstreamNumber(input.port, {"frequency_khz", "absorption.frequency_khz"});
         const double frequency = given.value_or(0);
         const types::ReturnRules rules = framework::upstreamReturnRules(input.port, types::left_receiver);
-        for (const auto& publication : input.kept.publications) publication->takeSonar(frequency, rules);
+        for (const auto& publication : input.kept.publications) publication->setSonar(frequency, rules);
     });
 }
 
 void PublisherTask::updateHook() {
     using Clock = std::chrono::steady_clock;
-    if (*environment().record_changes != known_changes_) takeSonars();
+    if (*environment().record_changes != known_changes_) readSonars();
     inputs_.forEach([this]<class Input>(Input& input) {
         auto start = Clock::now();
         for (typename Input::Carried sample{}; input.port.readNew(sample); start = Clock::now()) {
             send(input, sample, *this, drops_);
             for (const auto& publication : input.kept.publications)
-                if (const std::string warning = publication->takeSizeWarning(); !warning.empty()) warn(warning);
+                if (const std::string warning = publication->consumeSizeWarning(); !warning.empty()) warn(warning);
             recordStage("send", std::chrono::duration<double>(Clock::now() - start).count());
         }
     });
-    if (const std::string reported = drops_.takeWarning(); !reported.empty()) warn(reported);
+    if (const std::string reported = drops_.consumeWarning(); !reported.empty()) warn(reported);
 }
 
 void PublisherTask::cleanupHook() {

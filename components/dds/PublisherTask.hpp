@@ -57,7 +57,7 @@ private:
     /** Returns the mounts of all frames of pings on the body. */
     ros::TFMessage mounts() const;
     void announceMounts(const std::string& topic);
-    void takeSonars();
+    void readSonars();
 
     types::ThrottledWarning drops_{"message", "dropped"};
     std::optional<Node> node_;

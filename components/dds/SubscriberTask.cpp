@@ -60,7 +60,7 @@ void SubscriberTask::updateHook() {
         if (taken == max_at_once || subscription.more()) arrived_.raise();
     });
     for (types::ThrottledWarning* counted : {&drops_, &odd_})
-        if (const std::string warning = counted->takeWarning(); !warning.empty()) warn(warning);
+        if (const std::string warning = counted->consumeWarning(); !warning.empty()) warn(warning);
     reportAbsence();
 }
 

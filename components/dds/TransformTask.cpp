@@ -100,7 +100,7 @@ void TransformTask::updateHook() {
     take(*moving_, false);
     outputs_.forEach([this](auto& output) { report(output); });
     for (auto* counted : {&drops_, &gaps_})
-        if (const std::string reported = counted->takeWarning(); !reported.empty()) warn(reported);
+        if (const std::string reported = counted->consumeWarning(); !reported.empty()) warn(reported);
 }
 
 void TransformTask::take(Reader& reader, bool is_static) {

@@ -6,8 +6,7 @@
 
 #include "components/dds/Endpoints.hpp"
 #include "components/dds/Node.hpp"
-#include "components/dds/NodeConfig.hpp"
-#include "components/dds/SubscriberConfig.hpp"
+#include "components/dds/Subscription.hpp"
 #include "components/pose/ListenerTask.hpp"
 #include "components/ros/TransformTree.hpp"
 #include "types/Elapsed.hpp"

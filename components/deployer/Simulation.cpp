@@ -69,7 +69,7 @@ std::set<std::string> tasksThatLeadToPings(const framework::Deployment& deployme
     for (const auto& task : deployment.tasks())
         for (const framework::OutputPortBase* port : task->outputs())
             if (carriesPings(*port)) names.insert(task->name());
-    return upstreamOf(std::move(names), deployment);
+    return upstream(std::move(names), deployment);
 }
 
 void throwAny(const std::vector<std::string>& failures) {

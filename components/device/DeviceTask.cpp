@@ -56,7 +56,7 @@ void DeviceTask::updateHook() {
         }
     warnOfDisplaced();
     follow(now());
-    takePings();
+    readPings();
     const types::Time clock = now();
     if (const auto next = tick(clock)) {
         const double wait = std::clamp((*next - clock).seconds(), 0.0, longest_wait);
@@ -70,7 +70,7 @@ void DeviceTask::warnOfDisplaced() {
     if (displaced > displaced_.count())
         displaced_.add(fmt::format("the longest silent of {} on one port, for a newer one", Network::max_clients), "",
                        displaced - displaced_.count());
-    if (const std::string warning = displaced_.takeWarning(); !warning.empty()) warn(warning);
+    if (const std::string warning = displaced_.consumeWarning(); !warning.empty()) warn(warning);
 }
 
 void registerTasks(framework::Registry& registry) {

@@ -50,7 +50,7 @@ protected:
     /** Reads the clock, which may have been set since the last cycle. */
     virtual void follow(types::Time /*clock*/) {}
     /** Reads the task's own input ports. */
-    virtual void takePings() = 0;
+    virtual void readPings() = 0;
     /** Does the due work. Returns the latest time of the next cycle; none: when something arrives. */
     virtual std::optional<types::Time> tick(types::Time now) = 0;
 

@@ -24,7 +24,7 @@ struct Freed {
 };
 using Addresses = std::unique_ptr<addrinfo, Freed>;
 
-Addresses addressesOf(const std::string& host, uint16_t port, int type) {
+Addresses addresses(const std::string& host, uint16_t port, int type) {
     addrinfo hints{}, *found = nullptr;
     hints.ai_socktype = type;
     if (const int error = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found); error != 0)
@@ -65,14 +65,14 @@ DriverLine::~DriverLine() {
 }
 
 DriverLine DriverLine::udp(const std::string& host, uint16_t port) {
-    const Addresses to = addressesOf(host, port, SOCK_DGRAM);
+    const Addresses to = addresses(host, port, SOCK_DGRAM);
     DriverLine line(socket(to->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
     if (line.file_ < 0 || connect(line.file_, to->ai_addr, to->ai_addrlen) != 0) fail(errno);
     return line;
 }
 
 DriverLine DriverLine::tcp(const std::string& host, uint16_t port, Duration patience) {
-    const Addresses to = addressesOf(host, port, SOCK_STREAM);
+    const Addresses to = addresses(host, port, SOCK_STREAM);
     DriverLine line(socket(to->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     if (line.file_ < 0) fail(errno);
     if (connect(line.file_, to->ai_addr, to->ai_addrlen) == 0) return line;
@@ -93,7 +93,7 @@ DriverLine DriverLine::serial(const std::filesystem::path& file) {
 }
 
 DriverLine DriverLine::broadcasts(uint16_t port) {
-    const Addresses at = addressesOf("0.0.0.0", port, SOCK_DGRAM);
+    const Addresses at = addresses("0.0.0.0", port, SOCK_DGRAM);
     DriverLine line(socket(at->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
     const int shared = 1;  // drivers may listen there as well
     setsockopt(line.file_, SOL_SOCKET, SO_REUSEADDR, &shared, sizeof shared);
@@ -138,10 +138,10 @@ DriverLine::Datagram DriverLine::receiveDatagram(Duration patience) const {
     return datagram;
 }
 
-std::vector<Ipv4> ipv4Of(const std::string& host) {
+std::vector<Ipv4> hostAddresses(const std::string& host) {
     std::vector<Ipv4> found;
     try {
-        const Addresses all = addressesOf(host, 1, SOCK_DGRAM);
+        const Addresses all = addresses(host, 1, SOCK_DGRAM);
         for (const addrinfo* each = all.get(); each; each = each->ai_next)
             if (each->ai_family == AF_INET)
                 found.push_back(
@@ -154,7 +154,7 @@ std::vector<Ipv4> ipv4Of(const std::string& host) {
 
 bool isKnownHost(const std::string& host) {
     try {
-        addressesOf(host, 1, SOCK_DGRAM);
+        addresses(host, 1, SOCK_DGRAM);
         return true;
     } catch (const LineError&) {
         return false;

@@ -53,6 +53,6 @@ private:
 /** Whether this machine can resolve the host. */
 bool isKnownHost(const std::string& host);
 /** Returns the IPv4 addresses of a host; none for an unknown host. */
-std::vector<Ipv4> ipv4Of(const std::string& host);
+std::vector<Ipv4> hostAddresses(const std::string& host);
 
 }  // namespace insonify::device

@@ -36,7 +36,7 @@ std::string nameOf(uint8_t ping_device) {
 
 /** Returns "M750d", as its maker writes it. */
 std::string oculusName(uint16_t part) {
-    const auto model = oculusModelOf(part);
+    const auto model = oculusModel(part);
     if (!model) return fmt::format("of part {}", part);
     std::string name(types::EnumNames<OculusModel>::names[static_cast<size_t>(*model)]);
     name.front() = 'M';
@@ -156,7 +156,7 @@ bool isOf(const DriverLine::Datagram& datagram, const std::vector<Ipv4>& address
 /** Listens until the device at this host has identified itself; ignores other devices. */
 std::optional<std::string> overhear(const Probe& probe, const DriverLine& line, const std::string& host,
                                     std::chrono::milliseconds patience) {
-    const std::vector<Ipv4> addresses = ipv4Of(host == "::1" ? "127.0.0.1" : host);
+    const std::vector<Ipv4> addresses = hostAddresses(host == "::1" ? "127.0.0.1" : host);
     const auto end = Clock::now() + patience;
     while (Clock::now() < end) {
         const auto received =

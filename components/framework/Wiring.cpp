@@ -23,7 +23,7 @@ bool knows(PropertiesBase& properties, const std::string& key) {
     YAML::Node block(YAML::NodeType::Map);
     block.force_insert(key, YAML::Node());
     ConfigReader reader("");
-    reader.takeOutByNull();
+    reader.removeByNull();
     properties.load(reader, block, "");
     return std::ranges::none_of(reader.diagnostics(), [&](const types::Diagnostic& diagnostic) {
         return diagnostic.path == key && diagnostic.kind == types::Diagnostic::Kind::UnknownKey;

@@ -15,7 +15,7 @@ constexpr auto between_reports = std::chrono::minutes(1);  ///< Of changes of th
 constexpr types::Time patience{5'000'000};  ///< Time until the warning that nobody offers a topic.
 
 /** Returns a text such as "crate, lid and 3 more". */
-std::string listOf(const std::vector<std::string>& names) {
+std::string list(const std::vector<std::string>& names) {
     constexpr size_t maximum = 5;
     const size_t shown = std::min(names.size(), maximum);
     std::string text;
@@ -80,7 +80,7 @@ void PoseTask::updateHook() {
     for (Arrived& message : inbox_->take()) take(message);
     warnOfSilence();
     reportChanges();
-    if (const std::string reported = drops_.takeWarning(); !reported.empty()) warn(reported);
+    if (const std::string reported = drops_.consumeWarning(); !reported.empty()) warn(reported);
 }
 
 void PoseTask::warnOfSilence() {
@@ -104,10 +104,10 @@ void PoseTask::reportChanges() {
     next_report_ = std::chrono::steady_clock::now() + between_reports;
     const WorldWatch::Change change = std::exchange(changed_, {});
     if (!change.came.empty())
-        warn("world " + config->world + " has entities that the scene does not have: " + listOf(change.came) +
+        warn("world " + config->world + " has entities that the scene does not have: " + list(change.came) +
              "; restart to take the world as it is");
     if (!change.went.empty())
-        warn("world " + config->world + " has lost entities that the scene still has: " + listOf(change.went));
+        warn("world " + config->world + " has lost entities that the scene still has: " + list(change.went));
 }
 
 void PoseTask::take(Arrived& message) {

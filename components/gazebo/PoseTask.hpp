@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "components/framework/Registry.hpp"
-#include "components/gazebo/PoseConfig.hpp"
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/pose/ListenerTask.hpp"
 #include "types/SenderClock.hpp"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <thread>
 
-#include "components/gpu/Limits.hpp"
+#include "components/gpu/EglContext.hpp"
 
 namespace insonify::gpu {
 

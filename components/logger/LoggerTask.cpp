@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "components/framework/Upstream.hpp"
-#include "components/log/SampleMetadata.hpp"
+#include "components/log/Stream.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::logger {
@@ -58,7 +58,7 @@ std::vector<PropertyAlias> aliasesOf(const LoggerTask& logger, const std::vector
 }  // namespace
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
-    if (framework::InputPortBase* const made = inputs_.make(port, source, framework::streamNameOf(source))) return made;
+    if (framework::InputPortBase* const made = inputs_.make(port, source, framework::streamName(source))) return made;
     throw types::ConfigError("", "", source.path() + " is " + source.typeName() + ", which a log cannot hold");
 }
 
@@ -120,7 +120,7 @@ std::string LoggerTask::bodyOf(const framework::InputPortBase& port) const {
         if (std::is_same_v<typename Input::Sample, types::Pose>) logged.insert(input.kept.name.path());
     });
     for (const framework::OutputPortBase* pose : framework::upstreamPoses(port))
-        if (std::string name = framework::streamNameOf(*pose).path(); logged.contains(name)) return name;
+        if (std::string name = framework::streamName(*pose).path(); logged.contains(name)) return name;
     return "";
 }
 

@@ -14,7 +14,6 @@
 #include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerConfig.hpp"
 #include "components/logger/PropertyLog.hpp"
-#include "components/logger/Rotation.hpp"
 
 namespace insonify::logger {
 

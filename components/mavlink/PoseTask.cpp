@@ -53,9 +53,9 @@ bool PoseTask::startHook() {
 void PoseTask::updateHook() {
     for (const device::NetworkEvent& event : network_->take()) take(event);
     if (config->request) request(now());
-    if (const std::string reported = drops_.takeWarning(); !reported.empty()) warn(reported);
+    if (const std::string reported = drops_.consumeWarning(); !reported.empty()) warn(reported);
     if (has_written_) return;
-    if (const std::string reported = others_.takeWarning(); !reported.empty()) warn(reported);
+    if (const std::string reported = others_.consumeWarning(); !reported.empty()) warn(reported);
 }
 
 void PoseTask::take(const device::NetworkEvent& event) {

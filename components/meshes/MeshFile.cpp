@@ -112,7 +112,7 @@ private:
 };
 
 /** Returns why a signal ended the process. */
-std::string causeOf(int signal, const ReadLimits& limits) {
+std::string cause(int signal, const ReadLimits& limits) {
     switch (signal) {
         case SIGXCPU: return fmt::format("takes more than {} s to compute", limits.processor_s);
         case SIGALRM: return fmt::format("was not read within {} s", limits.wall_s);
@@ -128,7 +128,7 @@ void await(pid_t process, const std::filesystem::path& file, const ReadLimits& l
     int status = 0;
     while (waitpid(process, &status, 0) < 0)
         if (errno != EINTR) return;
-    if (WIFSIGNALED(status)) refuse(file, causeOf(WTERMSIG(status), limits) + remedy);
+    if (WIFSIGNALED(status)) refuse(file, cause(WTERMSIG(status), limits) + remedy);
     if (WEXITSTATUS(status) != 0)
         refuse(file, fmt::format("cannot be read: its reader ended with {}{}", WEXITSTATUS(status), remedy));
 }

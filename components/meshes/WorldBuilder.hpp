@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "components/meshes/ModelPaths.hpp"
+#include "components/meshes/FileMeshes.hpp"
 #include "components/meshes/VisualMeshes.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/Surface.hpp"

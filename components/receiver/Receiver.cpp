@@ -26,12 +26,12 @@ void amplify(const float* __restrict in, const double* __restrict factor, double
 }
 
 INSONIFY_VECTOR_CLONES
-void takeRoots(float* values, size_t count) {
+void toRoots(float* values, size_t count) {
     for (size_t i = 0; i < count; ++i) values[i] = std::sqrt(values[i]);
 }
 
 INSONIFY_VECTOR_CLONES
-void takeLevels(const float* __restrict in, const float* __restrict offset_db, float* __restrict out, size_t count) {
+void toLevels(const float* __restrict in, const float* __restrict offset_db, float* __restrict out, size_t count) {
     for (size_t i = 0; i < count; ++i) {
         const float level = types::decibels(in[i]) + offset_db[i];
         const float kept = level < floor_db ? floor_db : level;
@@ -47,7 +47,7 @@ void clip(float* values, float ceiling, size_t count) {
 /** Raises values to the power of gamma. */
 void bend(float* values, double gamma, size_t count) {
     if (gamma == 1) return;
-    if (gamma == 0.5) return takeRoots(values, count);
+    if (gamma == 0.5) return toRoots(values, count);
     for (size_t i = 0; i < count; ++i) values[i] = std::pow(values[i], static_cast<float>(gamma));
 }
 
@@ -202,7 +202,7 @@ void Receiver::encode(float* received) const {
 void Receiver::receiveBeam(const float* intensities, float* received) const {
     const size_t count = axis_.bin_count;
     if (isLevel())
-        takeLevels(intensities, offset_db_.data(), received, count);
+        toLevels(intensities, offset_db_.data(), received, count);
     else
         amplify(intensities, factor_.data(), config_.brightness ? 1 : saturation(), received, count);
     if (isLevel() && config_.saturation_db)
@@ -210,7 +210,7 @@ void Receiver::receiveBeam(const float* intensities, float* received) const {
     std::fill_n(received, silent_, isLevel() ? floor_db : 0.0f);
     const bool is_root =
         config_.output == Output::Code ? code_.law == CodeLaw::Sqrt : config_.output == Output::Amplitude;
-    if (is_root) takeRoots(received, count);
+    if (is_root) toRoots(received, count);
     if (config_.output == Output::Code) encode(received);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/receiver/ReceiverConfig.hpp"
+#include "components/receiver/Receiver.hpp"
 #include "types/Notice.hpp"
 #include "types/Sonar.hpp"
 

@@ -14,14 +14,14 @@ bool ReceiverTask::configureHook() {
     return true;
 }
 
-void ReceiverTask::takeSettings() {
+void ReceiverTask::readSettings() {
     types::SonarSettings asked;
     if (settings.readNewest(asked, false) != framework::FlowStatus::NewData) return;
     if (std::isfinite(asked.gain_db) && asked.gain_db != config->gain_db) config.change({{"gain_db", asked.gain_db}});
 }
 
 void ReceiverTask::updateHook() {
-    takeSettings();
+    readSettings();
     types::SonarPtr sample;
     if (!intensity.readNew(sample)) return;
     if (environment().rehearsing) return ping.write(sample);

@@ -41,7 +41,7 @@ private:
     bool propertiesHook() override { return configureHook(); }
     void updateHook() override;
     void errorHook() override { updateHook(); }
-    void takeSettings();
+    void readSettings();
     types::SonarPtr received(const types::SonarPtr& sample);
 
     void evaluate(const types::Sonar& intensities, const types::Sonar& received);

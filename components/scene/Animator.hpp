@@ -109,9 +109,9 @@ private:
     void addTracks(const AnimationConfigs& configs);
     void findMovers(const std::vector<int>& driven);
     void findLive();
-    std::vector<int> moversOf(int node) const;
-    void takeTracks(double seconds);
-    void takeNodes(const std::vector<DrivenNode>& driven);
+    std::vector<int> movers(int node) const;
+    void applyTracks(double seconds);
+    void applyNodes(const std::vector<DrivenNode>& driven);
     int nodeOf(const DeformingObject& object) const { return scene_->object_nodes[object.object]; }
 
     std::shared_ptr<const Scene> scene_;

@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "components/scene/MaterialNames.hpp"
+#include "components/scene/Acoustics.hpp"
 #include "types/Ascii.hpp"
 #include "types/DidYouMean.hpp"
 #include "types/Extent.hpp"

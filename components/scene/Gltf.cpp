@@ -14,9 +14,7 @@
 
 #include "components/scene/Animator.hpp"
 #include "components/scene/Clusters.hpp"
-#include "components/scene/GltfAccessor.hpp"
 #include "components/scene/GltfAnimation.hpp"
-#include "components/scene/GltfDeformation.hpp"
 #include "components/scene/GltfFile.hpp"
 #include "components/scene/GltfMaterials.hpp"
 #include "components/scene/GltfMesh.hpp"

@@ -14,7 +14,6 @@
 #include "components/framework/Upstream.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
-#include "components/scene/MaterialNames.hpp"
 #include "types/Elapsed.hpp"
 #include "types/Quaternion.hpp"
 
@@ -217,7 +216,7 @@ bool SceneTask::configureHook() {
     const auto scene = loadToRun();
     types::Diagnostics diagnostics;
     geometry_ = overrideMaterials(*scene, materials(diagnostics), diagnostics);
-    if (config->materials_by_name) geometry_ = takeNames(geometry_);
+    if (config->materials_by_name) geometry_ = applyMaterialNames(geometry_);
     bathymetry_ = openSurvey();
     for (Movable& movable : movables_) {
         movable.node = findNode(*scene, movable.node_name);
@@ -316,7 +315,7 @@ void SceneTask::lackPose(const std::string& why) {
 void SceneTask::updateHook() try {
     const bool movables_good = readMovables();
     types::Pose body;
-    const bool is_new = pose.takeNext(body);
+    const bool is_new = pose.readNext(body);
     if (is_new && !isUsable(body)) return is_stale_ = false, error(pose.path() + unusable);
     if (is_new) newest_ = body.time, arrived_ = now(), newest_came_ = true;
     if (is_new && odd_lengths_.isDue(types::isOddlyLong(body.orientation)))

@@ -17,7 +17,7 @@
 #include "components/scene/Drawings.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
-#include "components/scene/Targets.hpp"
+#include "components/scene/SceneTask.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Snapshot.hpp"
 #include "types/ThrottledWarning.hpp"

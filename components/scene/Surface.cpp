@@ -73,7 +73,7 @@ std::vector<bool> separateMirrored(Surface& surface) {
 
 /** Returns the part of `along` that is perpendicular to the normal, or any perpendicular direction if that part is
  *  zero. */
-glm::vec3 tangentOf(glm::vec3 along, glm::vec3 normal) {
+glm::vec3 tangent(glm::vec3 along, glm::vec3 normal) {
     const glm::vec3 flat = along - normal * glm::dot(normal, along);
     const float length = glm::length(flat);
     if (length > 1e-30f && std::isfinite(length)) return flat / length;
@@ -168,7 +168,7 @@ void makeTangents(Surface& surface) {
     }
     surface.tangents.resize(along.size());
     for (size_t i = 0; i < along.size(); ++i)
-        surface.tangents[i] = glm::vec4(tangentOf(along[i], surface.normals[i]), mirrored[i] ? 1.0f : -1.0f);
+        surface.tangents[i] = glm::vec4(tangent(along[i], surface.normals[i]), mirrored[i] ? 1.0f : -1.0f);
 }
 
 }  // namespace insonify::scene

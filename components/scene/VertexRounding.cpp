@@ -1,5 +1,3 @@
-#include "components/scene/VertexRounding.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "components/scene/Scene.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::scene {

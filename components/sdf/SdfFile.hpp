@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "components/meshes/ModelPaths.hpp"
+#include "components/meshes/FileMeshes.hpp"
 
 namespace insonify::sdf {
 

@@ -1,11 +1,10 @@
-#include "components/viewer/StatusText.hpp"
-
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "components/console/Json.hpp"
+#include "components/viewer/Publisher.hpp"
 
 namespace insonify::viewer {
 namespace {

@@ -81,7 +81,7 @@ std::string ViewerTask::readToken() const {
 }
 
 void ViewerTask::updateHook() {
-    std::string diagnostic = publisher_->takeError();
+    std::string diagnostic = publisher_->consumeError();
     size_t source = 0;
     inputs_.forEach([&](auto& input) {
         if (std::string reported = drain(input, *publisher_, source++, now()); !reported.empty())

@@ -8,7 +8,6 @@
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/viewer/Publisher.hpp"
-#include "components/viewer/ViewerConfig.hpp"
 
 namespace insonify::viewer {
 

@@ -1,9 +1,9 @@
 // Poses and worlds over the wire, with a replacement of Gazebo Harmonic.
 #include <gmock/gmock.h>
 
+#include "components/gazebo/Discovery.hpp"
 #include "components/gazebo/PoseTask.hpp"
-#include "components/gazebo/Request.hpp"
-#include "components/gazebo/Subscriber.hpp"
+#include "components/gazebo/Subscriptions.hpp"
 #include "components/gazebo/World.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/gazebo/HarmonicWorld.hpp"

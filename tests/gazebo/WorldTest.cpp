@@ -6,8 +6,8 @@
 
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/gazebo/World.hpp"
+#include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
-#include "components/scene/MaterialNames.hpp"
 #include "tests/gazebo/Recordings.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 #include "tests/support/Refused.hpp"
@@ -79,7 +79,7 @@ TEST_F(WorldTest, AWorldOfHarmonicIsAScene) {
 
 TEST_F(WorldTest, MaterialsAreOfTheMatterInTheNamesOfTheirScripts) {
     const World world = gazebo::worldOf(recording("scene"), folder_);
-    const auto named = scene::takeNames(world.scene.geometry);
+    const auto named = scene::applyMaterialNames(world.scene.geometry);
     EXPECT_THAT(named->notices, Contains(HasSubstr("Gazebo/Steel")));
 }
 

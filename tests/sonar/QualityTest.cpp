@@ -10,7 +10,7 @@
 #include "components/sonar/renderer/QualityKeeper.hpp"
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "components/sonar/tasks/SonarTask.hpp"
-#include "components/study/FractalFloor.hpp"
+#include "components/study/StudyScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 
@@ -399,7 +399,7 @@ TEST(QualityKeeperTest, UsesABudgetAndDoesNotExceedIt) {
     EXPECT_LE(kept.ms, 20);
     kept.pings(60, 4e-4);
     EXPECT_GE(kept.ms, 16);
-    EXPECT_THAT(kept.keeper.takeNotices(), Contains(HasSubstr("budget 20 ms")));
+    EXPECT_THAT(kept.keeper.consumeNotices(), Contains(HasSubstr("budget 20 ms")));
 }
 
 TEST(QualityKeeperTest, ThePeriodIsTheBudgetByDefault) {
@@ -410,7 +410,7 @@ TEST(QualityKeeperTest, ThePeriodIsTheBudgetByDefault) {
     kept.pings(60, 1e-4, 0.6 * kept.ms);
     EXPECT_LT(kept.keeper.quality().samples(), 0.6 * enough);
     EXPECT_GT(kept.keeper.quality().error, 0.05);
-    EXPECT_THAT(kept.keeper.takeNotices(), Contains(AllOf(HasSubstr("Warning"), HasSubstr("ms allows no more"))));
+    EXPECT_THAT(kept.keeper.consumeNotices(), Contains(AllOf(HasSubstr("Warning"), HasSubstr("ms allows no more"))));
     kept.pings(60, 1e-4, 1000);
     EXPECT_GE(kept.keeper.quality().samples(), 0.9 * enough);
 }

@@ -9,7 +9,7 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "components/sonar/tasks/SonarTask.hpp"
-#include "components/study/FractalFloor.hpp"
+#include "components/study/StudyScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"
@@ -78,7 +78,7 @@ double nearlyAll(std::vector<double> errors) {
     return errors[errors.size() * 95 / 100];
 }
 
-std::string summaryOf(const RecordedPings& run, const std::vector<double>& errors) {
+std::string summary(const RecordedPings& run, const std::vector<double>& errors) {
     std::string text =
         "now " + std::to_string(run.plan.rows) + " x " + std::to_string(run.plan.columns_per_beam) + "\n";
     for (const std::string& notice : types::lines(run.notices)) text += notice + "\n";
@@ -130,7 +130,7 @@ TEST(MovingQualityTest, AFanThatTurnsFromAWallToARoughFloorMeetsItsTarget) {
     const auto snapshots = turnFromAWall(3);
     const RecordedPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
     const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
-    EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
+    EXPECT_LE(nearlyAll(errors), 2 * target) << summary(run, errors);
 }
 
 TEST(MovingQualityTest, APassOverARoughFloorMeetsItsTarget) {
@@ -140,7 +140,7 @@ TEST(MovingQualityTest, APassOverARoughFloorMeetsItsTarget) {
     });
     const RecordedPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
     const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
-    EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
+    EXPECT_LE(nearlyAll(errors), 2 * target) << summary(run, errors);
 }
 
 /** Returns a basin of 10 x 8 x 3 m with a ball of a tyre's size on its floor. */
@@ -165,7 +165,7 @@ TEST(MovingQualityTest, AScanningHeadInAPoolMeetsItsTarget) {
     });
     const RecordedPings run = runOf<sonar::ScanningSonarTask>(config, snapshots);
     const std::vector<double> errors = movingErrors(config.beam(), snapshots, run, 64);
-    EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
+    EXPECT_LE(nearlyAll(errors), 2 * target) << summary(run, errors);
 }
 
 }  // namespace

@@ -15,7 +15,6 @@
 #include "components/console/Json.hpp"
 #include "components/console/Sha256.hpp"
 #include "components/dataset/commands/SweepFile.hpp"
-#include "components/dataset/commands/SweepScenes.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
@@ -65,7 +64,7 @@ std::string originOf(const SceneChoice& scene, const std::string& generator) {
 /** Returns the file of a scene, which is made if it does not exist. It is renamed to its final name when complete,
  *  because other processes may make it too. */
 std::string madeFile(const SceneChoice& scene, const std::string& generator) {
-    const fs::path folder = cacheFolder() / console::sha256Of(originOf(scene, generator)).substr(0, 32);
+    const fs::path folder = cacheFolder() / console::sha256(originOf(scene, generator)).substr(0, 32);
     const std::string stem = fmt::format("{}_{}", fs::path(scene.recipe).stem().string(), scene.seed);
     const fs::path file = folder / (stem + ".glb"), passing = folder / fmt::format("{}.{}.glb", stem, getpid());
     if (fs::is_regular_file(file)) return file;
@@ -282,10 +281,10 @@ void DatasetRun::checkDrawn() const {
         for (size_t k = 0; k < drawn.choice.size(); ++k)
             checkAssignment(fmt::format("{}.choice[{}]", path, k), drawn.property, drawn.choice[k]);
         if (!drawn.choice.empty()) continue;
-        const double first = drawn.law.draw(wordOf(sweep_, 0, i));
+        const double first = drawn.law.draw(word(sweep_, 0, i));
         double minimum = first, maximum = first;
         for (uint64_t index = 1; index < samples_->count(); ++index) {
-            const double value = drawn.law.draw(wordOf(sweep_, index, i));
+            const double value = drawn.law.draw(word(sweep_, index, i));
             minimum = std::min(minimum, value), maximum = std::max(maximum, value);
         }
         for (const double value : {first, minimum, maximum}) try {
@@ -335,7 +334,7 @@ DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {
                    partsOf(sweep_, scene),
                    {},
                    dataset::digestOf(*scene.geometry)};
-    read.objects = lineagesOf(scene);
+    read.objects = lineages(scene);
     return read;
 }
 
@@ -354,7 +353,7 @@ std::string DatasetRun::digestOfAll() const {
     const fs::path folder = fs::path(deployment_).parent_path();
     std::string text = fmt::format("insonify {}\n{}\ndeployment {}\nsweep {}\n", INSONIFY_VERSION,
                                    types::EnumNames<Format>::names[static_cast<size_t>(format_)],
-                                   console::sha256Of(spec_.text), console::sha256Of(sweep_.text));
+                                   console::sha256(spec_.text), console::sha256(sweep_.text));
     text += fmt::format("seed {}\nset {}\n", sweep_.seed, console::Json(changes_.set).dump());
     for (const framework::TaskSpec& task : spec_.tasks) {
         if (decides(task)) addFiles(task.properties, folder, text);
@@ -365,7 +364,7 @@ std::string DatasetRun::digestOfAll() const {
     text += originsOf(sweep_);
     for (const SceneFile& scene : scenes_) text += fmt::format("scene {} {}\n", scene.name, scene.digest);
     if (sweep_.trajectory) text += fmt::format("trajectory {}\n", console::sha256OfFile(sweep_.trajectory->file));
-    return console::sha256Of(text);
+    return console::sha256(text);
 }
 
 std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {

@@ -131,7 +131,7 @@ void OculusTask::closed(Client client) {
     emulator_->closed(client.number);
 }
 
-void OculusTask::takePings() {
+void OculusTask::readPings() {
     types::SonarPtr sample;
     while (ping.readNew(sample)) {
         checkCodes(*sample);

@@ -61,7 +61,7 @@ private:
     void received(Client client, std::span<const uint8_t> bytes) override;
     void closed(Client client) override;
     void follow(types::Time clock) override { emulator_->follow(clock); }
-    void takePings() override;
+    void readPings() override;
     std::optional<types::Time> tick(types::Time now) override;
     bool startHook() override;
     void stopHook() override;

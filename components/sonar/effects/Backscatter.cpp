@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "components/acoustics/SeabedBackscatter.hpp"
+#include "components/acoustics/Seabed.hpp"
 #include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {

@@ -89,7 +89,9 @@ public:
                             "the transmit law",
                             types::degrees(plan.directivity->boxWidth())));
     }
-    std::string takeOut(SonarConfig& config) const override { return takenOut(config.beam_pattern, "beam pattern"); }
+    std::string removeFrom(SonarConfig& config) const override {
+        return removeBlock(config.beam_pattern, "beam pattern");
+    }
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ public:
     void addTo(types::ReturnRules& rules, const SonarConfig& config) const override {
         rules.loss_db_per_m = makeAbsorption(config).db_per_m;
     }
-    std::string takeOut(SonarConfig& config) const override { return takenOut(config.absorption, "absorption"); }
+    std::string removeFrom(SonarConfig& config) const override { return removeBlock(config.absorption, "absorption"); }
 };
 
 std::string means(const Omitted& /*what*/, const BinGrid& /*grid*/) {
@@ -111,7 +111,7 @@ public:
         plan.add(Pass::Pulse);
         return true;
     }
-    std::string takeOut(SonarConfig& config) const override { return takenOut(config.pulse, "pulse"); }
+    std::string removeFrom(SonarConfig& config) const override { return removeBlock(config.pulse, "pulse"); }
 };
 
 /** The transmitter's ring-down in the first bins of every beam. */
@@ -151,7 +151,7 @@ public:
         rules.ring_down_db = *config.pulse->ring_down->level_db;
         rules.ring_down_db_per_m = *config.pulse->ring_down->decay_db_per_m;
     }
-    std::string takeOut(SonarConfig& config) const override {
+    std::string removeFrom(SonarConfig& config) const override {
         if (!config.pulse || !config.pulse->ring_down) return {};
         config.pulse->ring_down.reset();
         return "transmit ring-down";
@@ -202,10 +202,10 @@ public:
         if (plan.profile || plan.config.motion_in_ping) return omit(Reason::Lacking, onBentWays);
         if (!plan.laws.hasWalls()) return omit(Reason::NoneInScene, withoutShell);
         plan.add(Pass::Walls);
-        plan.laws.takeReturnsApart();
+        plan.laws.separateReturns();
         return true;
     }
-    std::string takeOut(SonarConfig& config) const override {
+    std::string removeFrom(SonarConfig& config) const override {
         if (config.max_walls == 0) return {};
         config.max_walls = 0;
         return "thin walls";
@@ -300,7 +300,7 @@ std::string withoutDeforming(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no mesh has a skin or morph targets";
 }
 
-/** Meshes that skins and morph targets deform from ping to ping. EchoRenderer::takeShapes() poses them. */
+/** Meshes that skins and morph targets deform from ping to ping. EchoRenderer::updateShapes() poses them. */
 class DeformingMeshes final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {

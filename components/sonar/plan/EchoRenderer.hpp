@@ -32,10 +32,10 @@ class EchoRenderer {
 public:
     virtual ~EchoRenderer() = default;
     /** Switches to the plan's current quality. Allocates memory. */
-    virtual void takeQuality() = 0;
+    virtual void updateQuality() = 0;
     /** Switches to another geometry and keeps what has not changed. Returns false where another renderer is needed.
      *  Without `same_plan` the plan may have other laws, features and passes. */
-    virtual bool takeScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
+    virtual bool setScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
     /** Switches to the plan, which is of another configuration now, and keeps what depends on the scene alone. Returns
      *  false where another renderer is needed. */
     virtual bool changePlan() { return false; }
@@ -43,7 +43,7 @@ public:
      *  null: to `geometry`, in which no object deforms. A rasterising renderer must have that geometry already. */
     virtual void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) = 0;
     /** Poses the meshes by a snapshot, before any part of a ping reads them. */
-    virtual void takeShapes(const types::Snapshot& snapshot) = 0;
+    virtual void updateShapes(const types::Snapshot& snapshot) = 0;
     /** Forgets all pings, as if the renderer and the effects had just been made. Returns false where a new renderer is
      *  needed. */
     virtual bool forget() { return false; }

@@ -58,12 +58,12 @@ public:
     virtual ~PingEffect() = default;
 
     /** Switches to the plan's current quality. May allocate. */
-    virtual void takeQuality() {}
+    virtual void updateQuality() {}
     /** Switches to another scene with the same materials. The scene before ends its life after the call. */
-    virtual void takeScene(const types::Geometry& /*geometry*/) {}
+    virtual void setScene(const types::Geometry& /*geometry*/) {}
     /** Takes new shapes of deforming meshes. They changed in place, in the objects that this and earlier snapshots
      *  deform. Called before begin() if any mesh deforms. */
-    virtual void takeShapes(const types::Snapshot& /*snapshot*/) {}
+    virtual void updateShapes(const types::Snapshot& /*snapshot*/) {}
     /** Begins a ping, before all else. */
     virtual void begin(const PingStart& /*start*/) {}
 
@@ -140,7 +140,7 @@ public:
     }
     /** Removes the effect from a configuration, to measure its influence. Returns its name; empty where the
      *  configuration does not have it. */
-    virtual std::string takeOut(SonarConfig& /*config*/) const { return {}; }
+    virtual std::string removeFrom(SonarConfig& /*config*/) const { return {}; }
 };
 
 /** Returns whether sonar and objects move while sound travels. */
@@ -152,9 +152,9 @@ inline bool leaveOut(RenderPlan& plan, const Omitted& what) {
     return false;
 }
 
-/** Removes an optional block of a configuration, for Effect::takeOut(). Returns the effect's name; empty where the
+/** Removes an optional block of a configuration, for Effect::removeFrom(). Returns the effect's name; empty where the
  * block is absent. */
-std::string takenOut(auto& block, const char* name) {
+std::string removeBlock(auto& block, const char* name) {
     if (!block) return {};
     block.reset();
     return name;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/bins/BinLevels.hpp"
+#include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/plan/EchoRenderer.hpp"
@@ -48,10 +48,10 @@ class RasterEchoes final : public EchoRenderer {
 public:
     RasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
     ~RasterEchoes() override;
-    void takeQuality() override;
+    void updateQuality() override;
     bool changePlan() override;
     void deform(DeformedMeshes* meshes, types::GeometryPtr /*geometry*/) override { deformed_ = meshes; }
-    void takeShapes(const types::Snapshot& snapshot) override;
+    void updateShapes(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     bool hasEchoes() const override;
@@ -112,7 +112,7 @@ RasterEchoes::RasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry, 
       why_on_processor_(checkDevice()),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
-      culler_(*geometry_, {nearest_rasterised, reachOf(plan), plan.config.draw_all}),
+      culler_(*geometry_, {nearest_rasterised, reach(plan), plan.config.draw_all}),
       threads_(plan.options.threads),
       surface_(context_, surfaceSetup(), culler_, threads_) {
     makeDeposit();
@@ -146,7 +146,7 @@ SurfacePass::Setup RasterEchoes::surfaceSetup() const {
 
 void RasterEchoes::makeDeposit() {
     DepositSetup setup = depositSetup(plan_, effects_);
-    grid_ ? grid_->takeQuality(plan_) : void(grid_.emplace(plan_, threads_.size()));
+    grid_ ? grid_->updateQuality(plan_) : void(grid_.emplace(plan_, threads_.size()));
     rules_ = setup.rules;
     if (depositsOnProcessor())
         deposit_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
@@ -189,13 +189,13 @@ void RasterEchoes::lap(Stage& stage) {
 
 void RasterEchoes::take(const WaterView& water) {
     const auto alone = context_.transferring();
-    const auto takeAll = [&](BinDeposit& deposit) {
+    const auto passAll = [&](BinDeposit& deposit) {
         deposit.begin(water);
         for (size_t i = 0; i < plan_.frusta.size(); ++i)
             if (surface_.draws(i)) deposit.take(i, surface_);
     };
-    takeAll(*deposit_);
-    if (truth_ && cpu_deposit_) takeAll(*cpu_deposit_);
+    passAll(*deposit_);
+    if (truth_ && cpu_deposit_) passAll(*cpu_deposit_);
 }
 
 void RasterEchoes::fillBins(types::Sonar& ping) {
@@ -226,7 +226,7 @@ void RasterEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, S
     lap(stages[DrawStage]);
     for (size_t i = 0; i < plan_.frusta.size(); ++i)
         if (surface_.draws(i)) count(Counter::Pixels, plan_.frusta[i].pixels());
-    take(waterViewOf(snapshot));
+    take(waterView(snapshot));
     context_.check();
     lap(stages[ReadStage]);
     if (truth_) shown_->clear();
@@ -239,19 +239,19 @@ void RasterEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, S
     lap(stages[BeamStage]);
 }
 
-void RasterEchoes::takeShapes(const types::Snapshot& snapshot) {
+void RasterEchoes::updateShapes(const types::Snapshot& snapshot) {
     context_.requireThread();
     const std::vector<uint32_t>& objects = deformed_->objects();
     threads_.run([&](int part, int parts) {
         deformed_->take(snapshot, static_cast<size_t>(part), static_cast<size_t>(parts));
         for (auto i = static_cast<size_t>(part); i < objects.size(); i += static_cast<size_t>(parts))
-            surface_.takeShape(objects[i]);
+            surface_.updateShape(objects[i]);
     });
     surface_.uploadShapes(objects);
     context_.check();
 }
 
-void RasterEchoes::takeQuality() {
+void RasterEchoes::updateQuality() {
     context_.requireThread();
     const auto alone = context_.transferring();
     why_on_processor_ = checkDevice();
@@ -273,9 +273,9 @@ bool RasterEchoes::changePlan() {
     const auto alone = context_.transferring();
     why_on_processor_ = checkDevice();
     if (!surface_.serves(surfaceSetup())) return false;
-    culler_.setRules({nearest_rasterised, reachOf(plan_), plan_.config.draw_all});
+    culler_.setRules({nearest_rasterised, reach(plan_), plan_.config.draw_all});
     levels_ = BinLevels(plan_.config, plan_.grid);
-    surface_.takeLaws();
+    surface_.updateLaws();
     surface_.resize(plan_.frusta);
     sums_ = {};
     rendered_ = false;

@@ -82,7 +82,7 @@ types::Notices configNotices(const SonarConfig& config) {
 
 std::optional<types::Notice> depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot) {
     if (!plan.profile) return {};
-    const double depth = -waterViewOf(snapshot).height, top = plan.profile->top(), bottom = plan.profile->bottom();
+    const double depth = -waterView(snapshot).height, top = plan.profile->top(), bottom = plan.profile->bottom();
     if (depth >= top && depth <= bottom) return {};
     return types::warning(fmt::format(
         "at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound covers {:g} to {:g} "

@@ -88,7 +88,7 @@ public:
     /** Returns whether the quality has been chosen, on a ping with an echo. */
     bool isChosen() const { return chosen_; }
     /** Returns the notices since the last call, one sentence each. */
-    types::Notices takeNotices() { return std::exchange(notices_, {}); }
+    types::Notices consumeNotices() { return std::exchange(notices_, {}); }
 
 private:
     double maxSamples() const;  ///< Max samples per beam [1].

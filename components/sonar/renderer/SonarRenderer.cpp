@@ -49,9 +49,9 @@ struct SonarRenderer::Parts {
     void start();
     void makeEchoes();
     void deform(const types::Snapshot& snapshot);
-    bool takeScene(types::GeometryPtr given);
-    void takeConfig(const SonarConfig& config);
-    void takeShapes(const types::Snapshot& snapshot);
+    bool setScene(types::GeometryPtr given);
+    void changeConfig(const SonarConfig& config);
+    void updateShapes(const types::Snapshot& snapshot);
     void describePlan();
     types::SonarTruth* truthOf(const types::Sonar& ping) const { return &ping == reported_ping ? truth : nullptr; }
 
@@ -107,19 +107,19 @@ void SonarRenderer::Parts::deform(const types::Snapshot& snapshot) {
                                                            : std::vector<uint32_t>();
     const auto before = std::exchange(deformed, std::make_unique<DeformedMeshes>(snapshot, others));
     const types::GeometryPtr geometry_before = std::exchange(geometry, deformed->geometry());
-    effects.takeScene(*geometry);
+    effects.setScene(*geometry);
     if (!plan.traces_rays) makeEchoes();
     echoes->deform(deformed.get(), geometry);
 }
 
-void SonarRenderer::Parts::takeShapes(const types::Snapshot& snapshot) {
+void SonarRenderer::Parts::updateShapes(const types::Snapshot& snapshot) {
     if (!deformed || !deformed->serves(snapshot)) deform(snapshot);
     if (!deformed->changes(snapshot)) return;
-    echoes->takeShapes(snapshot);
-    effects.takeShapes(snapshot);
+    echoes->updateShapes(snapshot);
+    effects.updateShapes(snapshot);
 }
 
-bool SonarRenderer::Parts::takeScene(types::GeometryPtr given) {
+bool SonarRenderer::Parts::setScene(types::GeometryPtr given) {
     if (given == scene) return false;
     const std::unique_ptr<DeformedMeshes> deformed_before = std::move(deformed);
     if (deformed_before && plan.traces_rays) echoes->deform(nullptr, scene);
@@ -127,18 +127,18 @@ bool SonarRenderer::Parts::takeScene(types::GeometryPtr given) {
     const bool same_plan =
         given->materials == geometry->materials && given->normal_maps.sharesAll(geometry->normal_maps);
     if (same_plan) {
-        effects.takeScene(*given);
+        effects.setScene(*given);
     } else {
         plan = makeRenderPlan(plan.config, *given, plan.options);
         effects = PingEffects(plan, *given);
     }
     const types::GeometryPtr before = std::exchange(geometry, given);  // kept until unused
-    if (!echoes->takeScene(std::move(given), same_plan)) start();
+    if (!echoes->setScene(std::move(given), same_plan)) start();
     if (!same_plan) describePlan();
     return !same_plan;
 }
 
-void SonarRenderer::Parts::takeConfig(const SonarConfig& config) {
+void SonarRenderer::Parts::changeConfig(const SonarConfig& config) {
     const bool traced_rays = plan.traces_rays;
     RenderPlan next = makeRenderPlan(config, *scene, plan.options);
     if (!traced_rays && next.traces_rays) {
@@ -187,19 +187,19 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
     parts_->stages = empty_stages;
     if (!snapshot.deformed.empty() || parts_->deformed) {
         const auto start = std::chrono::steady_clock::now();
-        parts_->takeShapes(snapshot);
+        parts_->updateShapes(snapshot);
         parts_->stages[CullStage].seconds +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     parts_->fillHeader(snapshot, ping);
     types::SonarTruth* const truth = parts_->truthOf(ping);
-    if (truth) truth->takeGrid(ping);
+    if (truth) truth->copyGrid(ping);
     parts_->effects.begin({snapshot, truth});
     parts_->echoes->setTruth(truth);
     parts_->echoes->render(snapshot, ping, parts_->stages);
     parts_->echoes->setTruth(nullptr);
     finish(snapshot, ping);
-    if (&ping == parts_->heard_ping && parts_->signals) takeElements(ping, *parts_->signals);
+    if (&ping == parts_->heard_ping && parts_->signals) computeElements(ping, *parts_->signals);
     if (!truth) return;
     types::SonarTruth::forEachArray(*truth, [&](const char*, auto& numbers, auto) {
         parts_->plan.beams.toTableOrder(std::span(numbers), truth->bin_count);
@@ -226,7 +226,7 @@ void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) 
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-bool SonarRenderer::takeAlike(const types::Sonar& ping, types::Sonar& alike) const {
+bool SonarRenderer::computeAlike(const types::Sonar& ping, types::Sonar& alike) const {
     if (!parts_->plan.has(Pass::RingDown)) return false;
     alike.time = ping.time;
     static_cast<types::RangeBins&>(alike) = ping;
@@ -245,10 +245,10 @@ void SonarRenderer::setElements(const types::Sonar& ping, types::SonarElements* 
     parts_->signals = signals;
 }
 
-void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements& signals) {
+void SonarRenderer::computeElements(const types::Sonar& ping, types::SonarElements& signals) {
     const EchoField* field = parts_->echoes->field();
-    if (!parts_->array) parts_->array.emplace(lineArrayOf(parts_->plan.config));
-    takeSignals(parts_->plan, *field, *parts_->array, signals);
+    if (!parts_->array) parts_->array.emplace(lineArray(parts_->plan.config));
+    computeSignals(parts_->plan, *field, *parts_->array, signals);
     signals.time = ping.time;
 }
 
@@ -258,16 +258,16 @@ bool SonarRenderer::forget() {
     return parts_->echoes->forget();
 }
 
-bool SonarRenderer::setGeometry(types::GeometryPtr geometry) { return parts_->takeScene(std::move(geometry)); }
+bool SonarRenderer::setGeometry(types::GeometryPtr geometry) { return parts_->setScene(std::move(geometry)); }
 
-void SonarRenderer::setConfig(const SonarConfig& config) { parts_->takeConfig(config); }
+void SonarRenderer::setConfig(const SonarConfig& config) { parts_->changeConfig(config); }
 
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {
     parts_->plan.setQuality(rows, columns_per_beam);
     parts_->reported.rows = rows;
     parts_->reported.columns_per_beam = columns_per_beam;
-    parts_->effects.takeQuality();
-    parts_->echoes->takeQuality();
+    parts_->effects.updateQuality();
+    parts_->echoes->updateQuality();
 }
 
 std::span<const Stage> SonarRenderer::stages() const { return parts_->stages; }

@@ -82,7 +82,7 @@ Outcome twoMegahertz(int bins, bool in_coarse_bins) {
             worst, echoes.isSound() && reported && worst <= bound ? Verdict::Pass : Verdict::Fail};
 }
 
-Outcome gainOf(double gain_db, double tolerance) {
+Outcome gain(double gain_db, double tolerance) {
     receiver::ReceiverConfig config;
     config.tvg = {.log_coefficient = 1000, .db_per_m = 1000, .max_db = gain_db};
     const Probe echoes = probe(fan(60, 40, 8, 20), lookingAt(sceneOf({levelGround(-5)})));
@@ -249,8 +249,8 @@ std::vector<StabilityCase> levelCases() {
              [] { return twoMegahertz(65536, false); }},
             {32, "2 MHz at 99 m in wide bins", "to the absorption of half a bin, and the plan warns",
              [] { return twoMegahertz(262, true); }},
-            {33, "TVG gain of 1e20", "clamped and reported; to 1e-6", [] { return gainOf(200, 1e-6); }},
-            {33, "TVG gain of 1e100", "finite: clamped at the max float", [] { return gainOf(1000, 1e-6); }},
+            {33, "TVG gain of 1e20", "clamped and reported; to 1e-6", [] { return gain(200, 1e-6); }},
+            {33, "TVG gain of 1e100", "finite: clamped at the max float", [] { return gain(1000, 1e-6); }},
             {35, "No and hardly any absorption", "continuous, to 1e-6", weakAbsorption},
             {36, "Reflectivity of 0", "no echo, but a shadow", silentSurfaces},
             {38, "Specular lobe of a mirror", "finite; level independent of resolution to 1 dB", mirrorAhead},
