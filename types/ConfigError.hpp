@@ -14,8 +14,8 @@ struct Diagnostic {
     std::string message;  ///< The value that is wrong, and the values that are allowed.
     std::string file = {};
     int line = 0, column = 0;  ///< From 1; 0: the place is unknown.
-    /** What is wrong: a value, or a key that nothing reads, which another task may have. */
-    enum class Kind : uint8_t { Value, UnknownKey };
+    /** What is wrong: a value; a key that nothing reads, which another task may have; a number that is not whole. */
+    enum class Kind : uint8_t { Value, UnknownKey, NotWhole };
     Kind kind = Kind::Value;
 
     /** Returns `file:line:column: path: message`, without unknown parts. */

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "types/Notice.hpp"
+
 namespace insonify::types {
 
 /** A list whose copies share their items. Before an item is changed through one list, it is copied if another owner has
@@ -252,7 +254,7 @@ struct Geometry {
     std::vector<Object> objects;
     std::vector<Material> materials;  ///< Never empty when there is a mesh.
     SharedList<NormalMap> normal_maps;
-    std::vector<std::string> notices;  ///< What the loader has omitted or repaired, a sentence each.
+    Notices notices;  ///< What the loader has omitted or repaired, a sentence each.
 
     size_t triangleCount() const {
         size_t count = 0;

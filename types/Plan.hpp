@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "types/Describe.hpp"
+#include "types/Notice.hpp"
 
 namespace insonify::types {
 
@@ -10,6 +11,7 @@ namespace insonify::types {
 struct Omission {
     std::string name;
     std::string reason;
+    bool not_configured = false;  ///< Whether it is omitted because nothing asks for it.
 
     static void describe(auto& self, auto& visit) {
         visit({"name", "", "what is not simulated"}, self.name);
@@ -22,18 +24,20 @@ struct Plan {
     std::vector<std::string> features;  ///< Features that are compiled into the renderer.
     std::vector<std::string> passes;    ///< Passes that run for each ping, in order.
     std::vector<Omission> omitted;
-    std::vector<std::string> notices;  ///< Warnings and choices that a user should know, a sentence each.
-    int rows = 0;                      ///< Rows of samples over the elevation aperture [1].
-    int columns_per_beam = 0;          ///< [1]
-    int slabs = 0;                     ///< Perspective images that make up the fan; 0: rays [1].
-    double predicted_error = 0;        ///< rel_l2_tvg; NaN: not predicted [1].
-    std::string device;                ///< The device that renders, with its driver; empty before the first ping.
+    Notices notices;             ///< Warnings and choices that a user should know, a sentence each.
+    int rows = 0;                ///< Rows of samples over the elevation aperture [1].
+    int columns_per_beam = 0;    ///< [1]
+    int slabs = 0;               ///< Perspective images that make up the fan; 0: rays [1].
+    double predicted_error = 0;  ///< rel_l2_tvg; NaN: not predicted [1].
+    std::string device;          ///< The device that renders, with its driver; empty before the first ping.
 
+    /** Describes what is written; notices cannot be read back. */
     static void describe(auto& self, auto& visit) {
         visit({"features", "", "compiled into what renders"}, self.features);
         visit({"passes", "", "run for each ping, in order"}, self.passes);
         visit({"omitted", "", "what is omitted, and why"}, self.omitted);
-        visit({"notices", "", "warnings and choices"}, self.notices);
+        auto lines = types::lines(self.notices);
+        visit({"notices", "", "warnings and choices"}, lines);
         visit({"rows", "1", "rows of samples over the elevation aperture"}, self.rows);
         visit({"columns_per_beam", "1", "columns of samples"}, self.columns_per_beam);
         visit({"slabs", "1", "perspective images that make up the fan; 0: rays"}, self.slabs);

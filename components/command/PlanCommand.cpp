@@ -31,7 +31,7 @@ void printPlan(const std::string& task, const types::Plan& plan) {
     for (const std::string& pass : plan.passes) console::printResult("  run: {}\n", pass);
     for (const types::Omission& omission : plan.omitted)
         console::printResult("  omitted: {}: {}\n", omission.name, omission.reason);
-    for (const std::string& notice : plan.notices) console::printResult("  {}\n", labelled(notice));
+    for (const types::Notice& notice : plan.notices) console::printResult("  {}\n", labelled(notice));
 }
 
 /** A substitute for the readers of a sonar's truth: they are not part of the run, but what the sonar computes depends

@@ -124,8 +124,8 @@ void followLog(Asked& options, std::vector<RecordedProperty> changed, types::Tim
     if (options.step)
         step = [start, &stop = stopOnSignals()](framework::Deployment& deployment) {
             const double place = deployment.status().tasks.front().playback.value().at_s;
-            const std::string date = log::readable(start + types::Time::fromSeconds(place));
-            console::printDiagnostic("{:.6f} s{}\n", place, date.ends_with(" s") ? "" : ", " + date);
+            const types::Time at = start + types::Time::fromSeconds(place);
+            console::printDiagnostic("{:.6f} s{}\n", place, log::hasDate(at) ? ", " + log::readable(at) : "");
             waitForStep(deployment, stop);
         };
     if (!options.step && live->empty()) return;

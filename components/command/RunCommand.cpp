@@ -161,13 +161,13 @@ private:
     double seconds_;
 };
 
-std::vector<std::string> without(std::vector<std::string> notices, const std::vector<std::string>& reported) {
-    std::erase_if(notices, [&](const std::string& notice) { return std::ranges::count(reported, notice) > 0; });
+types::Notices without(types::Notices notices, const types::Notices& reported) {
+    std::erase_if(notices, [&](const types::Notice& notice) { return std::ranges::count(reported, notice) > 0; });
     return notices;
 }
 
-void printNotices(const framework::TaskContext& task, const std::vector<std::string>& notices) {
-    for (const std::string& notice : notices) console::printDiagnostic("{}\n", labelled(notice, task.name() + ": "));
+void printNotices(const framework::TaskContext& task, const types::Notices& notices) {
+    for (const types::Notice& notice : notices) console::printDiagnostic("{}\n", labelled(notice, task.name() + ": "));
 }
 
 /** Checks without making a file. */
@@ -181,24 +181,22 @@ void refuseUnwritable(const std::filesystem::path& summary_file, const std::stri
         throw types::ConfigError(summary_file, "--summary", "cannot be written to");
 }
 
-std::vector<std::string> noticesOf(const framework::TaskContext& task) {
-    std::vector<std::string> all = task.notices();
+types::Notices noticesOf(const framework::TaskContext& task) {
+    types::Notices all = task.notices();
     if (const types::Plan* plan = framework::planOf(task))
-        for (const std::string& notice : without(plan->notices, all)) all.push_back(notice);
+        for (const types::Notice& notice : without(plan->notices, all)) all.push_back(notice);
     return all;
 }
 
-/** Prints a line for each task, in file order. */
-using Notices = std::vector<std::vector<std::string>>;
-
-Notices noticesOf(const framework::Deployment& deployment) {
-    Notices all;
+/** Returns those of each task, in file order. */
+std::vector<types::Notices> noticesOf(const framework::Deployment& deployment) {
+    std::vector<types::Notices> all;
     for (const auto& task : deployment.tasks()) all.push_back(noticesOf(*task));
     return all;
 }
 
 /** Prints new notices since `reported`. */
-void printNew(const framework::Deployment& deployment, const Notices& reported) {
+void printNew(const framework::Deployment& deployment, const std::vector<types::Notices>& reported) {
     for (size_t i = 0; i < reported.size(); ++i) {
         const framework::TaskContext& task = *deployment.tasks()[i];
         printNotices(task, without(noticesOf(task), reported[i]));
@@ -255,10 +253,8 @@ framework::RunResult runAll(framework::Deployment& deployment, const RunOptions&
 
 }  // namespace
 
-std::string labelled(const std::string& notice, const std::string& name) {
-    const std::string warning = "Warning: ";
-    return notice.starts_with(warning) ? "warning: " + name + notice.substr(warning.size())
-                                       : "notice: " + name + notice;
+std::string labelled(const types::Notice& notice, const std::string& name) {
+    return (notice.kind == types::Notice::Kind::Warning ? "warning: " : "notice: ") + name + notice.text;
 }
 
 int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std::filesystem::path* written_to) {
@@ -283,7 +279,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
             folder.path().string());
     callAll(deployment, options);
 
-    const Notices reported = noticesOf(deployment);
+    const std::vector<types::Notices> reported = noticesOf(deployment);
     framework::RunResult result = runAll(deployment, options, stop);
     const Summary summary(deployment, result);
     if (!options.quiet) printNew(deployment, reported);

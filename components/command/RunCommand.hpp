@@ -40,8 +40,8 @@ inline constexpr const char* recorded_origin = "--rerender";
 /** Returns the deployment with `recorded`, then `--set` and then `--ros-args` applied to it. */
 framework::DeploymentSpec loadSpec(const RunOptions& options);
 
-/** Returns "notice: NAME...", or "warning: NAME..." for a notice that begins with "Warning: ". */
-std::string labelled(const std::string& notice, const std::string& name = "");
+/** Returns "notice: NAME..." or "warning: NAME...". */
+std::string labelled(const types::Notice& notice, const std::string& name = "");
 
 /** Makes and runs a deployment, prints the result and returns the exit code. Throws types::ConfigError, with every
  *  diagnostic, before anything has started.

@@ -179,7 +179,7 @@ Json sceneReport(const std::string& file, const scene::OmitRules& rules) {
             {"animations", animationsOf(scene)},
             {"deforming", scene.animations ? scene.animations->objects.size() : 0},
             {"omitted", omitted},
-            {"not_understood", geometry.notices},
+            {"not_understood", types::lines(geometry.notices)},
             {"warnings", warnings}};
 }
 

@@ -128,7 +128,7 @@ std::string countsText(const std::map<std::string, uint64_t>& counts) {
 std::string omittedText(const std::vector<types::Omission>& omitted) {
     std::string text, absent;
     for (const types::Omission& omission : omitted)
-        if (omission.reason == "not configured")
+        if (omission.not_configured)
             absent += (absent.empty() ? "" : ", ") + omission.name;
         else
             text += fmt::format("  {}: {}\n", omission.name, omission.reason);

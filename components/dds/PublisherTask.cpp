@@ -65,8 +65,9 @@ void PublisherTask::check(types::Diagnostics& diagnostics) const {
     }
 }
 
-std::vector<std::string> PublisherTask::notices() const {
-    std::vector<std::string> notices = config->sharedFrames();
+types::Notices PublisherTask::notices() const {
+    types::Notices notices;
+    for (std::string& line : config->sharedFrames()) notices.push_back(std::move(line));
     const std::string& space = environment().names.ros_namespace;
     std::string outside;
     for (const TopicOut& topic : config->topics)
@@ -74,7 +75,7 @@ std::vector<std::string> PublisherTask::notices() const {
             outside += (outside.empty() ? "" : ", ") + topic.topic;
     if (!outside.empty())
         notices.push_back("not in the namespace " + space + ", because their names begin with a slash: " + outside);
-    std::ranges::move(drops_.summary(), std::back_inserter(notices));
+    for (std::string& line : drops_.summary()) notices.push_back(std::move(line));
     return notices;
 }
 

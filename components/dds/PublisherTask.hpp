@@ -40,7 +40,7 @@ public:
     /** Throws ConfigError for a port that no topic names, or a type that is not sent. */
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
     void check(types::Diagnostics& diagnostics) const override;
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     bool reachesOutside() const override { return true; }
 
 private:

@@ -15,9 +15,10 @@ constexpr types::Time patience{3'000'000};  ///< Time for the first pose of a to
 
 SubscriberTask::~SubscriberTask() { cleanupHook(); }
 
-std::vector<std::string> SubscriberTask::notices() const {
-    std::vector<std::string> all = drops_.summary();
-    for (std::string& line : odd_.summary()) all.push_back(std::move(line));
+types::Notices SubscriberTask::notices() const {
+    types::Notices all;
+    for (const auto* counted : {&drops_, &odd_})
+        for (std::string& line : counted->summary()) all.push_back(std::move(line));
     return all;
 }
 

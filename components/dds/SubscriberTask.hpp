@@ -32,7 +32,7 @@ public:
     using ListenerTask::ListenerTask;
     ~SubscriberTask() override;  // ends the subscriptions before their node
 
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     double wakeAfter() const override { return 1; }
 
 private:

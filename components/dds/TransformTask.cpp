@@ -64,9 +64,10 @@ void TransformConfig::check(types::Diagnostics& diagnostics) const {
     }
 }
 
-std::vector<std::string> TransformTask::notices() const {
-    std::vector<std::string> all = drops_.summary();
-    for (std::string& line : gaps_.summary()) all.push_back(std::move(line));
+types::Notices TransformTask::notices() const {
+    types::Notices all;
+    for (const auto* counted : {&drops_, &gaps_})
+        for (std::string& line : counted->summary()) all.push_back(std::move(line));
     return all;
 }
 

@@ -76,7 +76,7 @@ class TransformTask final : public pose::ListenerTask<TransformConfig, &Transfor
 public:
     using ListenerTask::ListenerTask;
 
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     /** Wakes up for static chains. */
     double wakeAfter() const override { return 0.1; }
 

@@ -59,7 +59,7 @@ Json toJson(const types::Plan& plan) {
               {"slabs", plan.slabs},
               {"predicted_error", plan.predicted_error}}},
             {"device", plan.device},
-            {"notices", plan.notices}};
+            {"notices", types::lines(plan.notices)}};
 }
 
 }  // namespace insonify::deployer

@@ -113,14 +113,15 @@ Simulation::Simulation(const std::string& file, SimulationOptions options) : reg
     start();
 }
 
-std::vector<std::string> Simulation::notices() const {
+types::Notices Simulation::notices() const {
     const std::unique_lock use(in_use_, std::try_to_lock);
     if (!use) throw std::runtime_error(busy);
-    std::vector<std::string> all;
-    const auto add = [&](const framework::TaskContext& task, const std::vector<std::string>& notices) {
-        for (const std::string& notice : notices)
-            if (const std::string text = task.name() + ": " + notice; std::ranges::count(all, text) == 0)
-                all.push_back(text);
+    types::Notices all;
+    const auto add = [&](const framework::TaskContext& task, const types::Notices& notices) {
+        for (const types::Notice& notice : notices)
+            if (const types::Notice named(task.name() + ": " + notice.text, notice.kind);
+                std::ranges::count(all, named) == 0)
+                all.push_back(named);
     };
     for (const auto& task : deployment_->tasks()) {
         add(*task, task->notices());

@@ -113,7 +113,7 @@ public:
     bool hasRangeImages(size_t ping) const { return readers_[ping]->range_image.connected(); }
     /** Returns the notices of all tasks and their plans, "task: notice". Plans have theirs from the first ping on.
      *  Throws std::runtime_error while another thread steps. */
-    std::vector<std::string> notices() const;
+    types::Notices notices() const;
     double period() const { return period_; }  ///< [s]
     double time() const { return time_; }      ///< Default time of the next step; for any thread [s].
 

@@ -25,9 +25,9 @@ void DeviceTask::check(types::Diagnostics& diagnostics) const {
             {"", "a driver uses the wall clock, which lockstep does not follow; set schedule: realtime"});
 }
 
-std::vector<std::string> DeviceTask::notices() const {
+types::Notices DeviceTask::notices() const {
     if (!network_) return {};
-    std::vector<std::string> all;
+    types::Notices all;
     for (const std::string& end : network_->names()) all.push_back("listens on " + end);
     if (const uint64_t lost = network_->dropped(); lost > 0)
         all.push_back(std::to_string(lost) + " messages dropped: replaced by newer ones, or no route to the receiver");

@@ -36,7 +36,7 @@ public:
     double wakeAfter() const override { return 0.1; }
     void check(types::Diagnostics& diagnostics) const override;
     /** Returns the addresses for clients, and the messages not sent. */
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     /** For tests with port 0. */
     uint16_t portOf(End end) const { return network_->portOf(end); }
 

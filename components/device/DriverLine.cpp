@@ -17,7 +17,7 @@
 namespace insonify::device {
 namespace {
 
-[[noreturn]] void fail(int error) { throw LineError(std::generic_category().message(error)); }
+[[noreturn]] void fail(int error) { throw LineError(std::generic_category().message(error), error); }
 
 struct Freed {
     void operator()(addrinfo* list) const { freeaddrinfo(list); }

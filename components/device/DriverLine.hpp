@@ -11,7 +11,8 @@ namespace insonify::device {
 
 /** The reason why a line cannot be opened, or has broken. */
 struct LineError : std::runtime_error {
-    using std::runtime_error::runtime_error;
+    explicit LineError(const std::string& reason, int number = 0) : std::runtime_error(reason), error_number(number) {}
+    int error_number;  ///< Of the system; 0: unknown.
 };
 
 /** A driver's end of a line to a device. No call takes longer than its time limit. */

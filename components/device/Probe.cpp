@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <set>
 #include <string_view>
@@ -284,19 +285,19 @@ ProbeAddress probeAddress(const std::string& text) {
 
 ProbeOutcome ask(const Probe& probe, const ProbeAddress& address, std::chrono::milliseconds patience) {
     ProbeOutcome outcome{probe.protocol, nameOf(probe, address), "", "", ""};
-    bool opened = false;
+    bool may_be_there = false;
     try {
         const DriverLine line = lineFor(probe, address, patience);
-        opened = true;
+        may_be_there = true;
         const bool overhears = probe.line == Probe::Line::Broadcast;
         const auto device = overhears ? overhear(probe, line, address.host, patience) : converse(probe, line, patience);
         outcome.device = device.value_or("");
         if (outcome.device.empty()) outcome.failure = "no answer";
     } catch (const LineError& error) {
         outcome.failure = error.what();
+        may_be_there = may_be_there && error.error_number != ECONNREFUSED;
     }
-    if (!outcome.failure.empty())
-        outcome.advice = opened && outcome.failure != "Connection refused" ? probe.silence : nobody_there;
+    if (!outcome.failure.empty()) outcome.advice = may_be_there ? probe.silence : nobody_there;
     return outcome;
 }
 

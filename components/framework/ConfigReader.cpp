@@ -164,7 +164,7 @@ void ConfigReader::report(const YAML::Node& node, const std::string& path, const
 
 void ConfigReader::report(const YAML::Node& block, const std::string& path, const types::Diagnostics& diagnostics) {
     for (const types::Diagnostic& each : diagnostics)
-        report(nodeAt(block, each.path), each.path.empty() ? path : below(path, each.path), each.message);
+        report(nodeAt(block, each.path), each.path.empty() ? path : below(path, each.path), each.message, each.kind);
 }
 
 bool ConfigReader::isMap(const YAML::Node& node, const std::string& path) {
@@ -232,7 +232,10 @@ bool ConfigReader::whole(const YAML::Node& node, const std::string& path, const 
                          uint64_t highest, bool& negative, uint64_t& magnitude) {
     double wide = 0;
     if (!number(node, path, field, wide, "must be a whole number")) return false;
-    if (wide != std::floor(wide)) return report(node, path, "is " + shown(node) + "; must be a whole number"), false;
+    if (wide != std::floor(wide)) {
+        report(node, path, "is " + shown(node) + "; must be a whole number", types::Diagnostic::Kind::NotWhole);
+        return false;
+    }
     std::string_view digits = quantityOf(node) ? std::string_view("0.") : node.Scalar();
     negative = wide < 0;
     if (digits.starts_with('-') || digits.starts_with('+')) digits.remove_prefix(1);

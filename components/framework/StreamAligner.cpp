@@ -87,8 +87,8 @@ void StreamAligner::flush() {
     while (AlignedPortBase* port = earliest()) handOver(*port);
 }
 
-std::vector<std::string> StreamAligner::notices() const {
-    std::vector<std::string> notices;
+types::Notices StreamAligner::notices() const {
+    types::Notices notices;
     if (newest_.round > 0)
         notices.push_back(
             fmt::format("stamps went back by more than {:g} s {} times; the samples after each are in the order of "

@@ -8,6 +8,7 @@
 
 #include "components/framework/Port.hpp"
 #include "types/Elapsed.hpp"
+#include "types/Notice.hpp"
 
 namespace insonify::framework {
 
@@ -92,7 +93,7 @@ public:
     void update();               ///< Takes new samples of the ports and hands over those that are due.
     void flush();                ///< Hands over all waiting samples, when no more will arrive.
     /** Returns the notices of all ports; see AlignedPortBase::notice. */
-    std::vector<std::string> notices() const;
+    types::Notices notices() const;
 
     // For its ports only.
     void enlist(AlignedPortBase* port) { ports_.push_back(port); }

@@ -76,6 +76,11 @@ class OutputPort;
 class PropertiesBase;
 class OperationBase;
 
+/** An error of TaskContext::makeOutput() that TaskContext::check() reports as well: a log that cannot be read. */
+struct ReportedByCheck : types::ConfigError {
+    using ConfigError::ConfigError;
+};
+
 /** A component: ports, properties and operations as members, and the hooks of the Orocos life cycle.
  *
  *      PreOperational -configure-> Stopped -start-> Running -stop-> Stopped -cleanup-> PreOperational
@@ -126,14 +131,15 @@ public:
      *  task's own. */
     OperationBase* operation(const std::string& name);
 
-    /** Makes a port that exists only because a connection names it, see DynamicPorts.hpp; null refuses. */
+    /** Makes a port that exists only because a connection names it, see DynamicPorts.hpp; null refuses. Throws
+     *  ReportedByCheck for an error that check() reports as well. */
     virtual InputPortBase* makeInput(const std::string& /*port*/, OutputPortBase& /*source*/) { return nullptr; }
     virtual OutputPortBase* makeOutput(const std::string& /*port*/) { return nullptr; }
 
     /** Reports errors that are visible without configuring (missing files...); paths as in types::Diagnostic. */
     virtual void check(types::Diagnostics& /*diagnostics*/) const {}
     /** Returns notices for the user (a mesh without triangles, dropped vertices). Valid after configure. */
-    virtual std::vector<std::string> notices() const { return {}; }
+    virtual types::Notices notices() const { return {}; }
     /** True once a source has no more samples: a lockstep run ends when all sources have finished. */
     virtual bool finished() const { return false; }
     /** Whether the task communicates outside its deployment, over a network or with a device. */

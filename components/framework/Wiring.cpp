@@ -37,13 +37,6 @@ std::vector<std::string> topLevel(const PropertiesBase& properties) {
     return names;
 }
 
-/** Whether the task's own check finds this error: a log that cannot be read, whose streams are ports. */
-bool reportsItself(const TaskContext& task, const std::string& error) {
-    types::Diagnostics own;
-    task.check(own);
-    return std::ranges::any_of(own, [&](const types::Diagnostic& each) { return each.message == error; });
-}
-
 /** Returns each name once, in the order of first appearance. */
 std::vector<std::string> unique(const std::vector<std::string>& names) {
     std::vector<std::string> all;
@@ -291,9 +284,9 @@ OutputPortBase* Wiring::findOutput(const ConnectionSpec& connection) {
         std::ranges::copy(aliasesOfPorts(*spec_.task(task->name()), true), std::back_inserter(known));
         report(place, connection.path + ".from",
                fmt::format("{} has no output port {}; {}", task->name(), name, suggestion(name, known)));
+    } catch (const ReportedByCheck&) {  // by checkTasks()
     } catch (const std::exception& error) {
-        if (!isUnreliable(*task) && !reportsItself(*task, error.what()))
-            report(place, connection.path + ".from", error.what());
+        if (!isUnreliable(*task)) report(place, connection.path + ".from", error.what());
     }
     return nullptr;
 }

@@ -45,8 +45,9 @@ void PoseConfig::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"world", "must be given for the poses of entities, or pose_topic, but not both"});
 }
 
-std::vector<std::string> PoseTask::notices() const {
-    std::vector<std::string> all = drops_.summary();
+types::Notices PoseTask::notices() const {
+    types::Notices all;
+    for (std::string& line : drops_.summary()) all.push_back(std::move(line));
     if (const uint64_t lost = inbox_ ? inbox_->lost() : 0; lost > 0)
         all.push_back(std::to_string(lost) + " messages lost, replaced by newer messages");
     return all;

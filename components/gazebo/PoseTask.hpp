@@ -26,7 +26,7 @@ class PoseTask final : public pose::ListenerTask<PoseConfig, &PoseConfig::bodies
 public:
     using ListenerTask::ListenerTask;
 
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     /** Wakes the task for messages that arrived before it ran [s]. */
     double wakeAfter() const override { return 0.5; }
 

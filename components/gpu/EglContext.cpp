@@ -351,11 +351,13 @@ void EglContext::requireThread() const {
         throw GlError("another OpenGL context has been current on this thread since: use one at a time on a thread");
 }
 
+bool EglContext::missesCard() const { return software_ && wanted_ == "auto" && !cardOfSystem().empty(); }
+
 std::string EglContext::fallback() const {
     if (!software_ || wanted_ != "auto") return {};
     const std::string card = cardOfSystem();
     if (card.empty()) return "rasterised in software by " + renderer_ + ": there is no graphics card";
-    return "Warning: rasterised in software by " + renderer_ + ": the system has a graphics card (" + card +
+    return "rasterised in software by " + renderer_ + ": the system has a graphics card (" + card +
            "), but EGL gives no OpenGL 4.5 on it; install its driver's EGL (NVIDIA: libegl-nvidia0, in a container "
            "NVIDIA_DRIVER_CAPABILITIES=graphics), or set device: software";
 }

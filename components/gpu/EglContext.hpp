@@ -93,9 +93,10 @@ public:
     const std::string& driver() const { return driver_; }      ///< "4.5 (Core Profile) Mesa 22.3.6".
     const Limits& limits() const { return limits_; }
     bool isSoftware() const { return software_; }
-    /** Returns the reason for rasterising in software without a request for it, a sentence that may begin with
-     *  "Warning: "; empty otherwise. */
+    /** Returns why it rasterises in software without a request for it; empty otherwise. */
     std::string fallback() const;
+    /** Returns whether it rasterises in software although the system has a graphics card, which is worth a warning. */
+    bool missesCard() const;
     /** Return the programs of this context. */
     Programs& programs() { return *programs_; }
     const Programs& programs() const { return *programs_; }

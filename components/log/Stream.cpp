@@ -87,9 +87,11 @@ void restoreBins(const Metadata& metadata, types::SampleRoom sample) {
     std::visit(restore, sample);
 }
 
+bool hasDate(types::Time time) { return time.microseconds / 1'000'000 >= year_2000; }
+
 std::string readable(types::Time time) {
     const int64_t seconds = time.microseconds / 1'000'000;
-    if (seconds < year_2000) return fmt::format("{:.6f} s", time.seconds());
+    if (!hasDate(time)) return fmt::format("{:.6f} s", time.seconds());
     return fmt::format("{:%Y-%m-%d %H:%M:%S}.{:06}", fmt::gmtime(static_cast<std::time_t>(seconds)),
                        time.microseconds % 1'000'000);
 }

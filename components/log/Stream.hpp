@@ -93,6 +93,7 @@ struct FormatError : std::runtime_error {
 
 /** Returns "2026-11-22 12:55:44.500000" (UTC) for a time of this century, "2.500000 s" for a time since a start. */
 std::string readable(types::Time time);
+bool hasDate(types::Time time);  ///< Whether readable() is a date.
 
 /** Parses a date of that form, to the second or finer, or seconds after `start`. Throws ConfigError that names
  *  `what`. */

@@ -62,10 +62,10 @@ framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framewo
     throw types::ConfigError("", "", source.path() + " is " + source.typeName() + ", which a log cannot hold");
 }
 
-std::vector<std::string> LoggerTask::notices() const {
-    std::vector<std::string> all;
+types::Notices LoggerTask::notices() const {
+    types::Notices all;
     if (inputs_.empty()) all.emplace_back("nothing is connected to it: the log will be empty");
-    all.insert(all.end(), frame_notices_.begin(), frame_notices_.end());
+    for (const std::string& text : frame_notices_) all.push_back(text);
     if (health_.lost > 0)
         all.push_back(fmt::format("{} samples are in no file, because it could not be written {} times; the last: {}",
                                   health_.lost, health_.outages, health_.failure));

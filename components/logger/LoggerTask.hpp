@@ -47,7 +47,7 @@ public:
 
     /** Throws ConfigError for a type that a log cannot store. */
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
 
 private:
     /** The stream of an input. */

@@ -18,8 +18,8 @@ std::string textOf(const Frame& frame) {
 
 }  // namespace
 
-std::vector<std::string> PoseTask::notices() const {
-    std::vector<std::string> all;
+types::Notices PoseTask::notices() const {
+    types::Notices all;
     if (network_)
         for (const std::string& end : network_->names()) all.push_back("listens on " + end);
     for (const auto* counted : {&drops_, &others_})

@@ -31,7 +31,7 @@ class PoseTask final : public pose::ListenerTask<PoseConfig, &PoseConfig::bodies
 public:
     using ListenerTask::ListenerTask;
 
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     /** Wakes the task for datagrams that arrived before it ran, and for requests [s]. */
     double wakeAfter() const override { return 0.5; }
     /** Returns the UDP port, for tests with port 0. */

@@ -134,7 +134,7 @@ void await(pid_t process, const std::filesystem::path& file, const ReadLimits& l
 }
 
 /** Returns the meshes of a file at the same indices; without triangles if no triangle is usable. */
-std::vector<types::Mesh> meshesOf(FileMeshes& from, std::vector<std::string>& notices) {
+std::vector<types::Mesh> meshesOf(FileMeshes& from, types::Notices& notices) {
     std::vector<types::Mesh> meshes(from.parts.size());
     DroppedTriangles dropped;
     for (size_t i = 0; i < meshes.size(); ++i) {

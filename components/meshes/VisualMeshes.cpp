@@ -46,8 +46,8 @@ const types::GeometryPtr& VisualMeshes::readOnce(const std::filesystem::path& pa
     FileRead& read = known->second;
     if (is_new) try {
             read.geometry = readMeshFile(path, MeshAxes::AsStored);
-            for (const std::string& notice : read.geometry->notices)
-                geometry_.notices.push_back(fmt::format("{}: {}", path.string(), notice));
+            for (const types::Notice& notice : read.geometry->notices)
+                geometry_.notices.push_back({fmt::format("{}: {}", path.string(), notice.text), notice.kind});
         } catch (const types::ConfigError& failure) {
             read.failure = failure;
         }

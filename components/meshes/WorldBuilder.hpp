@@ -92,7 +92,7 @@ public:
     /** Adds a notice with the reason why a visual is omitted. */
     void leaveOut(const std::string& visual, const std::string& why);
     void notice(std::string text) { geometry_.notices.push_back(std::move(text)); }
-    std::vector<std::string>& notices() { return geometry_.notices; }
+    types::Notices& notices() { return geometry_.notices; }
     const ModelPaths& paths() const { return paths_; }
 
     /** Finishes and returns the scene. */

@@ -4,9 +4,9 @@
 
 namespace insonify::output {
 
-std::vector<std::string> PictureHealth::notices() const {
+types::Notices PictureHealth::notices() const {
     if (lost == 0) return {};
-    return {"Warning: " + std::to_string(lost) + " pictures are in no file; the last reason: " + failure};
+    return {types::warning(std::to_string(lost) + " pictures are in no file; the last reason: " + failure)};
 }
 
 PictureWriter::PictureWriter(PictureFiles files, AtPictureFailure at_failure)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "components/output/PictureFiles.hpp"
+#include "types/Notice.hpp"
 
 namespace insonify::output {
 
@@ -24,7 +25,7 @@ struct PictureHealth {
     std::string failure;  ///< The last reason.
 
     /** Returns a warning if pictures are lost. */
-    std::vector<std::string> notices() const;
+    types::Notices notices() const;
 };
 
 /** Writes pictures to files on a separate thread. The queue is short; when it is full, the caller waits, so no picture

@@ -14,7 +14,7 @@ namespace insonify::output {
 class RecordingTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
-    std::vector<std::string> notices() const override { return health_.notices(); }
+    types::Notices notices() const override { return health_.notices(); }
 
 protected:
     /** Loads the libraries that a configuration's files need, so that a run does not begin without them: in

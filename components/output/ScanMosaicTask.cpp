@@ -56,13 +56,13 @@ void ScanMosaicTask::describeMap(std::string& text) const {
     if (omitted_ > 0) fmt::format_to(out, ", {} not shown because they have no usable pose", omitted_);
 }
 
-std::vector<std::string> ScanMosaicTask::notices() const {
-    std::vector<std::string> notices = aligner_.notices();
+types::Notices ScanMosaicTask::notices() const {
+    types::Notices notices = aligner_.notices();
     std::ranges::move(PictureTask::notices(), std::back_inserter(notices));
     if (held_ + omitted_ > 0) {
         std::string map;
         describeMap(map);
-        notices.push_back("Warning: " + map);
+        notices.push_back(types::warning(map));
     }
     return notices;
 }

@@ -30,7 +30,7 @@ public:
 
     framework::InputPort<types::Pose> pose{this, "pose", "body in the world: x north, y west, z up"};
 
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
 
 private:
     bool startHook() override;

@@ -27,11 +27,11 @@ void TruthImageTask::show(const types::Sonar& sample) {
     take(sample);
 }
 
-std::vector<std::string> TruthImageTask::notices() const {
-    std::vector<std::string> notices = aligner_.notices();
+types::Notices TruthImageTask::notices() const {
+    types::Notices notices = aligner_.notices();
     std::ranges::move(PictureTask::notices(), std::back_inserter(notices));
     if (omitted_ > 0)
-        notices.push_back(fmt::format("Warning: {} pings not shown because their truth is missing", omitted_));
+        notices.push_back(types::warning(fmt::format("{} pings not shown because their truth is missing", omitted_)));
     return notices;
 }
 

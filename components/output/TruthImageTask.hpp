@@ -20,7 +20,7 @@ public:
 
     framework::InputPort<types::SonarTruthPtr> truth{this, "truth", "objects in the pings' bins"};
 
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
 
 private:
     bool startHook() override;

@@ -75,12 +75,14 @@ void XtfTask::stopHook() {
     file_.reset();
 }
 
-std::vector<std::string> XtfTask::notices() const {
-    std::vector<std::string> notices = aligner_.notices();
+types::Notices XtfTask::notices() const {
+    types::Notices notices = aligner_.notices();
     if (without_pose_ > 0)
-        notices.push_back("Warning: " + std::to_string(without_pose_) + " pings of " + config->file + " have no pose");
+        notices.push_back(
+            types::warning(std::to_string(without_pose_) + " pings of " + config->file + " have no pose"));
     if (lost_ > 0)
-        notices.push_back("Warning: " + std::to_string(lost_) + " pings are not in " + config->file + ": " + failure_);
+        notices.push_back(
+            types::warning(std::to_string(lost_) + " pings are not in " + config->file + ": " + failure_));
     return notices;
 }
 

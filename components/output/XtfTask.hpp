@@ -45,7 +45,7 @@ public:
     framework::InputPort<types::Range> altitude{this, "altitude", "height above the bottom, the newest is used",
                                                 framework::Need::Optional};
 
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     void check(types::Diagnostics& diagnostics) const override;
 
 private:

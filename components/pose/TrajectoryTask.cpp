@@ -82,19 +82,19 @@ bool TrajectoryTask::configureHook() {
     return true;
 }
 
-std::vector<std::string> TrajectoryTask::notices() const {
-    std::vector<std::string> notices;
-    if (const std::string wait = waitText(); !wait.empty()) notices.push_back(wait);
+types::Notices TrajectoryTask::notices() const {
+    types::Notices notices;
+    if (const std::string wait = waitText(); !wait.empty()) notices.push_back(types::warning(wait));
     if (trajectory_ && !config->times.time_unit && trajectory_->timeUnit() != TimeUnit::Seconds)
         notices.push_back(
             fmt::format("the times of the trajectory are taken as {}, as they are after 1973 in this unit "
                         "(time_unit)",
                         nameOf(trajectory_->timeUnit())));
     if (const size_t odd = trajectory_ ? trajectory_->oddLengths() : 0; odd > 0)
-        notices.push_back(fmt::format(
-            "Warning: {} of {} quaternions of {} have a length that is not 1, and are made 1: are their parts degrees, "
+        notices.push_back(types::warning(fmt::format(
+            "{} of {} quaternions of {} have a length that is not 1, and are made 1: are their parts degrees, "
             "or in another order?",
-            odd, trajectory_->stamps().size(), *config->file));
+            odd, trajectory_->stamps().size(), *config->file)));
     if (held_ > 0)
         notices.push_back(
             fmt::format("the trajectory ended at {:g} s; {} poses after it are its last one (loop: true repeats it)",
@@ -106,8 +106,7 @@ std::string TrajectoryTask::waitText() const {
     const double begin = trajectory_ && trajectory_->stamps().size() > 1 ? trajectory_->stamps().front().time : 0;
     if (!(begin > 0)) return "";
     return fmt::format(
-        "Warning: the trajectory begins {:g} s after the start of the run, and the vehicle stands at its first pose "
-        "until "
+        "the trajectory begins {:g} s after the start of the run, and the vehicle stands at its first pose until "
         "then; start: first_pose begins it with the run",
         begin);
 }

@@ -34,7 +34,7 @@ public:
     bool finished() const override { return finished_; }
     /** Returns the time until which the vehicle stays at its first pose, how many quaternions of the file have an odd
      *  length, and how many poses after the last stamp were that of the last stamp. */
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     /** Returns the trajectory of the properties, configured or not. Throws types::ConfigError as
      *  Trajectory::fromCsv. */
     Trajectory trajectory() const;

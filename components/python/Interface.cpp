@@ -20,6 +20,13 @@ namespace {
 
 using console::Json;
 
+Json noticesIn(const deployer::Simulation& simulation) {
+    Json all = Json::array();
+    for (const types::Notice& notice : simulation.notices())
+        all.push_back({{"text", notice.text}, {"is_warning", notice.kind == types::Notice::Kind::Warning}});
+    return all;
+}
+
 /** Something that steps, with threads, which only the process that made it may use. */
 class Stepped : public Handle {
 public:
@@ -41,7 +48,7 @@ public:
         return {{"poses", simulation.poses()},
                 {"pings", simulation.pings()},
                 {"period", simulation.period()},
-                {"notices", simulation.notices()}};
+                {"notices", noticesIn(simulation)}};
     }
     deployer::Simulation simulation;
 };
@@ -168,7 +175,7 @@ public:
                 {"pings", first.pings()},
                 {"period", first.period()},
                 {"seeds", seeds_},
-                {"notices", first.notices()}};
+                {"notices", noticesIn(first)}};
     }
     std::unique_ptr<Handle> step(const double* poses) {
         std::vector<std::map<std::string, types::Pose>> at(batch.size());

@@ -22,7 +22,7 @@ const char* insonify_facts(const Handle* handle);
  *  SIZE_MAX: failed. */
 size_t insonify_arrays(const Handle* handle, Array* arrays, size_t room);
 
-/** Makes a simulation. Its facts: `{poses, pings, period, notices}`.
+/** Makes a simulation. Its facts: `{poses, pings, period, notices: [{text, is_warning}]}`.
  *  @param period [s]; null: that of the poses */
 Handle* insonify_simulation(const char* deployment, uint64_t seed, const char* const* overrides, size_t override_count,
                             int truth, const double* period);

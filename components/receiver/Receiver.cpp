@@ -280,8 +280,8 @@ std::string Receiver::text(const Flaws& flaws, const types::Sonar& intensities) 
         100 * flaws.saturated, maxCode(), loudest, code_.full_scale_db);
 }
 
-std::vector<std::string> Receiver::notices() const {
-    std::vector<std::string> all;
+types::Notices Receiver::notices() const {
+    types::Notices all;
     if (const auto r = config_.tvg ? clampRange(*config_.tvg, range_max_) : std::nullopt)
         all.push_back(
             fmt::format("tvg reaches its max_db of {:g} dB at {:.4g} m and stays there", config_.tvg->max_db, *r));

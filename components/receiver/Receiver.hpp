@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "types/Describe.hpp"
+#include "types/Notice.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::receiver {
@@ -173,7 +174,7 @@ public:
     /** Returns whether the receiver leaves every ping unchanged. */
     bool isNeutral() const;
     /** Returns notices for the user: the range of the gain's clamp, and configuration without effect. */
-    std::vector<std::string> notices() const;
+    types::Notices notices() const;
 
 private:
     /** The properties of a ping that the tables depend on. */

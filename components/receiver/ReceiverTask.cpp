@@ -6,9 +6,7 @@
 
 namespace insonify::receiver {
 
-std::vector<std::string> ReceiverTask::notices() const {
-    return receiver_ ? receiver_->notices() : std::vector<std::string>{};
-}
+types::Notices ReceiverTask::notices() const { return receiver_ ? receiver_->notices() : types::Notices{}; }
 
 bool ReceiverTask::configureHook() {
     receiver_.emplace(*config);

@@ -34,7 +34,7 @@ public:
     framework::InputPort<types::SonarSettings> settings{
         this, "settings", "settings whose gain_db applies from the next ping", framework::Need::Optional};
 
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
 
 private:
     bool configureHook() override;

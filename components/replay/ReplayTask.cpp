@@ -22,8 +22,7 @@ std::string gapText(const std::vector<log::SampleRef>& samples, const log::Logge
     }
     if (!(gap.seconds() > long_gap)) return "";
     return fmt::format(
-        "Warning: the log has no sample for {:.6g} s (its stamps may be of two clocks), which its replay waits for; "
-        "from: "
+        "the log has no sample for {:.6g} s (its stamps may be of two clocks), which its replay waits for; from: "
         "{:.6f} begins behind it, and pace: 0 does not wait",
         gap.seconds(), after.seconds());
 }
@@ -68,7 +67,11 @@ std::optional<types::Playback> ReplayTask::playback() const {
 }
 
 framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
-    open();
+    try {
+        open();
+    } catch (const types::ConfigError& error) {
+        throw framework::ReportedByCheck(error.diagnostics());
+    }
     const size_t index = log_->indexOf(stream);
     const log::Stream& recorded = log_->streams()[index];
     by_stream_[index] =
@@ -92,10 +95,10 @@ void ReplayTask::check(types::Diagnostics& diagnostics) const {
     }
 }
 
-std::vector<std::string> ReplayTask::notices() const {
+types::Notices ReplayTask::notices() const {
     if (!log_) return {};
-    std::vector<std::string> notices;
-    if (!gap_text_.empty()) notices.push_back(gap_text_);
+    types::Notices notices;
+    if (!gap_text_.empty()) notices.push_back(types::warning(gap_text_));
     if (!log_->complete())
         notices.push_back(log_->path().string() + ": " + log_->diagnostic() + "; played up to there");
     for (size_t i = 0; i < by_stream_.size(); ++i) {

@@ -75,7 +75,7 @@ public:
     /** Throws ConfigError when the log cannot be read or has no such stream; null when the stream's type is unknown. */
     framework::OutputPortBase* makeOutput(const std::string& stream) override;
     void check(types::Diagnostics& diagnostics) const override;
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     bool finished() const override { return finished_; }
     std::optional<types::Time> nextTime() const override;
     /** Returns the world time in the log of the next sample, of all streams or one; none: there is no more. Between

@@ -63,7 +63,7 @@ public:
     /** Returns whether no animation plays and no mesh deforms. */
     bool isIdle() const { return tracks_.empty() && live_.empty(); }
     /** Returns the animations that play, and those omitted because another animation moves the same property. */
-    const std::vector<std::string>& notices() const { return notices_; }
+    const types::Notices& notices() const { return notices_; }
 
     /** Sets the time within an animation; it no longer follows the time of the run.
      *  @param rate  seconds of the animation per second of the run */
@@ -118,7 +118,7 @@ private:
     std::vector<Playing> playing_;
     std::vector<Track> tracks_;
     std::vector<Live> live_;
-    std::vector<std::string> notices_;
+    types::Notices notices_;
     std::vector<bool> is_mover_;             ///< Whether an animation or a port may move each node.
     std::vector<int> involved_;              ///< Movers and all nodes below them, parents first.
     std::vector<int> slots_;                 ///< Index of each node in Animations::nodes, -1 without a track.

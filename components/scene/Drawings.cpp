@@ -269,7 +269,7 @@ Scene withoutOmitted(const Scene& scene, const OmitRules& rules) {
     return result;
 }
 
-void addOmissions(const Scene& scene, std::vector<std::string>& notices) {
+void addOmissions(const Scene& scene, types::Notices& notices) {
     constexpr size_t shown = 5;
     std::map<std::string, std::vector<std::string>> names;  // by reason
     for (const types::Omission& omission : scene.omitted) names[omission.reason].push_back(omission.name);
@@ -279,7 +279,7 @@ void addOmissions(const Scene& scene, std::vector<std::string>& notices) {
         notices.push_back(fmt::format("omitted: {}{}: {}", fmt::join(all, ", "),
                                       more > 0 ? fmt::format(" and {} more", more) : "", reason));
     }
-    for (const std::string& warning : scene.warnings) notices.push_back("Warning: " + warning);
+    for (const std::string& warning : scene.warnings) notices.push_back(types::warning(warning));
 }
 
 }  // namespace insonify::scene

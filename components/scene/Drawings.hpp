@@ -36,6 +36,6 @@ bool matches(std::string_view pattern, std::string_view name);
 Scene withoutOmitted(const Scene& scene, const OmitRules& rules);
 
 /** Adds the scene's omissions, one sentence for each reason, and its warnings to notices. */
-void addOmissions(const Scene& scene, std::vector<std::string>& notices);
+void addOmissions(const Scene& scene, types::Notices& notices);
 
 }  // namespace insonify::scene

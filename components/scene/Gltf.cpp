@@ -328,7 +328,7 @@ private:
     }
 
     void addNotices() {
-        std::vector<std::string>& notices = geometry_.notices;
+        types::Notices& notices = geometry_.notices;
         notices.insert(notices.end(), gltf_.notices.begin(), gltf_.notices.end());
         const auto count = [&notices](size_t number, const char* what) { addCount(number, what, notices); };
         const Omissions& omissions = meshes_.omissions();

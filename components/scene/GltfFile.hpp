@@ -9,13 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "types/Notice.hpp"
+
 namespace insonify::scene {
 
 /** A glTF file as parsed; encoded images are kept in Image::image, not decoded. */
 struct GltfFile {
     std::string name;  ///< For messages.
     tinygltf::Model model;
-    std::vector<std::string> notices;
+    types::Notices notices;
 };
 
 /** Reads a .gltf or .glb and the files that it refers to. In the model, only the extensions are checked.

@@ -152,8 +152,8 @@ std::optional<VertexRounding> roundingOf(const types::Mesh& mesh) {
 
 namespace {
 
-/** Returns a notice that names the objects with rounded meshes; empty: none. */
-std::string roundingNotice(const types::Geometry& geometry) {
+/** Returns a warning that names the objects with rounded meshes; none: there are none. */
+std::optional<types::Notice> roundingNotice(const types::Geometry& geometry) {
     constexpr size_t shown = 5;
     std::vector<std::optional<VertexRounding>> known(geometry.meshes.size());
     for (size_t i = 0; i < known.size(); ++i) known[i] = roundingOf(geometry.meshes[i]);
@@ -168,22 +168,22 @@ std::string roundingNotice(const types::Geometry& geometry) {
     if (names.empty()) return {};
     const size_t more = names.size() - std::min(shown, names.size());
     names.resize(names.size() - more);
-    return fmt::format(
-        "Warning: vertices far from the origin of their own mesh have coarse coordinates, which turns small triangles "
+    return types::warning(fmt::format(
+        "vertices far from the origin of their own mesh have coarse coordinates, which turns small triangles "
         "and changes their echoes: {}{}, up to {:.4g} m away in steps of {:.2g} mm: {:.3g} % of the surface is turned "
         "by up to {:.2g} deg; keep vertices near the origin of the file, and place the object by its node, its link "
         "or `placement`",
         fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "", worst.farthest, 1e3 * worst.step,
-        100 * worst.share, types::degrees(worst.tilt));
+        100 * worst.share, types::degrees(worst.tilt)));
 }
 
 }  // namespace
 
 void noteRounding(types::GeometryPtr& geometry) {
-    std::string notice = roundingNotice(*geometry);
-    if (notice.empty()) return;
+    auto notice = roundingNotice(*geometry);
+    if (!notice) return;
     auto noted = std::make_shared<types::Geometry>(*geometry);
-    noted->notices.push_back(std::move(notice));
+    noted->notices.push_back(std::move(*notice));
     geometry = std::move(noted);
 }
 

@@ -250,11 +250,11 @@ std::string SceneTask::indivisible() const {
                           : "";
 }
 
-std::vector<std::string> SceneTask::notices() const {
-    std::vector<std::string> all = geometry_ ? geometry_->notices : std::vector<std::string>{};
+types::Notices SceneTask::notices() const {
+    types::Notices all = geometry_ ? geometry_->notices : types::Notices{};
     if (scene_) addOmissions(*scene_, all);
     if (!lay_.empty()) all.push_back(lay_);
-    if (!side_.empty()) all.push_back("Warning: " + side_);
+    if (!side_.empty()) all.push_back(types::warning(side_));
     if (animator_) all.insert(all.end(), animator_->notices().begin(), animator_->notices().end());
     return all;
 }

@@ -75,7 +75,7 @@ public:
 
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
     void check(types::Diagnostics& diagnostics) const override;
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     double wakeAfter() const override;
     std::string indivisible() const override;
     bool waits() const override { return is_stale_ && newest_came_; }

@@ -83,11 +83,11 @@ glm::vec3 tangent(glm::vec3 along, glm::vec3 normal) {
 
 }  // namespace
 
-void addCount(size_t number, const char* what, std::vector<std::string>& notices) {
+void addCount(size_t number, const char* what, types::Notices& notices) {
     if (number > 0) notices.push_back(fmt::format("{}: {}", what, number));
 }
 
-void DroppedTriangles::addTo(std::vector<std::string>& notices) const {
+void DroppedTriangles::addTo(types::Notices& notices) const {
     addCount(bad, "triangles dropped for a vertex that is not a finite number", notices);
     addCount(empty, "triangles dropped for having no area", notices);
 }

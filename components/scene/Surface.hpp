@@ -25,7 +25,7 @@ struct DroppedTriangles {
     size_t bad = 0;    ///< Triangles with a vertex that is not a finite number.
     size_t empty = 0;  ///< Triangles without area.
 
-    void addTo(std::vector<std::string>& notices) const;
+    void addTo(types::Notices& notices) const;
 };
 
 /** Drops triangles that cannot be rasterised, and counts them. A damaged vertex, which is no longer used, is set to 0.
@@ -50,7 +50,7 @@ void appendSurface(const Surface& surface, int material, types::Mesh& mesh);
 void fillAttributes(types::Mesh& mesh);
 
 /** Adds "<what>: <number>" to the notices unless the number is 0. */
-void addCount(size_t number, const char* what, std::vector<std::string>& notices);
+void addCount(size_t number, const char* what, types::Notices& notices);
 
 /** Gives each triangle three vertices of its own with the normal of its plane. */
 void makeFlatNormals(Surface& surface);

@@ -276,7 +276,7 @@ void findUnreadable(const types::Diagnostics& diagnostics, std::set<std::string>
 
 /** Adds the diagnostics of a world that was read nevertheless. Gazebo's `model://sun` is a light and does not matter to
  *  a sonar. */
-void noteDiagnostics(const types::Diagnostics& diagnostics, std::vector<std::string>& notices) {
+void noteDiagnostics(const types::Diagnostics& diagnostics, types::Notices& notices) {
     bool looked_for_models = false;
     for (const types::Diagnostic& diagnostic : diagnostics) {
         const std::string text = diagnostic.text();
@@ -313,7 +313,7 @@ std::string CerrCapture::take() {
 }
 
 ::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
-                        std::vector<std::string>& notices, const std::string& text) {
+                        types::Notices& notices, const std::string& text) {
     if (!std::filesystem::is_regular_file(file))
         throw types::ConfigError(file.string(), "",
                                  "is not a file; give the path of a " + scene::sceneEndings("sdf") + " file");

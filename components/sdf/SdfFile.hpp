@@ -36,6 +36,6 @@ std::string textOf(const std::filesystem::path& file);
  *  libsdformat are added to `notices` if there is still a world or a model, otherwise they are thrown as
  *  types::ConfigError. An include that is missing or unreadable is omitted. */
 ::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
-                        std::vector<std::string>& notices, const std::string& text = {});
+                        types::Notices& notices, const std::string& text = {});
 
 }  // namespace insonify::sdf

@@ -41,7 +41,7 @@ Json planOf(const types::Plan& plan) {
     for (const types::Omission& omission : plan.omitted)
         omitted.push_back({{"name", omission.name}, {"reason", omission.reason}});
     return {{"features", plan.features}, {"passes", plan.passes},
-            {"omitted", omitted},        {"notices", plan.notices},
+            {"omitted", omitted},        {"notices", types::lines(plan.notices)},
             {"rows", plan.rows},         {"columns_per_beam", plan.columns_per_beam},
             {"slabs", plan.slabs},       {"predicted_error", numberOrNull(plan.predicted_error)},
             {"device", plan.device}};

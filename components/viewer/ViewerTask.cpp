@@ -42,12 +42,12 @@ framework::InputPortBase* ViewerTask::makeInput(const std::string& port, framewo
             ", which a viewer cannot show; it shows all types that a log can contain, and snapshots");
 }
 
-std::vector<std::string> ViewerTask::notices() const {
+types::Notices ViewerTask::notices() const {
     if (!publisher_) return {};
     const bool v6 = config->address.find(':') != std::string::npos;
     const std::string host = v6 ? "[" + config->address + "]" : config->address;
-    std::vector<std::string> notices{fmt::format(
-        "open http://{}:{}/{}", host, port(), config->token.empty() && config->token_file.empty() ? "" : "?token=...")};
+    types::Notices notices{fmt::format("open http://{}:{}/{}", host, port(),
+                                       config->token.empty() && config->token_file.empty() ? "" : "?token=...")};
     const ServerCounts so_far = counts();
     if (so_far.refused > 0) notices.push_back(fmt::format("{} connections refused", so_far.refused));
     if (so_far.dropped > 0)

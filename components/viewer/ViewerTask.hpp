@@ -32,7 +32,7 @@ public:
     /** Throws ConfigError for a type that cannot be shown. */
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
     /** Returns the address of the page; connections refused and frames dropped so far, see ServerCounts. */
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     bool reachesOutside() const override { return true; }
     /** Returns the port that it listens on; 0 if it does not. */
     uint16_t port() const { return publisher_ ? publisher_->port() : 0; }

@@ -81,7 +81,7 @@ connections:
     }
     OculusTask& task() const { return dynamic_cast<OculusTask&>(*deployment_->task("device")); }
     std::string noticeOf(const std::string& part) const {
-        for (const std::string& notice : task().notices())
+        for (const std::string& notice : types::lines(task().notices()))
             if (notice.find(part) != std::string::npos) return notice;
         return "";
     }

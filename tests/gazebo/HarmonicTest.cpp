@@ -55,7 +55,7 @@ struct HarmonicTest : OwnPartition, protected test::Listening<PoseTask> {
     }
     bool isDropped(const std::string& why) {
         task.update();
-        const std::vector<std::string> all = task.notices();
+        const std::vector<std::string> all = types::lines(task.notices());
         return std::ranges::any_of(all, [&](const auto& line) { return line.find("dropped: " + why) != line.npos; });
     }
     bool isWarned(const std::string& text) const { return warnings.find(text) != std::string::npos; }

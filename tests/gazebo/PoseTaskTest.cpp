@@ -141,7 +141,7 @@ TEST_F(PoseTaskTest, APausedWorldGivesNoPoseAndAResetWorldBeginsAnew) {
         world.publish(stamp += 0.1, 2);
         world.publish(stamp - 0.05, 3);  // from another publisher, or out of order
         task.update();
-        const std::vector<std::string> all = task.notices();
+        const std::vector<std::string> all = types::lines(task.notices());
         return std::ranges::any_of(all, [](const auto& line) {
             return line.find("dropped: /world/sea/pose/info: the stamp is before") != std::string::npos;
         });
@@ -175,7 +175,7 @@ TEST_F(PoseTaskTest, StepsOfTheWorldsClockInBothDirectionsLoseNoPose) {
             last = pose->time;
         }
     }
-    const std::vector<std::string> all = task.notices();
+    const std::vector<std::string> all = types::lines(task.notices());
     EXPECT_THAT(all, testing::Not(Contains(HasSubstr("the stamp is before")))) << testing::PrintToString(all);
 }
 

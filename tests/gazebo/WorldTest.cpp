@@ -24,9 +24,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct WorldTest : scene::SceneFiles {
     World worldOf(const wire::Scene& message) const { return gazebo::worldOf(message.SerializeAsString(), folder_); }
-    const std::vector<std::string> noticesOf(const wire::Scene& message) const {
-        return worldOf(message).scene.geometry->notices;
-    }
+    types::Notices noticesOf(const wire::Scene& message) const { return worldOf(message).scene.geometry->notices; }
     static wire::Visual& addBox(wire::Model& model, const std::string& name, double side = 1) {
         wire::Link& link = *model.add_link();
         link.set_name(name);

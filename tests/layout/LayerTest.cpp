@@ -140,6 +140,13 @@ TEST(LayerTest, ChecksAreInSourceFiles) {
     EXPECT_GT(checks, 40u);
 }
 
+/** A text says no kind, so that no code decides by a text. */
+TEST(LayerTest, OnlyTheKindOfANoticeMakesItAWarning) {
+    for (const Source& source : product())
+        for (size_t line = 0; line < source.lines.size() && source.path != "types/Notice.hpp"; ++line)
+            EXPECT_EQ(source.lines[line].find("\"Warning: "), std::string::npos) << source.path << ":" << line + 1;
+}
+
 TEST(LayerTest, TheTreeIsNoLargerThanItWas) {
     for (const Figure& figure : figuresOfTheTree()) {
         std::printf("%7zu of at most %7zu  %s\n", figure.value, figure.bound, figure.name.c_str());

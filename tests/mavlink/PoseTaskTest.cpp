@@ -90,7 +90,7 @@ TEST_F(PoseTaskTest, ReportsMessagesOfAnotherSystemWithItsNumber) {
     startWith();
     const Vehicle vehicle(task.port(), "poses2 9");
     EXPECT_TRUE(becomesTrue([&] {
-        const std::vector<std::string> all = task.notices();
+        const std::vector<std::string> all = types::lines(task.notices());
         return std::ranges::any_of(all, [](const std::string& line) {
             return line.find("of others ignored: ATTITUDE_QUATERNION of system 9, component 1") != std::string::npos;
         });

@@ -79,9 +79,10 @@ TEST_F(ScanMosaicTaskTest, CountsAndReportsAHeldPose) {
     EXPECT_EQ(pictures(), 1u) << "the ping of 1.2 s has waited for 0.5 s";
     ASSERT_TRUE(task_.stop());
     EXPECT_EQ(pictures(), 2u);
-    EXPECT_THAT(task_.notices(),
-                ElementsAre("pose: samples of other ports handed over without it: 1",
-                            "Warning: each ping at its pose, north up: 3 pings, 3 at a pose held for up to 0.7 s"));
+    EXPECT_THAT(
+        task_.notices(),
+        ElementsAre("pose: samples of other ports handed over without it: 1",
+                    types::warning("each ping at its pose, north up: 3 pings, 3 at a pose held for up to 0.7 s")));
 }
 
 TEST_F(ScanMosaicTaskTest, UsesTheFirstPoseForEarlierPings) {

@@ -73,7 +73,7 @@ TEST_F(TrajectoryTaskTest, WarnsOfQuaternionsOfOddLengths) {
     task_.config.set({.file = "t.csv", .waypoints = {}});
     ASSERT_TRUE(task_.configure());
     EXPECT_THAT(
-        task_.notices(),
+        types::lines(task_.notices()),
         testing::ElementsAre(testing::StartsWith("Warning: 1 of 2 quaternions of t.csv have a length that is not 1")));
 }
 
@@ -183,7 +183,7 @@ TEST_F(TrajectoryTaskTest, WarnsOfATrajectoryThatHasNotBegun) {
     for (const bool loop : {false, true}) {
         task_.config.set({.file = {}, .waypoints = late, .loop = loop});
         ASSERT_TRUE(task_.configure());
-        EXPECT_THAT(task_.notices(),
+        EXPECT_THAT(types::lines(task_.notices()),
                     testing::ElementsAre(testing::AllOf(
                         testing::StartsWith("Warning: the trajectory begins 100 s after the start of the run"),
                         testing::HasSubstr("start: first_pose"))));

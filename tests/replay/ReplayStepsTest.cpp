@@ -103,9 +103,10 @@ TEST(ReplayStepsTest, TheNoticeOfAGapNamesTheStartBehindIt) {
     const auto offset = [](int i) { return i < 20 ? 0.0 : i < 40 ? -7200.0 : -100.0; };
     Recorded gap(offset);
     gap.begin();
-    const std::vector<std::string> notices = gap.bench.task.notices();
+    const types::Notices notices = gap.bench.task.notices();
     ASSERT_FALSE(notices.empty());
-    const std::string& notice = notices.front();
+    EXPECT_EQ(notices.front().kind, types::Notice::Kind::Warning);
+    const std::string& notice = notices.front().text;
     const size_t at = notice.find("from: ");
     ASSERT_NE(at, notice.npos) << notice;
     const double from = std::stod(notice.substr(at + 6));

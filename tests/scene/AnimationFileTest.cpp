@@ -191,7 +191,8 @@ TEST_F(AnimationFileTest, TwoAnimationsThatMoveTheSameAreReported) {
     types::Diagnostics diagnostics;
     const Animator animator(scene, {}, {}, diagnostics);
     ASSERT_EQ(animator.notices().size(), 2u);
-    EXPECT_NE(animator.notices()[1].find("advance (1 of 1 channels)"), std::string::npos) << animator.notices()[1];
+    EXPECT_NE(animator.notices()[1].text.find("advance (1 of 1 channels)"), std::string::npos)
+        << animator.notices()[1].text;
     Animator(scene, {{"swims", {}}}, {}, diagnostics);
     ASSERT_EQ(diagnostics.size(), 1u);
     EXPECT_EQ(diagnostics[0].path, "animations.swims");

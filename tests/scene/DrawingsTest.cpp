@@ -177,11 +177,12 @@ TEST(DrawingsTest, ALargeLevelBodyAtTheSurfaceIsAWarningWithTheWayOut) {
 TEST(DrawingsTest, NoticesListOmissionsByReason) {
     Boxes boxes;
     for (int i = 0; i < 7; ++i) boxes.add("ghost" + std::to_string(i), "v", {1, 1, 1}, {0, 0, -3}, {.transparency = 1});
-    std::vector<std::string> notices;
+    types::Notices notices;
     addOmissions(boxes.kept({{"x"}, true, {}, {}}), notices);
-    EXPECT_THAT(notices, ElementsAre(testing::AllOf(testing::StartsWith("omitted: ghost0::link::v, "),
-                                                    HasSubstr(" and 2 more: its drawing is wholly transparent")),
-                                     testing::StartsWith("Warning: omit: \"x\"")));
+    EXPECT_THAT(types::lines(notices),
+                ElementsAre(testing::AllOf(testing::StartsWith("omitted: ghost0::link::v, "),
+                                           HasSubstr(" and 2 more: its drawing is wholly transparent")),
+                            testing::StartsWith("Warning: omit: \"x\"")));
 }
 
 struct GltfDrawingsTest : SceneFiles {
@@ -247,8 +248,8 @@ TEST_F(OmitTaskTest, TheSnapshotLacksWhatIsOmitted) {
     ASSERT_EQ(snapshot->geometry->objects.size(), 1u);
     EXPECT_EQ(snapshot->geometry->objects[0].name, "wall");
     EXPECT_THAT(task_.notices(), Contains(HasSubstr("omitted: hull: omit: \"hu*\"")));
-    EXPECT_THAT(task_.notices(), Contains(testing::AllOf(testing::StartsWith("Warning: omit: \"wal\""),
-                                                         HasSubstr("did you mean wall"))));
+    EXPECT_THAT(types::lines(task_.notices()), Contains(testing::AllOf(testing::StartsWith("Warning: omit: \"wal\""),
+                                                                       HasSubstr("did you mean wall"))));
     ASSERT_TRUE(task_.stop() && task_.cleanup());
     config_.omit = {};
     start();

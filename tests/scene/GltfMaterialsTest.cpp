@@ -151,7 +151,7 @@ TEST_F(SurfaceMapsTest, TheTextureOfTheBaseColourIsTakenInGrey) {
     for (size_t i = 0; i < 3; ++i)
         EXPECT_EQ(mesh.map_uvs[i], glm::vec2(mesh.positions[i].x, 1 - mesh.positions[i].y)) << i;
     EXPECT_EQ(geometry->materials[0].max_map_strength, 1);
-    EXPECT_TRUE(geometry->notices.empty()) << geometry->notices[0];
+    EXPECT_TRUE(geometry->notices.empty()) << geometry->notices[0].text;
 }
 
 TEST_F(SurfaceMapsTest, ClassesAreSedimentsMatterOrMaterialsOfTheFile) {
@@ -182,11 +182,11 @@ TEST_F(SurfaceMapsTest, ValuesWithoutAClassAndMeshesWithoutCoordinatesAreReporte
     const auto half = load(painted(R"({"classes":{"18":"rock"}})", coloured));
     EXPECT_EQ(half->meshes[0].maps.at(0).map->classes.at(0), types::SurfaceMap::no_class);
     ASSERT_EQ(half->notices.size(), 1u);
-    EXPECT_NE(half->notices[0].find("\"floor\": 50 % of its map has values without a class"), std::string::npos);
+    EXPECT_NE(half->notices[0].text.find("\"floor\": 50 % of its map has values without a class"), std::string::npos);
     const auto bare = load(painted(R"({"decibels":[-30,0]})", coloured, false));
     EXPECT_TRUE(bare->meshes[0].maps.empty());
     ASSERT_EQ(bare->notices.size(), 1u);
-    EXPECT_NE(bare->notices[0].find("without their map, they have no texture coordinates: 1"), std::string::npos);
+    EXPECT_NE(bare->notices[0].text.find("without their map, they have no texture coordinates: 1"), std::string::npos);
 }
 
 TEST_F(SurfaceMapsTest, AWrongMapIsReportedAtItsPlace) {

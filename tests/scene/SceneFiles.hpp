@@ -133,8 +133,8 @@ inline void expectSound(const types::Geometry& geometry) {
 }
 
 inline bool hasNotice(const types::Geometry& geometry, const std::string& part) {
-    return std::ranges::any_of(geometry.notices,
-                               [&](const std::string& notice) { return notice.find(part) != std::string::npos; });
+    return std::ranges::any_of(
+        geometry.notices, [&](const types::Notice& notice) { return notice.text.find(part) != std::string::npos; });
 }
 
 }  // namespace insonify::scene

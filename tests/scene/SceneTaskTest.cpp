@@ -246,7 +246,7 @@ TEST_F(SceneTaskTest, NoticesAreThoseOfTheLoader) {
     config_.file = write("empty.gltf", R"({"asset":{"version":"2.0"}})").string();
     start();
     ASSERT_EQ(task_.notices().size(), 1u);
-    EXPECT_NE(task_.notices()[0].find("an empty sea"), std::string::npos);
+    EXPECT_NE(task_.notices()[0].text.find("an empty sea"), std::string::npos);
 }
 
 TEST_F(SceneTaskTest, ItCanBeConfiguredAgainWithAnotherFile) {

@@ -166,7 +166,7 @@ TEST_F(SdfTest, AnIncludeThatIsNotFoundIsANoticeWithItsLine) {
     const Scene scene = world("<include><uri>model://crate</uri></include>\n" + model("m", box_) +
                               "\n<include><uri>https://fuel.gazebosim.org/1.0/x/models/y</uri></include>\n");
     EXPECT_EQ(scene.geometry->objects.size(), 1u);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:2: ")) << scene.geometry->notices.at(0);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:2: ")) << scene.geometry->notices.at(0).text;
     EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://crate]; omitted"));
     EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:4: "));
     EXPECT_TRUE(hasNotice(*scene.geometry, "in the folders of INSONIFY_MODEL_PATH"));
@@ -181,7 +181,7 @@ TEST_F(SdfTest, AMissingSunIsNoNotice) {
 TEST_F(SdfTest, AnIncludeInAnIncludeThatIsNotFoundIsANoticeToo) {
     writeModel("outer", "<model name='outer'>" + link("l") + "<include><uri>model://nowhere</uri></include></model>");
     const Scene scene = world("<include><uri>model://outer</uri></include>");
-    EXPECT_TRUE(hasNotice(*scene.geometry, "outer/model.sdf:1: ")) << scene.geometry->notices.at(0);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "outer/model.sdf:1: ")) << scene.geometry->notices.at(0).text;
     EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://nowhere]; omitted"));
 }
 

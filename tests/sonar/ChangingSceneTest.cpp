@@ -237,7 +237,8 @@ TEST_F(ChosenQualityTest, IsKeptForTheNextTile) {
         const types::Plan& plan = *task_.plan();
         if (i == 0) chosen = {plan.rows, plan.columns_per_beam};
         EXPECT_EQ(std::pair(plan.rows, plan.columns_per_beam), chosen) << i;
-        EXPECT_EQ(std::ranges::count_if(plan.notices, [](const auto& n) { return n.starts_with("quality:"); }), 1) << i;
+        EXPECT_EQ(std::ranges::count_if(plan.notices, [](const auto& n) { return n.text.starts_with("quality:"); }), 1)
+            << i;
     }
     EXPECT_GT(scenes.size(), 8u);
     const Quality coarsest;

@@ -154,7 +154,7 @@ TEST(DepositPublishedTest, BothAgreeInThePublishedModelWhereMissesCount) {
 TEST(DepositEffectTest, ReportsAnEffectThatKeepsTheDeviceFromSumming) {
     addEffect(std::make_unique<OwnSumsEffect>());
     const types::Snapshot snapshot = hardScene();
-    const std::string notice =
+    const types::Notice notice =
         "images are summed on the processor: the compute shader does not sum what the effect 'own_sums' sums";
     for (const bool with_effect : {false, true})
         for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {

@@ -113,7 +113,7 @@ public:
     Quality quality() const { return {task.plan()->rows, task.plan()->columns_per_beam, task.plan()->predicted_error}; }
     /** Returns the messages about a quality. */
     std::vector<std::string> notices() const {
-        std::vector<std::string> all = task.notices();
+        std::vector<std::string> all = types::lines(task.notices());
         std::erase_if(all, [](const std::string& notice) { return notice.find("quality") == std::string::npos; });
         return all;
     }

@@ -26,7 +26,7 @@ constexpr double target = 0.05;  ///< Default.
 /** Results of a run. */
 struct RecordedPings {
     std::vector<types::SonarPtr> pings;
-    std::vector<std::string> notices;
+    types::Notices notices;
     types::Plan plan;
 };
 
@@ -81,7 +81,7 @@ double nearlyAll(std::vector<double> errors) {
 std::string summary(const RecordedPings& run, const std::vector<double>& errors) {
     std::string text =
         "now " + std::to_string(run.plan.rows) + " x " + std::to_string(run.plan.columns_per_beam) + "\n";
-    for (const std::string& notice : run.notices) text += notice + "\n";
+    for (const std::string& notice : types::lines(run.notices)) text += notice + "\n";
     for (const double error : errors) text += std::to_string(error) + " ";
     return text;
 }

@@ -41,7 +41,7 @@ struct Listening {
     bool reports(const std::string& text) {
         return becomesTrue([&] {
             work();
-            const std::vector<std::string> all = task.notices();
+            const std::vector<std::string> all = types::lines(task.notices());
             return std::ranges::any_of(all, [&](const auto& line) { return line.find(text) != std::string::npos; });
         });
     }

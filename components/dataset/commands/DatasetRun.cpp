@@ -292,7 +292,7 @@ void DatasetRun::checkDrawn() const {
             } catch (const types::ConfigError& error) {
                 types::Diagnostics diagnostics = error.diagnostics();
                 for (types::Diagnostic& each : diagnostics)
-                    if (each.message.ends_with("must be a whole number")) each.message += "; use choice";
+                    if (each.kind == types::Diagnostic::Kind::NotWhole) each.message += "; use choice";
                 throw types::ConfigError(diagnostics);
             }
     }
@@ -304,8 +304,8 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
     framework::DeploymentSpec spec = loaded();
     spec.set(property + "=" + value.yaml);
     types::Diagnostics diagnostics;
-    const auto refuse = [&](const std::string& why) {
-        diagnostics.push_back({path, why, sweep_.file, value.line, value.column});
+    const auto refuse = [&](const std::string& why, types::Diagnostic::Kind kind = types::Diagnostic::Kind::Value) {
+        diagnostics.push_back({path, why, sweep_.file, value.line, value.column, kind});
     };
     for (const framework::TaskSpec& each : spec.tasks) {
         if (each.type == scene_type && property == each.name + ".file")
@@ -321,7 +321,7 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& each : error.diagnostics())
             if (each.file == framework::set_origin || each.path.starts_with(block))
-                refuse(each.path + ": " + each.message);
+                refuse(each.path + ": " + each.message, each.kind);
     }
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
 }

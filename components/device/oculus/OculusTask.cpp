@@ -20,16 +20,16 @@ void OculusTask::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"gain_min_db", "is above gain_max_db"});
 }
 
-std::vector<std::string> OculusTask::notices() const {
-    std::vector<std::string> all = DeviceTask::notices();
+types::Notices OculusTask::notices() const {
+    types::Notices all = DeviceTask::notices();
     if (emulator_ && emulator_->lost() > 0)
         all.push_back(std::to_string(emulator_->lost()) + " pings of the sonar did not arrive in time");
     if (emulator_ && emulator_->refused() > 0)
         all.push_back(std::to_string(emulator_->refused()) + " messages of drivers were not valid settings");
     const std::lock_guard alone(failure_mutex_);
     if (unrecorded_ > 0)
-        all.push_back("Warning: at least " + std::to_string(unrecorded_) + " pings are not in " + *config->record +
-                      ": " + record_failure_);
+        all.push_back(types::warning("at least " + std::to_string(unrecorded_) + " pings are not in " +
+                                     *config->record + ": " + record_failure_));
     return all;
 }
 

@@ -51,7 +51,7 @@ public:
                                                framework::Need::Required, types::left_receiver};
 
     void check(types::Diagnostics& diagnostics) const override;
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     /** The listening port; 0 before it is configured. */
     uint16_t port() const { return portOf(0); }
 

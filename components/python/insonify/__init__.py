@@ -424,12 +424,11 @@ class SimulationBatch:
         return np.stack([_numbers(each) for each in poses])
 
 
-def _warn(notices: list[str], warned: list[str]) -> list[str]:
-    """Warns of the notices "task: Warning: text" that are not in `warned`; returns all of them."""
+def _warn(notices: list[dict], warned: list[dict]) -> list[dict]:
+    """Warns of the warnings among the notices that are not in `warned`; returns all notices."""
     for notice in notices:
-        task, _, text = notice.partition(": ")
-        if text.startswith("Warning: ") and notice not in warned:
-            warnings.warn(f"{task}: {text.removeprefix('Warning: ')}", stacklevel=3)
+        if notice["is_warning"] and notice not in warned:
+            warnings.warn(notice["text"], stacklevel=3)
     return notices
 
 

@@ -71,8 +71,7 @@ public:
         omitUnless(laws.has_measured, "measured backscatter", noMaterial);
         return plan.features.has(Feature::BackscatterLaws);
     }
-    void note(const RenderPlan& plan, const types::Geometry& geometry,
-              std::vector<std::string>& notices) const override {
+    void note(const RenderPlan& plan, const types::Geometry& geometry, types::Notices& notices) const override {
         if (plan.config.model != Model::Physical) return;
         std::vector<std::string> plain, loud;
         for (size_t i = 0; i < geometry.materials.size(); ++i) {
@@ -86,12 +85,11 @@ public:
                 fmt::format("{} of {} materials have no acoustic values and are medium sand, -16.7 dB: {}",
                             plain.size(), geometry.materials.size(), listed(plain)));
         if (!loud.empty())
-            notices.push_back(fmt::format(
-                "Warning: a lambert_db above -4.97 dB returns more energy than it receives: {}", listed(loud)));
+            notices.push_back(types::warning(
+                fmt::format("a lambert_db above -4.97 dB returns more energy than it receives: {}", listed(loud))));
         if (!plan.laws.outside_validity.empty() && !isAboveLaw(plan))
-            notices.push_back(
-                fmt::format("Warning: backscatter of seabeds is extrapolated outside its law's validity: {}",
-                            plan.laws.outside_validity));
+            notices.push_back(types::warning(fmt::format(
+                "backscatter of seabeds is extrapolated outside its law's validity: {}", plan.laws.outside_validity)));
     }
 };
 

@@ -82,8 +82,7 @@ public:
             leaveOut(plan, {"elevation beam pattern", Reason::NotConfigured});
         return azimuth || elevation;
     }
-    void note(const RenderPlan& plan, const types::Geometry& /*geometry*/,
-              std::vector<std::string>& notices) const override {
+    void note(const RenderPlan& plan, const types::Geometry& /*geometry*/, types::Notices& notices) const override {
         if (plan.directivity && plan.directivity->hasBoxes())
             notices.push_back(
                 fmt::format("the receiver has no law in azimuth: each beam receives its own {:.4g} deg alike, times "

@@ -37,14 +37,13 @@ public:
         plan.omitted.push_back({inside_a_bin, reason, residual, 1e-3, residualWords});
         return true;
     }
-    void note(const RenderPlan& plan, const types::Geometry& /*geometry*/,
-              std::vector<std::string>& notices) const override {
+    void note(const RenderPlan& plan, const types::Geometry& /*geometry*/, types::Notices& notices) const override {
         const Omitted* inside = plan.findOmitted(inside_a_bin);
         if (inside && decibels(inside->value) > 0.1)
             notices.push_back(
-                fmt::format("Warning: absorption changes within a bin by {:.2g} dB to either side of its "
-                            "middle; it is taken in the middle",
-                            decibels(inside->value)));
+                types::warning(fmt::format("absorption changes within a bin by {:.2g} dB to either side of its "
+                                           "middle; it is taken in the middle",
+                                           decibels(inside->value))));
     }
     void addTo(types::ReturnRules& rules, const SonarConfig& config) const override {
         rules.loss_db_per_m = makeAbsorption(config).db_per_m;
@@ -248,8 +247,7 @@ public:
         return true;
     }
     std::vector<std::string> features() const override { return {"motion_in_ping"}; }
-    void note(const RenderPlan& plan, const types::Geometry& /*geometry*/,
-              std::vector<std::string>& notices) const override {
+    void note(const RenderPlan& plan, const types::Geometry& /*geometry*/, types::Notices& notices) const override {
         if (!plan.config.motion_in_ping) return;
         const MotionBound bound = motionBound(plan.config, plan.grid);
         notices.push_back(

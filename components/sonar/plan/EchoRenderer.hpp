@@ -61,8 +61,8 @@ public:
     virtual std::vector<Omitted> culled() const { return {}; }
     /** Returns the device: an OpenGL renderer and its driver, or the processor. */
     virtual const std::string& device() const = 0;
-    /** Returns a notice about the device for the user; may be empty. */
-    virtual std::string notice() const { return {}; }
+    /** Adds a notice about the device for the user. */
+    virtual void note(types::Notices& /*notices*/) const {}
 };
 
 /** Makes a renderer that traces rays on the processor, without OpenGL. Threads take beams as they become free. One

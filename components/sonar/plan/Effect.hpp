@@ -129,7 +129,7 @@ public:
     virtual std::vector<std::string> features() const { return {}; }
     /** Adds the notices about the effect in this plan. */
     virtual void note(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/,
-                      std::vector<std::string>& /*notices*/) const {}
+                      types::Notices& /*notices*/) const {}
     /** Adds to what is known of the bins of a configured sonar. */
     virtual void addTo(types::ReturnRules& /*rules*/, const SonarConfig& /*config*/) const {}
     /** Returns the greatest mean intensity that each bin of a ping receives of it without any surface, in the ping's

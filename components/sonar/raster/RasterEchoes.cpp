@@ -57,7 +57,7 @@ public:
     bool hasEchoes() const override;
     std::vector<Omitted> culled() const override;
     const std::string& device() const override { return device_; }
-    std::string notice() const override { return why_on_processor_.empty() ? context_.fallback() : why_on_processor_; }
+    void note(types::Notices& notices) const override;
 
 private:
     bool wantsProcessor() const;
@@ -260,6 +260,12 @@ void RasterEchoes::updateQuality() {
     sums_ = {};
     makeDeposit();
     context_.check();
+}
+
+void RasterEchoes::note(types::Notices& notices) const {
+    if (!why_on_processor_.empty()) return notices.push_back(why_on_processor_);
+    if (std::string why = context_.fallback(); !why.empty())
+        notices.push_back(context_.missesCard() ? types::warning(std::move(why)) : types::Notice(std::move(why)));
 }
 
 bool RasterEchoes::changePlan() {

@@ -31,12 +31,12 @@ std::string reasonOf(const Omitted& what, const BinGrid& grid) {
     }
 }
 
-void noteRange(const SonarConfig& config, const BinGrid& grid, std::vector<std::string>& notices) {
+void noteRange(const SonarConfig& config, const BinGrid& grid, types::Notices& notices) {
     const double longer = grid.range_max / config.range - 1;
     if (std::abs(longer) > 1e-9)
-        notices.push_back(fmt::format("{}range reached is {:.6g} m, {:.2g} % more than {:g} m: bins last {} us one way",
-                                      longer > 0.01 ? "Warning: " : "", grid.range_max, 100 * longer, config.range,
-                                      grid.bin_duration_us));
+        notices.push_back({fmt::format("range reached is {:.6g} m, {:.2g} % more than {:g} m: bins last {} us one way",
+                                       grid.range_max, 100 * longer, config.range, grid.bin_duration_us),
+                           longer > 0.01 ? types::Notice::Kind::Warning : types::Notice::Kind::Note});
     const double blanked = std::floor(grid.range_min / grid.bin_width + 1e-9), bins = config.bin_count;
     if (blanked >= 0.1 * bins)
         notices.push_back(
@@ -47,34 +47,34 @@ void noteRange(const SonarConfig& config, const BinGrid& grid, std::vector<std::
     const double ulp = static_cast<double>(std::nextafter(far, std::numeric_limits<float>::infinity()) - far);
     if (grid.bin_width < ulp)
         notices.push_back(
-            fmt::format("Warning: a bin of {:.2g} m is smaller than the {:.2g} m between neighbouring "
-                        "float ranges; bins merge",
-                        grid.bin_width, ulp));
+            types::warning(fmt::format("a bin of {:.2g} m is smaller than the {:.2g} m between neighbouring "
+                                       "float ranges; bins merge",
+                                       grid.bin_width, ulp)));
 }
 
-void noteWater(const SonarConfig& config, const BinGrid& grid, std::vector<std::string>& notices) {
+void noteWater(const SonarConfig& config, const BinGrid& grid, types::Notices& notices) {
     if (grid.speed_of_sound < 1350 || grid.speed_of_sound > 1650)
         notices.push_back(
-            fmt::format("Warning: speed of sound is {:g} m/s; water has 1350 to 1650", grid.speed_of_sound));
+            types::warning(fmt::format("speed of sound is {:g} m/s; water has 1350 to 1650", grid.speed_of_sound)));
     if (config.water && !config.speed_of_sound) {
         const std::string outside = acoustics::outsideValidity(config.water->sound_speed_law, *config.water);
         if (!outside.empty())
             notices.push_back(
-                fmt::format("Warning: speed of sound is extrapolated outside its law's validity: {}", outside));
+                types::warning(fmt::format("speed of sound is extrapolated outside its law's validity: {}", outside)));
     }
     if (config.absorbedKhz()) {
         const std::string outside =
             acoustics::outsideValidity(config.absorption->law, *config.absorbedKhz(), *config.water);
         if (!outside.empty())
             notices.push_back(
-                fmt::format("Warning: absorption is extrapolated outside its law's validity: {}", outside));
+                types::warning(fmt::format("absorption is extrapolated outside its law's validity: {}", outside)));
     }
     const Bending bent = bending(config, grid);
     if (bent.offset >= bent.tolerated && !(config.water && config.water->profile))
         notices.push_back(
-            fmt::format("Warning: rays are straight; a gradient of {} 1/s would bend them by {:.3g} m at "
-                        "{:.4g} m",
-                        speed_gradient, bent.offset, grid.range_max));
+            types::warning(fmt::format("rays are straight; a gradient of {} 1/s would bend them by {:.3g} m at "
+                                       "{:.4g} m",
+                                       speed_gradient, bent.offset, grid.range_max)));
 }
 
 /** Returns a vector as text, without rounding noise. */
@@ -212,27 +212,28 @@ std::string enclosureText(const types::Snapshot& scene, uint32_t object) {
 
 }  // namespace
 
-std::vector<std::string> configNotices(const SonarConfig& config) {
+types::Notices configNotices(const SonarConfig& config) {
     const BinGrid grid = makeBinGrid(config);
-    std::vector<std::string> notices;
+    types::Notices notices;
     noteRange(config, grid, notices);
     noteWater(config, grid, notices);
     return notices;
 }
 
-std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot) {
+std::optional<types::Notice> depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot) {
     if (!plan.profile) return {};
     const double depth = -waterView(snapshot).height, top = plan.profile->top(), bottom = plan.profile->bottom();
     if (depth >= top && depth <= bottom) return {};
-    return fmt::format(
-        "Warning: at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound covers {:g} to {:g} "
+    return types::warning(fmt::format(
+        "at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound covers {:g} to {:g} "
         "m; outside, the speed is that of the nearer end",
-        depth, top, bottom);
+        depth, top, bottom));
 }
 
 types::Omission describe(const Omitted& what, const BinGrid& grid) {
     const std::string name(what.effect);
-    if (what.reason != Reason::OutOfView) return {name, reasonOf(what, grid)};
+    if (what.reason != Reason::OutOfView)
+        return {name, reasonOf(what, grid), !what.words && what.reason == Reason::NotConfigured};
     return {fmt::format("{}{:.0f} of {:.0f} {}", name == "triangles" ? "at least " : "", what.value, what.bound, name),
             reasonOf(what, grid)};
 }

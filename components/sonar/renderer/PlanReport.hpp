@@ -19,11 +19,11 @@ types::Plan report(const RenderPlan& plan, const types::Geometry& geometry);
 /** Returns in words what is omitted and why. */
 types::Omission describe(const Omitted& what, const BinGrid& grid);
 
-/** Returns a notice if the sonar is outside the depths of its sound speed profile; empty otherwise. */
-std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot);
+/** Returns a warning if the sonar is outside the depths of its sound speed profile. */
+std::optional<types::Notice> depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot);
 
 /** Returns notices about the configuration alone: range reached, water outside a law's validity... */
-std::vector<std::string> configNotices(const SonarConfig& config);
+types::Notices configNotices(const SonarConfig& config);
 
 /** Follows the pings of a sonar and explains why they are empty: once, and again only after ten pings with echoes. */
 class PingDiagnostics {

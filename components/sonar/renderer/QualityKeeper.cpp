@@ -235,7 +235,7 @@ void QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& s
     if (!(next == model_.at)) next_ = next;
 }
 
-void QualityKeeper::report(const std::string& notice) {
+void QualityKeeper::report(const types::Notice& notice) {
     if (notices_reported_ < max_notices) notices_.push_back(notice);
     if (++notices_reported_ == max_notices) notices_.push_back("further changes of the quality are not reported");
 }
@@ -261,15 +261,15 @@ void QualityKeeper::reportChoice(const types::Snapshot& scene) {
     if (target_ == 0) return report(fmt::format("{}{}; budget {:g} ms", when, text(), *config_.quality.budget_ms));
     if (model_.at.error <= target_ || std::exchange(missed_, true))
         return report(fmt::format("{}{}, target {:g}", when, text(), target_));
-    report(fmt::format("Warning: {}{}, misses the target of {:g}: {}", when, text(), target_, limitText()));
+    report(types::warning(fmt::format("{}{}, misses the target of {:g}: {}", when, text(), target_, limitText())));
 }
 
 void QualityKeeper::reportBudget(const types::Snapshot& scene, double ms) {
     if (!budget_) return;
     if (model_.at == Quality() && budget_->limit() < model_.at.samples() * beams_ &&
         !std::exchange(late_reported_, true))
-        report(fmt::format("Warning: the coarsest quality takes {:.3g} ms; the budget is {:.4g} ms", ms,
-                           budget_->budget()));
+        report(types::warning(
+            fmt::format("the coarsest quality takes {:.3g} ms; the budget is {:.4g} ms", ms, budget_->budget())));
     const double ratio = model_.at.samples() / reported_.samples();
     if (since_change_ == settled && std::max(ratio, 1 / ratio) > worth_reporting) reportChoice(scene);
 }

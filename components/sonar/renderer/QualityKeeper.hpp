@@ -88,7 +88,7 @@ public:
     /** Returns whether the quality has been chosen, on a ping with an echo. */
     bool isChosen() const { return chosen_; }
     /** Returns the notices since the last call, one sentence each. */
-    std::vector<std::string> consumeNotices() { return std::exchange(notices_, {}); }
+    types::Notices consumeNotices() { return std::exchange(notices_, {}); }
 
 private:
     double maxSamples() const;  ///< Max samples per beam [1].
@@ -110,7 +110,7 @@ private:
     /** Chooses the quality of the next ping for its time. */
     void keepBudget(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping, double ms,
                     double period_ms);
-    void report(const std::string& notice);
+    void report(const types::Notice& notice);
     void reportChoice(const types::Snapshot& scene);
     void reportBudget(const types::Snapshot& scene, double ms);
     std::string text() const;
@@ -140,7 +140,7 @@ private:
     bool lowered_ = false;         ///< Whether it was lowered last.
     Quality reported_;             ///< Quality of the last notice.
     int notices_reported_ = 0;
-    std::vector<std::string> notices_;
+    types::Notices notices_;
 };
 
 }  // namespace insonify::sonar

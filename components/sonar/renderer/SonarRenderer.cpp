@@ -97,7 +97,7 @@ void SonarRenderer::Parts::makeEchoes() {
 void SonarRenderer::Parts::describePlan() {
     reported = report(plan, *geometry);
     reported.device = echoes->device();
-    if (const std::string notice = echoes->notice(); !notice.empty()) reported.notices.push_back(notice);
+    echoes->note(reported.notices);
 }
 
 /** Gives each object that a snapshot deforms a mesh of its own; where scenes are rasterised, each that can deform. */

@@ -36,13 +36,13 @@ PingTask::~PingTask() {
     if (state() == framework::TaskState::Stopped) cleanup();
 }
 
-std::vector<std::string> PingTask::notices() const {
-    std::vector<std::string> all = plan_ ? plan_->notices : configNotices(sonarConfig());
+types::Notices PingTask::notices() const {
+    types::Notices all = plan_ ? plan_->notices : configNotices(sonarConfig());
     if (shortestPeriod() < echoTime() * (1 - 1e-6))
-        all.push_back(fmt::format(
-            "Warning: pings {:.3g} s apart are ambiguous in range, sound takes {:.3g} s to {:.4g} m and back; each "
-            "is rendered by itself",
-            shortestPeriod(), echoTime(), grid().range_max));
+        all.push_back(types::warning(
+            fmt::format("pings {:.3g} s apart are ambiguous in range, sound takes {:.3g} s to {:.4g} m and back; each "
+                        "is rendered by itself",
+                        shortestPeriod(), echoTime(), grid().range_max)));
     if (cut_off_ > 0)
         all.push_back(fmt::format("the last {} for pings of other sonars when the run stopped: not written",
                                   cut_off_ == 1 ? "ping waited" : "pings waited"));
@@ -274,8 +274,7 @@ void PingTask::findStrongest(const types::Sonar& sample, const DetectionRules& r
 void PingTask::updatePlan() {
     rules_.reset();
     plan_ = renderer_->plan();
-    if (const std::string note = depthNotice(renderer_->renderPlan(), takenScene()); !note.empty())
-        plan_->notices.push_back(note);
+    if (const auto outside = depthNotice(renderer_->renderPlan(), takenScene())) plan_->notices.push_back(*outside);
     if (quality_ && quality_->isChosen()) plan_->predicted_error = quality_->quality().error;
     culling_untold_ = true;
     plan_reported_ = false;
@@ -322,7 +321,7 @@ void PingTask::render() {
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
         for (const Omitted& what : renderer_->omissions()) {
             plan_->omitted.push_back(describe(what, grid()));
-            if (what.reason == Reason::Lacking) plan_->notices.push_back("Warning: " + plan_->omitted.back().reason);
+            if (what.reason == Reason::Lacking) plan_->notices.push_back(types::warning(plan_->omitted.back().reason));
         }
     }
     followQuality(*sample, took.count());

@@ -73,7 +73,7 @@ public:
         "complex signals of the array's elements, of a sonar with `elements`; computed only when connected"};
 
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
-    std::vector<std::string> notices() const override;
+    types::Notices notices() const override;
     /** Reports files of sound speeds and of beams that cannot be used. */
     void check(types::Diagnostics& diagnostics) const override;
     std::string indivisible() const override;

@@ -18,11 +18,6 @@ namespace {
 
 using sonar::SonarConfig;
 
-bool reports(const std::vector<std::string>& notices, const std::string& words) {
-    return std::ranges::any_of(notices,
-                               [&](const std::string& notice) { return notice.find(words) != std::string::npos; });
-}
-
 constexpr double far_wall = 98.6993;  ///< [m]
 
 /** Renders a wall ahead at 2 MHz. */
@@ -79,7 +74,8 @@ Outcome twoMegahertz(int bins, bool in_coarse_bins) {
         worst = std::max(worst, std::abs(levels.bins[static_cast<size_t>(bin)] - level));
     }
     const double bound = in_coarse_bins ? sonar::makeAbsorption(config).db_per_m * grid.bin_width : 0.01;
-    const bool reported = !in_coarse_bins || reports(echoes.plan.notices, "absorption changes within a bin");
+    const bool reported = !in_coarse_bins || std::ranges::count(echoes.plan.notices, types::Notice::Kind::Warning,
+                                                                &types::Notice::kind) > 0;
     return {echoes.conditions,
             fmt::format("levels down to {:.1f} dB in bins of {:.3g} m, off by {:.2g} dB; may be {:.2g}{}", lowest,
                         grid.bin_width, worst, bound, in_coarse_bins && reported ? ", as the plan warns" : ""),
@@ -99,7 +95,7 @@ Outcome gain(double gain_db, double tolerance) {
         worst = std::max(
             worst, off(ping.bins[i], std::min(echoes.ping.bins[i] * factor, echoes.ping.bins[i] > 0 ? ceiling : 0)));
     return within(
-        tolerance, reports(receiver.notices(), "reaches its max_db") ? worst : INFINITY,
+        tolerance, receiver.notices().empty() ? INFINITY : worst,
         fmt::format("a gain of {} dB: clamped there, and reported; intensities at most the max float", gain_db),
         echoes);
 }
