@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "components/acoustics/BeamPattern.hpp"
-#include "components/acoustics/SoundProfile.hpp"
+#include "components/acoustics/SoundSpeed.hpp"
 #include "components/framework/Activity.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/multipath/OtherSonars.hpp"
@@ -114,13 +114,13 @@ framework::Outcome PingTask::restart() {
     renderer_ = std::move(kept);
     is_changed_ = changed;
     diagnostics_.emplace(pingsPerTurn());
-    takePlan();
+    updatePlan();
     return {};
 }
 
 void PingTask::updateHook() {
     if (others.connected()) return listen();
-    if (takeNext() && begin()) complete();
+    if (readNext() && begin()) complete();
 }
 
 bool PingTask::begin() {
@@ -135,7 +135,7 @@ bool PingTask::begin() {
 
 void PingTask::prepareTransmission() {
     const SonarConfig config = locatedConfig();
-    const Waveform form = waveformOf(config, grid());
+    const Waveform form = waveform(config, grid());
     transmitted_.radiation = std::make_shared<SentPower>(config);
     if (config.crosstalk && config.crosstalk->source_level_db)
         transmitted_.source_level_db = *config.crosstalk->source_level_db;
@@ -165,7 +165,7 @@ void PingTask::receiveOthers() {
 void PingTask::listen() {
     receiveOthers();
     if (listening_ && (now() - listening_->scene.time).seconds() >= echoTime()) endListening();
-    if (!takeNext()) return;
+    if (!readNext()) return;
     if (listening_) endListening();  // the next ping ends it
     if (!begin()) return;
     if (!activity().realtime()) {
@@ -271,7 +271,7 @@ void PingTask::prepareRenderer() {
     if (!renderer_) return makeRenderer();
     const bool has_plan = renderer_->setGeometry(geometry_);
     if (is_changed_) return changeRenderer();
-    if (has_plan) takePlan();
+    if (has_plan) updatePlan();
 }
 
 void PingTask::changeRenderer() {
@@ -289,7 +289,7 @@ void PingTask::changeRenderer() {
     renderer_->setConfig(initial(config));
     is_changed_ = false;
     diagnostics_.emplace(pingsPerTurn());
-    takePlan();
+    updatePlan();
 }
 
 void PingTask::makeRenderer() {
@@ -301,7 +301,7 @@ void PingTask::makeRenderer() {
     options.threads = threads_;
     renderer_ = std::make_unique<SonarRenderer>(initial(config), geometry_, options);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
-    takePlan();
+    updatePlan();
 }
 
 const DetectionRules& PingTask::detectionRules() {
@@ -321,7 +321,7 @@ void PingTask::findStrongest(const types::Sonar& sample, const DetectionRules& r
     }
 }
 
-void PingTask::takePlan() {
+void PingTask::updatePlan() {
     rules_.reset();
     plan_ = renderer_->plan();
     if (const std::string note = depthNotice(renderer_->renderPlan(), takenScene()); !note.empty())
@@ -334,7 +334,7 @@ void PingTask::takePlan() {
 void PingTask::followQuality(types::Sonar& sample, double ms) {
     if (!quality_) return;
     const bool changed = quality_->follow(*renderer_, takenScene(), sample, ms, 1e3 * realtimePeriod());
-    std::ranges::move(quality_->takeNotices(), std::back_inserter(plan_->notices));
+    std::ranges::move(quality_->consumeNotices(), std::back_inserter(plan_->notices));
     if (!changed) return;
     rules_.reset();
     plan_->rows = quality_->quality().rows;
@@ -359,7 +359,7 @@ std::string PingTask::diagnosticOf(bool received, const types::Sonar& sample) {
 void PingTask::render() {
     prepareRenderer();
     const auto sample = pool_.take();
-    const auto reported = takeTruth();
+    const auto reported = acquireTruth();
     const auto signals = elements.connected() ? signals_.take() : nullptr;
     renderer_->setElements(*sample, signals.get());
     const Counts before = thread_counts;
@@ -391,7 +391,7 @@ void PingTask::render() {
     if (signals) elements.write(signals);
 }
 
-std::shared_ptr<types::SonarTruth> PingTask::takeTruth() { return wantsTruth() ? truths_.take() : nullptr; }
+std::shared_ptr<types::SonarTruth> PingTask::acquireTruth() { return wantsTruth() ? truths_.take() : nullptr; }
 
 void PingTask::nameObjects(types::SonarTruth& truth_of_ping) const {
     std::vector<std::string>& names = truth_of_ping.objects;
@@ -400,7 +400,7 @@ void PingTask::nameObjects(types::SonarTruth& truth_of_ping) const {
 }
 
 void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& reported) {
-    reported->takeGrid(sample);
+    reported->copyGrid(sample);
     nameObjects(*reported);
     truths_.stock(*reported);
     if (truth.connected()) truth.write(reported);

@@ -14,7 +14,7 @@
 #include "components/sonar/base/Counters.hpp"
 #include "components/sonar/bins/Detection.hpp"
 #include "components/sonar/multipath/OtherSonars.hpp"
-#include "components/sonar/renderer/PingDiagnostics.hpp"
+#include "components/sonar/renderer/PlanReport.hpp"
 #include "components/sonar/renderer/QualityKeeper.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/tasks/TriggeredTask.hpp"
@@ -171,7 +171,7 @@ private:
     /** Does only the work of a ping on which later pings depend. */
     void rehearse();
     /** Returns the truth that the next ping fills; null where no output needs it. */
-    std::shared_ptr<types::SonarTruth> takeTruth();
+    std::shared_ptr<types::SonarTruth> acquireTruth();
     void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& reported);
     /** Returns the time in realtime at which the last echo of this ping's range is back. */
     types::Time lastEcho() const;
@@ -182,7 +182,7 @@ private:
     void makeRenderer();
     /** Switches the renderer to the present configuration, at the quality that it has. */
     void changeRenderer();
-    void takePlan();
+    void updatePlan();
     /** Returns the diagnostic of a ping that may be empty. */
     std::string diagnosticOf(bool received, const types::Sonar& sample);
     /** Updates the quality after a ping that took `ms` to render; may render it again. */
