@@ -10,6 +10,7 @@
 #include "tests/support/RandomSonars.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
+#include "tests/support/Waiting.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -69,6 +70,46 @@ TEST(BinExplanationTest, ThePartsOfABinSumUpToItForEverySonar) {
             for (const size_t at : someBins(ping, draw)) expectSum(bench.task(), ping, at, one.is_coherent);
         }
     });
+}
+
+std::string explanationOf(PingTask& task, double bearing_deg, double range) {
+    std::string found;
+    EXPECT_TRUE(test::becomesTrue([&] { return !(found = task.explain(bearing_deg, range)).empty(); }));
+    return found;
+}
+
+TEST(BinExplanationTest, ARunningSonarExplainsItsLastPingWhileItGoesOn) {
+    test::forEachSonar(12, [](const RandomSonar& one, Draw& draw) {
+        test::SonarBench bench(one);
+        PingTask& task = bench.task();
+        EXPECT_THROW(task.explain(0, 5), std::runtime_error) << "before the first ping";
+        const types::Sonar ping = bench.pingsOf(one.scene()).back();
+        for (const size_t at : someBins(ping, draw)) {
+            const size_t beam = at / ping.bin_count, bin = at % ping.bin_count;
+            const double bearing = ping.bearings[beam].deg(),
+                         range = (static_cast<double>(bin) + 0.5) * ping.binWidth();
+            const PingTask::RenderedBeam rendered = task.renderedBeam(beam);
+            EXPECT_EQ(task.explain(bearing, range), "") << "it has just begun";
+            EXPECT_EQ(task.explain(bearing, range / 2), "") << "another place waits";
+            EXPECT_THAT(explanationOf(task, bearing, range),
+                        testing::AllOf(
+                            testing::StartsWith("ping at "), HasSubstr(fmt::format(" bin {} at ", bin)),
+                            testing::EndsWith(text(explainBin(rendered.config, rendered.scene, rendered.beam, bin)))));
+            EXPECT_THAT(explanationOf(task, bearing, range / 2), testing::StartsWith("ping at "));
+        }
+        EXPECT_EQ(task.explain(ping.bearings[0].deg(), 1), "");
+        bench.pingsOf(one.scene());  // meanwhile
+        for (const double wrong : {-1.0, 1e6, std::nan("")})
+            EXPECT_THROW(explanationOf(task, ping.bearings[0].deg(), wrong), std::runtime_error) << wrong;
+    });
+}
+
+TEST(BinExplanationTest, ASonarHasNoBinBesideItsFan) {
+    RandomSonar one = test::randomSonar(6);  // a fan of at most 140 deg
+    test::SonarBench bench(one);
+    bench.pingsOf(one.scene());
+    EXPECT_THROW(bench.task().explain(180, 5), std::runtime_error);
+    EXPECT_THROW(bench.task().explain(std::nan(""), 5), std::runtime_error);
 }
 
 /** 16 beams of 5 deg, 200 bins of 0.1 m, 60 deg high. */

@@ -131,7 +131,7 @@ public:
             if (value.starts_with('{')) task_->properties().front()->setAll({{name, "null"}});
         task_->properties().front()->setAll(values);
     }
-    const sonar::PingTask& task() const { return dynamic_cast<const sonar::PingTask&>(*task_); }
+    sonar::PingTask& task() const { return dynamic_cast<sonar::PingTask&>(*task_); }
     const sonar::Counts& counts() const { return task().counted().counts; }
     types::SonarTruthPtr truth;  ///< Of the last ping.
 

@@ -171,6 +171,22 @@ TEST_F(PageTest, TwoClicksMeasureDistanceAndDirection) {
     EXPECT_EQ(text("measured"), "");
 }
 
+TEST_F(PageTest, AClickExplainsABinWhileTheButtonIsOn) {
+    clickAt(6.75, 10);
+    nextFrame();
+    EXPECT_EQ(text("explained"), "");
+    click("explain");
+    clickAt(6.75, 10);
+    EXPECT_TRUE(becomes(byId("explained") + ".textContent === 'at 10 deg, 6.7 m' || " + byId("explained") +
+                        ".textContent === 'at 10 deg, 6.8 m'"));
+    clickAt(12.5, 0);
+    EXPECT_TRUE(becomes(byId("explained") + ".textContent === 'there is no bin'"));
+    clickAt(8, -10);
+    EXPECT_TRUE(becomes(byId("explained") + ".textContent === 'at -10 deg, 8.0 m'"));
+    click("explain");
+    EXPECT_EQ(text("explained"), "");
+}
+
 TEST_F(PageTest, MeasuresAlikeOnScreensOfAnyScale) {
     for (const double scale : {1.25, 2.0}) {
         browser->size(1280, 800, scale);

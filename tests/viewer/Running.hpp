@@ -1,5 +1,7 @@
 #pragma once
 // A running deployment with a viewer.
+#include <fmt/format.h>
+
 #include <atomic>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
@@ -43,7 +45,14 @@ public:
     framework::Properties<LevelConfig> config{this};
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "of that level"};
 
+    framework::Operation<std::string(double, double)> explain{
+        this, "explain", "as a sonar's", [this](double bearing_deg, double range) -> std::string {
+            if (range > 12) throw std::runtime_error("there is no bin");
+            return asked_++ % 2 == 0 ? "" : fmt::format("at {:.0f} deg, {:.1f} m", bearing_deg, range);
+        }};
+
 private:
+    int asked_ = 0;
     bool propertiesHook() override {
         if (config->level == 66) throw std::runtime_error("66 is no level for today");
         return true;

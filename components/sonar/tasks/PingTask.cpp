@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "components/acoustics/BeamPattern.hpp"
@@ -13,8 +14,10 @@
 #include "components/framework/Activity.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/multipath/OtherSonars.hpp"
+#include "components/sonar/renderer/BinExplanation.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
 #include "types/ConfigError.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -193,6 +196,53 @@ PingTask::RenderedBeam PingTask::renderedBeam(size_t beam) const {
     return rendered;
 }
 
+std::string PingTask::explainAt(const Place& place) {
+    if (!explained_.second.empty() && explained_.first == place) return std::exchange(explained_.second, {});
+    if (explanation_.valid() && explanation_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        explained_ = {explaining_, explanation_.get()};
+        if (explaining_ == place) return std::exchange(explained_.second, {});
+    }
+    if (!explanation_.valid()) beginExplanation(place);
+    return {};
+}
+
+void PingTask::beginExplanation(const Place& place) {
+    if (!last_ping_) throw std::runtime_error("there is no ping yet");
+    const types::Sonar& sample = *last_ping_;
+    const auto [bearing_deg, range] = place;
+    const auto apart = [bearing = types::radians(bearing_deg)](const types::Angle& beam) {
+        return std::abs(std::remainder(beam.rad - bearing, 2 * std::numbers::pi));
+    };
+    const auto nearest = std::ranges::min_element(sample.bearings, {}, apart);
+    if (!(apart(*nearest) <= std::max(sample.beam_width.rad, types::radians(1))))
+        throw std::runtime_error(fmt::format(
+            "the last ping has no beam at {:.2f} deg; the nearest one is at {:.2f} deg", bearing_deg, nearest->deg()));
+    if (!(range >= 0 && range < sample.binStart(sample.bin_count)))
+        throw std::runtime_error(fmt::format("the last ping has no bin at {:.3f} m; its bins end at {:.3f} m", range,
+                                             sample.binStart(sample.bin_count)));
+    const auto bin = std::min(static_cast<size_t>(range / sample.binWidth()), size_t{sample.bin_count} - 1);
+    const auto row = static_cast<size_t>(nearest - sample.bearings.begin());
+    const std::string head =
+        fmt::format("ping at {:.3f} s, beam {} at {:.2f} deg, bin {} at {:.3f} m: {}\n", sample.time.seconds(), row,
+                    nearest->deg(), bin, sample.binStart(static_cast<uint32_t>(bin)),
+                    intensityText(double{sample.bins[row * sample.bin_count + bin]}));
+    explaining_ = place;
+    explanation_ = std::async(std::launch::async, [head, bin, beam = renderedBeam(row)]() -> std::string {
+        try {
+            types::useDefaultScheduling();
+            return head + text(explainBin(beam.config, beam.scene, beam.beam, bin));
+        } catch (const std::exception& error) {
+            return head + "cannot be explained: " + error.what();
+        }
+    });
+}
+
+void PingTask::cleanupHook() {
+    explanation_ = {};  // waits for its thread
+    last_ping_.reset();
+    renderer_.reset();
+}
+
 void PingTask::stopHook() {
     TriggeredTask::stopHook();
     cut_off_ += listening_ ? 1 : 0;
@@ -335,6 +385,7 @@ void PingTask::render() {
     if (pose.connected()) pose.write(usedPose());
     writeMore(*sample, takenScene().sonar);
     ping.write(sample);
+    last_ping_ = sample;
     if (reported) writeTruth(*sample, reported);
     if (signals) elements.write(signals);
 }

@@ -1,10 +1,14 @@
 #pragma once
+#include <future>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "components/framework/Offers.hpp"
+#include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/sonar/base/Counters.hpp"
@@ -72,6 +76,14 @@ public:
         this, "elements",
         "complex signals of the array's elements, of a sonar with `elements`; computed only when connected"};
 
+    framework::Operation<std::string(double, double)> explain{
+        this, "explain",
+        "what made the bin at a bearing [deg] and a slant range [m] of the last ping; empty while that is being found "
+        "on another thread: call again",
+        [this](double bearing_deg, double range) {
+            return explainAt({bearing_deg, range});
+        }};
+
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     types::Notices notices() const override;
     /** Reports files of sound speeds and of beams that cannot be used. */
@@ -136,9 +148,13 @@ protected:
     void updateHook() override;
     void errorHook() override { updateHook(); }
     void stopHook() override;
-    void cleanupHook() override { renderer_.reset(); }
+    void cleanupHook() override;
 
 private:
+    using Place = std::pair<double, double>;  ///< Bearing and slant range [deg, m].
+    std::string explainAt(const Place& place);
+    /** Starts to explain the bin at a place of the last ping. Throws std::runtime_error where the ping has no bin. */
+    void beginExplanation(const Place& place);
     /** Takes the next ping, if there is one, and sends its pulse. Returns whether it can be rendered. */
     bool begin();
     void prepareTransmission();
@@ -190,7 +206,11 @@ private:
     std::optional<Taken> heard_;      ///< The last ping that waited for them.
     double render_seconds_ = 0;       ///< Time that the last ping took [s].
     CountedPings counted_;
-    uint64_t cut_off_ = 0;  ///< Pings that still waited for pulses at the stop [1].
+    types::SonarPtr last_ping_;
+    std::future<std::string> explanation_;  ///< Being found, for `explaining_`.
+    Place explaining_;
+    std::pair<Place, std::string> explained_;  ///< The last text that is found; empty once it has been fetched.
+    uint64_t cut_off_ = 0;                     ///< Pings that still waited for pulses at the stop [1].
     framework::SamplePool<types::Sonar> pool_;
     framework::SamplePool<types::SonarTruth> truths_;
     framework::SamplePool<types::SonarReturns> all_returns_;

@@ -1,4 +1,4 @@
-// Pointer gestures on the picture: the wheel or two fingers zoom, dragging moves it, a click measures.
+// Pointer gestures on the picture: the wheel or two fingers zoom, dragging moves it, a click measures or explains.
 
 const click_px = 4;
 
@@ -7,7 +7,7 @@ export class Hands {
   constructor(fan, changed) {
     this.fan = fan;
     this.changed = changed;
-    this.measuring = false;
+    this.measuring = this.explaining = false;
     this.down = new Map();  // pointers, by id
     const on = (kind, heard) => fan.canvas.addEventListener(kind, heard, {passive: false});
     on('pointermove', (event) => this.move(event));
@@ -49,6 +49,7 @@ export class Hands {
     const finger = this.down.get(event.pointerId);
     this.down.delete(event.pointerId);
     if (this.measuring && finger?.far <= click_px) this.fan.mark(this.at(event));
+    if (this.explaining && finger?.far <= click_px) this.on_explain?.(this.at(event));
     if (event.pointerType === 'touch') this.fan.cursor = null;
     this.changed();
   }

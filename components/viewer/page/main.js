@@ -2,6 +2,7 @@
 import {names} from './colours.js';
 import {attitudeOf, showAttitude} from './attitude.js';
 import {Controls} from './controls.js';
+import {Explanation} from './explain.js';
 import {Fan} from './fan.js';
 import {First} from './first.js';
 import {showGraph} from './graph.js';
@@ -27,14 +28,14 @@ const link = new Link(take, (open) => {
 });
 const properties = new Properties(link), controls = new Controls(link, byId('controls'));
 const first = new First(link, byId('first')), timelines = new Timelines(link, byId('timelines'));
-const hands = new Hands(fan, () => { needs_drawing = true; });
+const hands = new Hands(fan, () => { needs_drawing = true; }), explanation = new Explanation(link, byId('explained'));
 
 const show = {
   interfaces(message) {
     const before = interfaces;
     interfaces = JSON.stringify(message);
     if (interfaces === before) return;  // a restored connection: fields keep the text being typed
-    for (const part of [properties, controls, first, timelines]) part.setInterfaces(message);
+    for (const part of [properties, controls, first, timelines, explanation]) part.setInterfaces(message);
   },
   status(status) {
     rates.update(status);
@@ -158,6 +159,12 @@ byId('measure').onclick = () => {
   hands.measure(!hands.measuring);
   byId('measure').className = hands.measuring ? 'on' : '';
 };
+byId('explain').onclick = () => {
+  hands.explaining = !hands.explaining;
+  byId('explain').className = hands.explaining ? 'on' : '';
+  if (!hands.explaining) explanation.clear();
+};
+hands.on_explain = (at) => fan.ping && explanation.ask(fan.ping.source, properties.status?.connections ?? [], fan.placeAt(...at));
 byId('whole').onclick = () => hands.whole();
 hands.on_zoom = (zoom) => { byId('whole').disabled = zoom === 1; };
 byId('save').onclick = () => savePicture(fan, shown_attitude);
