@@ -41,7 +41,7 @@ void notice(const Asked& options, const std::string& text) {
 }
 
 /** Applies the log's own settings of tasks that run, below the user's; returns the changes during the recording. */
-std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& options) {
+std::vector<RecordedProperty> readSettings(const log::Reader& log, Asked& options) {
     RecordedSettings recorded =
         recordedSettings(log, loadSpec(options), options.set, options.seed, options.replay.from);
     const framework::DeploymentSpec kept = replaying(loadSpec(options), log, options.replay);
@@ -191,7 +191,7 @@ int replay(Asked options) {
     log::Reader& log = *opened;
     if (!options.from.empty() && !log.samples().empty()) options.replay.from = startIn(log, options.from);
     std::vector<RecordedProperty> changed;
-    if (options.replay.rerender) changed = takeSettings(log, options);
+    if (options.replay.rerender) changed = readSettings(log, options);
     try {
         return replayWith(std::move(changed), log, options);
     } catch (const types::ConfigError& error) {

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "components/receiver/ReceiverConfig.hpp"
+#include "components/receiver/Receiver.hpp"
 #include "types/Angle.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
@@ -153,7 +153,7 @@ protected:
     std::vector<char> take(uint64_t at, size_t size);
     /** Returns the packet at `next_`, which becomes `at_`; its header has `header` bytes. Empty at the end of the file.
      *  @param sizeOf returns the packet's size from the header, or fails */
-    std::vector<char> takePacket(size_t header, auto&& sizeOf) {
+    std::vector<char> readPacket(size_t header, auto&& sizeOf) {
         at_ = next_;
         if (at_ >= size_) return {};
         const std::vector<char> head = take(at_, header);

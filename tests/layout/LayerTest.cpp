@@ -32,10 +32,10 @@ std::vector<Source> product(const std::string& folder = "components") {
 }
 
 /** Which folder includes files of which other. */
-Graph foldersOf(const std::vector<Source>& sources) {
+Graph folders(const std::vector<Source>& sources) {
     Graph graph;
     for (const Source& source : sources)
-        for (const Include& include : includesOf(source))
+        for (const Include& include : includes(source))
             if (include.ours && folderOf(include.target) != folderOf(source.path))
                 graph[folderOf(source.path)].insert(folderOf(include.target));
     return graph;
@@ -94,7 +94,7 @@ std::vector<Figure> figuresOfTheTree() {
     }
     const auto largest = std::ranges::max_element(files, {}, [](const auto& folder) { return folder.second; });
     return {{"folders of components/sonar in a circle of includes",
-             inCircles(foldersOf(product("components/sonar"))).size(), 0},
+             inCircles(folders(product("components/sonar"))).size(), 0},
             {"units (a header with its source) of components and types", units.size(), max_units},
             {"files of at most 40 lines", small_files, max_small_files},
             {"files in the largest folder, " + largest->first, largest->second, max_folder},
@@ -111,7 +111,7 @@ TEST(LayerTest, TheSonarIncludesDownwards) {
     size_t checked = 0;
     for (const Source& source : product("components/sonar")) {
         ASSERT_LT(rank(source.path), std::ssize(layers)) << source.path << " is in no layer";
-        for (const Include& include : includesOf(source))
+        for (const Include& include : includes(source))
             if (include.target.starts_with(sonar)) {
                 EXPECT_LE(rank(include.target), rank(source.path)) << source.path << " includes " << include.target;
                 ++checked;
@@ -124,7 +124,7 @@ TEST(LayerTest, ACircleIsFound) {
     const std::vector<Source> sources{{"a/A.hpp", {"#include \"b/B.hpp\""}},
                                       {"b/B.hpp", {"#include \"c/C.hpp\"", "#include <vector>"}},
                                       {"c/C.cpp", {"#include \"b/B.hpp\"", "#include \"c/C.hpp\""}}};
-    EXPECT_EQ(inCircles(foldersOf(sources)), (std::vector<std::string>{"b", "c"}));
+    EXPECT_EQ(inCircles(folders(sources)), (std::vector<std::string>{"b", "c"}));
 }
 
 TEST(LayerTest, TheTreeIsNoLargerThanItWas) {
