@@ -57,22 +57,18 @@ void printTable(const log::Reader& log) {
                                  s.set_backs, s.set_back.seconds());
 }
 
-/** Returns the recordings that can be imported: "FILE.xtf (XTF of a side-scan)". */
+/** Returns the recordings that can be imported: "FILE.xtf of a side-scan, FILE.aris of an ARIS". */
 std::string recordingHelp() {
     std::string help;
     for (const recordings::RecordingFormat& format : recordings::recordingFormats())
-        help += (help.empty() ? "" : ", ") +
-                (format.ending.empty() ? std::string(format.name)
-                                       : fmt::format("FILE{} ({}, {})", format.ending, format.name, format.device));
+        help += format.ending.empty() ? fmt::format("or {}", format.name)
+                                      : fmt::format("FILE{} of {}, ", format.ending, format.device);
     return help;
 }
 
-/** Opens a log, and prints a notice where it cannot be read to its end. Throws types::ConfigError for a recording of
- *  another program or device, with the command that makes a log of it. */
+/** Opens a log, and prints a notice where it cannot be read to its end. */
 std::unique_ptr<log::Reader> opened(const std::string& file) {
-    if (const recordings::RecordingFormat* const format = recordings::findRecordingFormat(file))
-        throw types::ConfigError(
-            file, "", fmt::format("is a recording of {}; `insonify log import` makes a log of it", format->device));
+    recordings::refuseRecording(file);
     auto log = log::openLog(file);
     if (!log->complete()) console::printDiagnostic("notice: {}: {}\n", file, log->diagnostic());
     return log;

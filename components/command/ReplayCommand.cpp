@@ -18,6 +18,7 @@
 #include "components/deployer/StopSignal.hpp"
 #include "components/log/LoggerClock.hpp"
 #include "components/log/Reader.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::command {
@@ -184,6 +185,7 @@ double startIn(const log::Reader& log, const std::string& from) {
 }
 
 int replay(Asked options) {
+    recordings::refuseRecording(options.replay.log);
     const auto opened = log::openLog(options.replay.log);
     refuseFolderOf(options.replay.log, options.out);
     log::Reader& log = *opened;

@@ -7,7 +7,7 @@
 #include "components/acoustics/Absorption.hpp"
 #include "components/acoustics/SoundSpeed.hpp"
 #include "components/framework/ConfigReader.hpp"
-#include "types/Embed.hpp"
+#include "components/framework/Embed.hpp"
 
 INSONIFY_EMBED(insonify_starter_scene, INSONIFY_STARTER
                "/"
@@ -36,11 +36,9 @@ INSONIFY_EMBED(insonify_starter_sweep, INSONIFY_STARTER
 
 namespace insonify::command {
 
-using sonars::SonarFigures, sonars::SonarMode, sonars::SonarStarter;
+using framework::embedded, sonars::SonarFigures, sonars::SonarMode, sonars::SonarStarter;
 
 namespace {
-
-std::string_view between(const char* begin, const char* end) { return {begin, static_cast<size_t>(end - begin)}; }
 
 const acoustics::Water water{.temperature_celsius = 12, .salinity_psu = 35, .depth = 8, .ph = 8.1};
 
@@ -52,9 +50,9 @@ double toneSeconds(const SonarFigures& sonar) { return 2 * sonar.modes.front().r
 
 /** Returns the template for a sonar of its kind. */
 std::string_view templateFor(const SonarFigures& sonar) {
-    if (sonar.isGrid()) return between(insonify_starter_grid_begin, insonify_starter_grid_end);
-    if (sonar.isFan()) return between(insonify_starter_fan_begin, insonify_starter_fan_end);
-    return between(insonify_starter_scanning_begin, insonify_starter_scanning_end);
+    if (sonar.isGrid()) return embedded(insonify_starter_grid_begin, insonify_starter_grid_end);
+    if (sonar.isFan()) return embedded(insonify_starter_fan_begin, insonify_starter_fan_end);
+    return embedded(insonify_starter_scanning_begin, insonify_starter_scanning_end);
 }
 
 /** Aligns comments behind values in one column, where they fit. */
@@ -140,12 +138,12 @@ std::string starterDeployment(const SonarFigures& sonar) {
 
 std::vector<StarterFile> starterFiles(const SonarFigures& sonar) {
     std::vector<StarterFile> files{
-        {"scene.glb", between(insonify_starter_scene_begin, insonify_starter_scene_end)},
-        {"make_scene.py", between(insonify_starter_script_begin, insonify_starter_script_end)},
-        {"pass.csv", between(insonify_starter_pass_begin, insonify_starter_pass_end)},
-        {"hover.csv", between(insonify_starter_hover_begin, insonify_starter_hover_end)}};
+        {"scene.glb", embedded(insonify_starter_scene_begin, insonify_starter_scene_end)},
+        {"make_scene.py", embedded(insonify_starter_script_begin, insonify_starter_script_end)},
+        {"pass.csv", embedded(insonify_starter_pass_begin, insonify_starter_pass_end)},
+        {"hover.csv", embedded(insonify_starter_hover_begin, insonify_starter_hover_end)}};
     if (sonar.isFan())
-        files.push_back({"sweep.yml", between(insonify_starter_sweep_begin, insonify_starter_sweep_end)});
+        files.push_back({"sweep.yml", embedded(insonify_starter_sweep_begin, insonify_starter_sweep_end)});
     return files;
 }
 

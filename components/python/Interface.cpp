@@ -12,6 +12,7 @@
 #include "components/deployer/SimulationBatch.hpp"
 #include "components/framework/ConfigReader.hpp"
 #include "components/python/Samples.hpp"
+#include "components/recordings/RecordingReader.hpp"
 #include "types/ConfigError.hpp"
 #include "types/OwnProcess.hpp"
 
@@ -55,7 +56,8 @@ public:
 
 class LogHandle final : public Handle {
 public:
-    explicit LogHandle(const std::string& file) : log(log::openLog(file)), samples(log->streams().size()) {
+    explicit LogHandle(const std::string& file)
+        : log((recordings::refuseRecording(file), log::openLog(file))), samples(log->streams().size()) {
         times_.resize(samples.size());
         for (const log::SampleRef& at : log->samples()) {
             samples[at.stream].push_back(at);

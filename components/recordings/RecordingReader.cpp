@@ -59,6 +59,13 @@ const RecordingFormat* findRecordingFormat(const std::filesystem::path& file) {
     return file.has_extension() ? types::findFormat(all_formats, file) : nullptr;
 }
 
+void refuseRecording(const std::filesystem::path& file) {
+    if (const RecordingFormat* const format = findRecordingFormat(file))
+        throw types::ConfigError(
+            file.string(), "",
+            fmt::format("is a recording of {}; `insonify log import` makes a log of it", format->device));
+}
+
 std::string recordingEndings() {
     return types::alternativeEndings(all_formats, [](const RecordingFormat& format) { return !format.ending.empty(); });
 }

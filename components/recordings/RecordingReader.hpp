@@ -85,6 +85,9 @@ struct RecordingFormat {
 std::span<const RecordingFormat> recordingFormats();
 /** Returns the format with the ending of a file, in any case of letters; null: none has it. */
 const RecordingFormat* findRecordingFormat(const std::filesystem::path& file);
+/** Throws types::ConfigError where a log is wanted and the file has the ending of a recording, with the command that
+ * makes a log of it. */
+void refuseRecording(const std::filesystem::path& file);
 /** Returns the endings as a message lists them: ".xtf, .jsf or .aris". */
 std::string recordingEndings();
 

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "components/framework/ConfigReader.hpp"
+#include "components/framework/Embed.hpp"
 #include "components/framework/YamlText.hpp"
 #include "types/Ascii.hpp"
-#include "types/Embed.hpp"
 
 INSONIFY_EMBED(insonify_sonars, INSONIFY_SONARS)
 
@@ -75,7 +75,8 @@ std::vector<SonarFigures> readSonars(const std::string& yaml, const std::string&
 }
 
 const std::vector<SonarFigures>& sonars() {
-    static const std::vector<SonarFigures> all = readSonars({insonify_sonars_begin, insonify_sonars_end}, "sonars.yml");
+    static const std::vector<SonarFigures> all =
+        readSonars(std::string(framework::embedded(insonify_sonars_begin, insonify_sonars_end)), "sonars.yml");
     return all;
 }
 

@@ -178,6 +178,8 @@ TEST_F(ImportCommandTest, RecordingsAndPropertiesOfOtherRunsStay) {
     EXPECT_EQ(readFile(folder_ / "out/properties.0.log"), own);
     EXPECT_EQ(into("imported/dive.0.log").code, 0);
     EXPECT_EQ(into("imported/dive.0.log").code, 0) << "the same import again";
+    EXPECT_THAT(callInsonify(folder_, {"log", "info", "dive.oculus"}),
+                isRefused("dive.oculus: is a recording of an Oculus; `insonify log import` makes a log of it\n"));
     EXPECT_THAT(callInsonify(folder_, {"log", "import", "no.xtf", "--to", "x.0.log"}).err,
                 HasSubstr("no.xtf: does not exist; may be a .xtf, .jsf, "));
 }

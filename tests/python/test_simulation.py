@@ -49,6 +49,8 @@ def test_the_command_makes_the_same_pings_of_the_same_poses(deploy, tmp_path):
     log = insonify.read_log(next(tmp_path.glob("harbour*.log")))
     with pytest.raises(KeyError, match="sonar.pnig: is no stream of the log; there are receiver.ping, vehicle.pose"):
         log["sonar.pnig"]
+    with pytest.raises(insonify.ConfigError, match="line.xtf: is a recording of a side-scan; `insonify log import`"):
+        insonify.read_log("line.xtf")
     simulation = insonify.Simulation(deploy / "harbour_fls.yml", seed=5)
     pings = [stream for name, stream in log.items() if name == simulation.pings[0]][0]
     assert len(pings) == 3

@@ -56,6 +56,18 @@ TEST_F(RecordingReaderTest, AFileThatCannotBeReadIsOneErrorWithTheRemedy) {
     EXPECT_THAT(refusalOf(write({})), HasSubstr("line.xtf: is empty; may be a " + recordingEndings()));
 }
 
+TEST_F(RecordingReaderTest, WhereALogIsWantedARecordingIsAnErrorWithTheCommandThatImportsIt) {
+    for (const RecordingFormat& format : recordingFormats()) {
+        const std::string refusal =
+            test::errorOf<types::ConfigError>([&] { refuseRecording("a" + std::string(format.ending)); });
+        EXPECT_EQ(
+            refusal.find("a recording of " + std::string(format.device) + "; `insonify log import`") != refusal.npos,
+            !format.ending.empty())
+            << refusal;
+    }
+    EXPECT_NO_THROW(refuseRecording("a.0.log"));
+}
+
 TEST_F(RecordingReaderTest, TheContentDecidesAndNotTheEnding) {
     for (const char* name : {"line.XTF", "line.aris", "line", "line.txt"}) {
         writeBytes(folder_ / name, xtfLines(2));
