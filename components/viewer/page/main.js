@@ -57,7 +57,7 @@ const show = {
 
 function take(message) {
   if (message.type) return show[message.type]?.(message);
-  if (message.kind === 1) return takePing(pingOf(message));
+  if (message.kind === 1) return setPing(pingOf(message));
   if (message.kind === 3) return show.snapshot({...message.json, buffer: message.buffer, start: message.start});
   scenes.set(message.json.source, message);
   showScene();
@@ -90,7 +90,7 @@ function attitude() {
   return found ? {...attitudeOf(found, snapshot?.water_surface), source: found.source} : null;
 }
 
-function takePing(ping) {
+function setPing(ping) {
   const chooser = byId('source');
   if (![...chooser.options].some((option) => option.value === ping.source)) chooser.append(element('option', {}, ping.source));
   if (chooser.value !== ping.source || !ping.beams) return;
