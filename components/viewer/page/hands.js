@@ -1,4 +1,4 @@
-// Pointer gestures on the picture: the wheel or two fingers zoom, dragging moves it, a click measures or explains.
+// Pointer gestures on the picture: the wheel or two fingers zoom, dragging moves it, a click measures, with Shift it explains.
 
 const click_px = 4;
 
@@ -7,7 +7,7 @@ export class Hands {
   constructor(fan, changed) {
     this.fan = fan;
     this.changed = changed;
-    this.measuring = this.explaining = false;
+    this.measuring = false;
     this.down = new Map();  // pointers, by id
     const on = (kind, heard) => fan.canvas.addEventListener(kind, heard, {passive: false});
     on('pointermove', (event) => this.move(event));
@@ -48,10 +48,14 @@ export class Hands {
   lift(event) {
     const finger = this.down.get(event.pointerId);
     this.down.delete(event.pointerId);
-    if (this.measuring && finger?.far <= click_px) this.fan.mark(this.at(event));
-    if (this.explaining && finger?.far <= click_px) this.on_explain?.(this.at(event));
+    if (finger?.far <= click_px) this.click(event);
     if (event.pointerType === 'touch') this.fan.cursor = null;
     this.changed();
+  }
+  click(event) {
+    if (event.shiftKey) return this.on_shift_click?.(this.at(event));
+    this.on_click?.();
+    if (this.measuring) this.fan.mark(this.at(event));
   }
   leave() {
     if (!this.down.size) this.fan.cursor = null;

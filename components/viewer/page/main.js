@@ -159,12 +159,8 @@ byId('measure').onclick = () => {
   hands.measure(!hands.measuring);
   byId('measure').className = hands.measuring ? 'on' : '';
 };
-byId('explain').onclick = () => {
-  hands.explaining = !hands.explaining;
-  byId('explain').className = hands.explaining ? 'on' : '';
-  if (!hands.explaining) explanation.clear();
-};
-hands.on_explain = (at) => fan.ping && explanation.ask(fan.ping.source, properties.status?.connections ?? [], fan.placeAt(...at));
+hands.on_shift_click = (at) => fan.ping && explanation.ask(fan.ping.source, properties.status?.connections ?? [], fan.placeAt(...at));
+hands.on_click = () => explanation.clear();
 byId('whole').onclick = () => hands.whole();
 hands.on_zoom = (zoom) => { byId('whole').disabled = zoom === 1; };
 byId('save').onclick = () => savePicture(fan, shown_attitude);
