@@ -56,11 +56,11 @@ const glm::dvec3 ball_at(9, 1, -0.5);
 sonar::SonarConfig smallFan() { return fan(60, 40, 16, 15); }
 types::GeometryPtr wallAndBall() { return sceneOf({facingWall(12), sphere(1.5, 48)}, {{0, 0, 0}, ball_at}); }
 
-/** Passes if a changed scene has the echoes of wall and ball, to `tolerance`. */
-Outcome sounds(double tolerance, const types::GeometryPtr& changed, const std::string& got) {
+/** Passes if a changed scene has the echoes of wall and ball, to `allowed`. */
+Outcome sounds(double allowed, const types::GeometryPtr& changed, const std::string& got) {
     const Probe received = probe(smallFan(), lookingAt(changed)), plain = probe(smallFan(), lookingAt(wallAndBall()));
     const double deviation = difference(received.ping, plain.ping);
-    return within(tolerance, deviation, got + (deviation == 0 ? ": bit-identical" : ""), received);
+    return within(allowed, deviation, got + (deviation == 0 ? ": bit-identical" : ""), received);
 }
 
 /** Returns wall and ball with `change` applied to the scene. */
