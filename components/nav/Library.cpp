@@ -1,6 +1,6 @@
 // The component library nav, which is loaded by deployments that name a type of this namespace.
 #include "components/loader/Interface.hpp"
-#include "components/nav/SensorTasks.hpp"
+#include "components/nav/SensorTask.hpp"
 
 INSONIFY_COMPONENT_LIBRARY;
 

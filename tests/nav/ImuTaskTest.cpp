@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/nav/ErrorModel.hpp"
-#include "components/nav/SensorTasks.hpp"
+#include "components/nav/SensorTask.hpp"
 #include "tests/nav/Paths.hpp"
 #include "tests/support/TaskBench.hpp"
 

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/nav/SensorTasks.hpp"
+#include "components/nav/SensorTask.hpp"
 #include "tests/nav/Paths.hpp"
 #include "tests/support/TaskBench.hpp"
 

@@ -14,8 +14,8 @@ namespace {
 /** Truth of a cell. */
 struct CellTruth {
     int64_t object = -1;  ///< As Cells::object.
-    uint32_t beam = 0;    ///< As Cells::beam [1].
     uint32_t hits = 0;    ///< Samples of the cell [1].
+    uint32_t beam = 0;    ///< As Cells::beam [1].
     double sine_elevation = 0, sine_grazing = 0;
 };
 

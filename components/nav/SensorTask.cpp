@@ -1,4 +1,4 @@
-#include "components/nav/SensorTasks.hpp"
+#include "components/nav/SensorTask.hpp"
 
 namespace insonify::nav {
 
