@@ -115,7 +115,7 @@ enum class Wrong {
     BinBeyond,     ///< Reports a bin behind the last.
     BeamBeyond,    ///< Adds an echo to a beam behind the last.
     NowhereEcho,   ///< Adds an echo at no range.
-    FewEnergies,   ///< Adds energies to fewer range cells than there are.
+    CellBeyond,    ///< Adds energies to a cell behind the last.
     ThreadBeyond,  ///< Uses the buffer of a thread that does not exist.
 };
 
@@ -131,8 +131,8 @@ public:
         if (wrong_ == Wrong::BinBeyond) made.report(made.ping.bins.size(), false);
         if (wrong_ == Wrong::BeamBeyond) made.field->add(made.ping.beam_count, 3, 1);
         if (wrong_ == Wrong::NowhereEcho) made.field->add(0, std::nan(""), 1);
-        if (wrong_ == Wrong::FewEnergies) made.field->addEnergies(0, std::vector<float>(3), 0);
-        if (wrong_ == Wrong::ThreadBeyond) made.field->energies(2);
+        if (wrong_ == Wrong::CellBeyond) made.field->addEnergies(1 << 20, 0);
+        if (wrong_ == Wrong::ThreadBeyond) made.field->energies(0, 2);
     }
     void addToBins(types::Sonar& ping) override {
         if (wrong_ == Wrong::NotANumber) ping.bins[7] = std::numeric_limits<float>::quiet_NaN();
@@ -187,8 +187,7 @@ TEST(SeamCheckTest, WhatAnEffectDoesWrongIsFoundAtTheSeam) {
                                                           "ping.bins.size(): 160, 160")));
     EXPECT_THAT(failure(Wrong::BeamBeyond, true), AllOf(HasSubstr("EchoField.cpp:"), HasSubstr("; beam, ")));
     EXPECT_THAT(failure(Wrong::NowhereEcho, true), AllOf(HasSubstr("EchoField.cpp:"), EndsWith(": nan, 1, 0")));
-    EXPECT_THAT(failure(Wrong::FewEnergies, true),
-                AllOf(HasSubstr("EchoField.cpp:"), HasSubstr("intensities.size(), response_.cells(): 3, ")));
+    EXPECT_THAT(failure(Wrong::CellBeyond, true), AllOf(HasSubstr("EchoField.cpp:"), HasSubstr(": 1048576, ")));
     EXPECT_THAT(failure(Wrong::ThreadBeyond, true), AllOf(HasSubstr("EchoField.cpp:"), EndsWith(": 2, 2")));
 }
 

@@ -256,7 +256,13 @@ std::span<float> EchoField::energies(size_t /*cell*/, size_t thread) {
     return scratch_[thread].energies;
 }
 
+void EchoField::add(size_t beam, double range, std::complex<double> field) {
+    INSONIFY_CHECK(beam < plan_.beams.size(), beam, plan_.beams.size());
+    response_.addEcho(range, field, beams_.beam(beam));
+}
+
 void EchoField::addEnergies(size_t cell, size_t thread) {
+    INSONIFY_CHECK(cell < plan_.cells.size(), cell, plan_.cells.size());
     Scratch& scratch = scratch_[thread];
     for (size_t k = 0; k < response_.cells(); ++k)
         scratch.phases[response_.place(k)] = scratch.phases[response_.place(k) + 1] = 0;

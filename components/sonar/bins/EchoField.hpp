@@ -102,9 +102,7 @@ public:
     EchoField* field() override { return this; }
 
     /** Adds an echo to a beam: its field at its own range, times the beam's response to it [1/m, m]. */
-    void add(size_t beam, double range, std::complex<double> field) {
-        response_.addEcho(range, field, beams_.beam(beam));
-    }
+    void add(size_t beam, double range, std::complex<double> field);
     /** Returns the fields of an azimuth cell, FieldResponse::samples() times real, imaginary [1/m]. */
     std::span<const float> cell(size_t cell) const { return beams_.cell(cell); }
     const FieldResponse& response() const { return response_; }
