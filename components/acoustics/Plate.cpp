@@ -12,6 +12,7 @@ using Complex = std::complex<double>;
 constexpr double grazing_cosine = 1e-6;  ///< Min cosine of incidence; waves nearer to grazing are computed at it [1].
 constexpr double min_loss = 1e-9;        ///< Keeps resonances finite [1].
 constexpr double max_decay = 300;        ///< Max attenuation across the plate; exp(-300) is as good as 0 [Np].
+constexpr double min_phase = 1e-7;       ///< A plate of a smaller phase is none: its fluids touch [rad].
 
 /** One kind of wave in the plate. */
 struct Wave {
@@ -77,6 +78,9 @@ PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid
                             double cos_incidence) {
     const double cosine = std::clamp(cos_incidence, grazing_cosine, 1.0);
     const double slowness = std::sqrt(1 - cosine * cosine) / before.sound_speed;
+    const Complex one = before.density * before.sound_speed / cosine, other = impedanceOf(behind, slowness);
+    if (!(2 * std::numbers::pi * frequency * plate.thickness > min_phase * plate.sound_speed))
+        return {(other - one) / (other + one), 2.0 * other / (other + one)};
     const Wave pressure = waveIn(plate, plate.sound_speed, frequency, slowness);
     Complex along = pressure.impedance * pressure.cot, across = pressure.impedance * pressure.inverse;
     if (plate.shear_speed > 0) {
@@ -87,7 +91,6 @@ PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid
         along = of_pressure * along + of_shear * shear.impedance * shear.cot;
         across = of_pressure * across + of_shear * shear.impedance * shear.inverse;
     }
-    const Complex one = before.density * before.sound_speed / cosine, other = impedanceOf(behind, slowness);
     const Complex i(0, 1), behind_plate = other + i * along;  // pressures vary as exp(-i omega t)
     const Complex at_face = i * along + across * across / behind_plate;
     return {(at_face - one) / (at_face + one), 2.0 * i * across * other / (behind_plate * (at_face + one))};

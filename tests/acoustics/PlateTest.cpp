@@ -175,6 +175,27 @@ TEST(PlateTest, EachReturnMatchesItsPath) {
     }
 }
 
+TEST(PlateTest, APlateOfNoThicknessIsTheBoundaryOfItsFluids) {
+    Draw draw;
+    for (int i = 0; i < 1000; ++i) {
+        const Fluid behind{draw.between(1, 9000), draw.between(200, 6000)};
+        const double cosine = 1e-3 + 0.999 * draw.uniform(), frequency = draw.between(1e3, 3e6);
+        const double sine = std::sqrt(1 - cosine * cosine) * behind.sound_speed / water.sound_speed;
+        const std::complex<double> other =
+            behind.density * behind.sound_speed / std::sqrt(std::complex<double>(1 - sine * sine, 0));
+        const double one = water.density * water.sound_speed / cosine;
+        const std::complex<double> reflected = (other - one) / (other + one), passed = 2.0 * other / (other + one);
+        for (const double thickness : {0., 1e-200, 1e-15, 1e-10}) {  // the last one is computed as a plate
+            Plate plate{thickness, draw.between(500, 9000), draw.between(300, 7000), 0, i % 3 ? draw.uniform() : 0};
+            if (i % 2) plate.shear_speed = 0.5 * plate.sound_speed;
+            const PlateResponse response = plateResponse(plate, water, behind, frequency, cosine);
+            const double tolerance = thickness < 1e-12 ? 1e-9 : 0.02 * (1 + std::abs(passed));
+            EXPECT_LT(std::abs(response.reflected - reflected), tolerance) << i << ", " << thickness;
+            EXPECT_LT(std::abs(response.transmitted - passed), tolerance) << i << ", " << thickness;
+        }
+    }
+}
+
 TEST(PlateTest, ReturnsOfExtremePlatesAreFiniteAndBounded) {
     Draw draw;
     for (int i = 0; i < 3000; ++i) {
