@@ -92,9 +92,7 @@ PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, co
 void CellDeposit::cover() {
     INSONIFY_CHECK(cells.count <= Cells::capacity, cells.count);
     INSONIFY_CHECK(cells.of_bodies_count <= cells.count, cells.of_bodies_count, cells.count);
-    [[maybe_unused]] const int wrong = firstWrong(cells, to_.first_beam);
-    INSONIFY_CHECK(wrong == cells.count, wrong, cells.count, cells.strength[wrong], cells.distance[wrong],
-                   cells.normal_x[wrong], cells.cos_az[wrong], cells.beam[wrong], to_.first_beam);
+    INSONIFY_CHECK(firstWrong(cells, to_.first_beam) == cells.count, firstWrong(cells, to_.first_beam), cells.count);
     const double near_edge = rules_.edges.front(), far_edge = rules_.edges[static_cast<size_t>(rules_.bins.bin_count)];
     coverAll(cells, near_edge, far_edge, covered);
     bendCells(near_edge, far_edge);
