@@ -431,6 +431,16 @@ void writeRows(Reader& log, const std::string& stream, const std::filesystem::pa
     csv.close();
 }
 
+/** Calls `write` with the type of a stream's samples. Returns false where samples of the type are not written. */
+bool writeByType(const Stream& declared, const auto& write) {
+    bool done = false;
+    types::forEachSampleType([&]<class T>(std::type_identity<T> type) {
+        if constexpr (types::Arrayed<T> || types::Tabular<T> || types::Scalar<T> || Text<T>)
+            if (declared.holds<T>()) write(type), done = true;
+    });
+    return done;
+}
+
 }  // namespace
 
 std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
@@ -439,21 +449,16 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
     if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path, meta);
     if (declared.holds<DepthMap>()) return writeRuns<DepthMap>(log, stream, path, meta);
     if (declared.holds<PointCloud>()) return writeCloud(log, stream, path, meta);
-    bool done = false;
     std::vector<Path> files{path};
-    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if (!declared.holds<T>()) return;
+    const auto write = [&]<class T>(std::type_identity<T>) {
         if constexpr (types::Arrayed<T>)
             files = writeRuns<T>(log, stream, path, meta);
         else if constexpr (types::Tabular<T>)
             writeRows<T>(log, stream, path, meta);
-        else if constexpr (types::Scalar<T> || Text<T>)
-            writeValues<T>(log, stream, path, meta);
         else
-            return;
-        done = true;
-    });
-    if (!done)
+            writeValues<T>(log, stream, path, meta);
+    };
+    if (!writeByType(declared, write))
         throw types::ConfigError(
             log.path(), stream,
             "holds " + declared.type +
@@ -470,20 +475,15 @@ void exportCsv(Reader& log, const std::string& stream, const std::filesystem::pa
         return writeParts<types::PointCloud>(log, stream, path, "time,x,y,z,intensity");
     if (declared.holds<types::DepthMap>())
         return writeParts<types::DepthMap>(log, stream, path, "time,row,column,distance,remission");
-    bool done = false;
-    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if (!declared.holds<T>()) return;
+    const auto write = [&]<class T>(std::type_identity<T>) {
         if constexpr (types::Arrayed<T>)
             writeGrids<T>(log, stream, path);
         else if constexpr (types::Tabular<T>)
             writeRows<T>(log, stream, path);
-        else if constexpr (types::Scalar<T> || Text<T>)
-            writeValues<T>(log, stream, path);
         else
-            return;
-        done = true;
-    });
-    if (!done)
+            writeValues<T>(log, stream, path);
+    };
+    if (!writeByType(declared, write))
         throw types::ConfigError(
             log.path(), stream,
             "holds " + declared.type +

@@ -62,7 +62,7 @@ std::vector<std::string> inCircles(const Graph& graph) {
 }
 
 // What has been reached. Lower these numbers when the tree gets smaller.
-constexpr size_t max_units = 490, max_small_files = 124, max_folder = 66, max_lines = 126'790;
+constexpr size_t max_units = 489, max_small_files = 123, max_folder = 66, max_lines = 126'790;
 
 /** Number of lines of the product, without pages. */
 size_t productLines() {

@@ -6,8 +6,25 @@
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Check.hpp"
+#include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
+namespace {
+
+/** Fills bins from sums below 2^63, for which there is an instruction, as intensity() does. Returns all sums, by or. */
+INSONIFY_VECTOR_CLONES uint64_t fillEnergies(const uint64_t* sums, const double* factors, double quantum,
+                                             float* __restrict bins, size_t count) {
+    constexpr double maximum = static_cast<double>(std::numeric_limits<float>::max());
+    uint64_t any = 0;
+    for (size_t j = 0; j < count; ++j) {
+        any |= sums[j];
+        const double level = static_cast<double>(static_cast<int64_t>(sums[j])) * quantum * factors[j];
+        bins[j] = static_cast<float>(level > 0 ? (level < maximum ? level : maximum) : 0);
+    }
+    return any;
+}
+
+}  // namespace
 
 BinLevels::BinLevels(const SonarConfig& config, const BinGrid& grid)
     : factor_(static_cast<size_t>(grid.bin_count), 1.0) {
@@ -24,15 +41,13 @@ bool BinLevels::fill(const EchoRules& rules, const uint64_t* sums, double solid_
     INSONIFY_CHECK(bins.size() <= factor_.size(), bins.size(), factor_.size());
     INSONIFY_CHECK(solid_angle > 0 && std::isfinite(solid_angle), solid_angle);
     const double quantum = solid_angle / (quanta_per_unit * rules.strength_scale);
-    const bool physical = rules.features.has(Feature::Physical);
     uint64_t any = 0;
-    for (size_t j = 0; j < bins.size(); ++j) {
-        const uint64_t sum = sums[j * rules.channels()];
-        any |= sum;
-        if (physical) {
-            bins[j] = intensity(j, static_cast<double>(sum) * quantum);
-        } else {
-            const uint64_t weight = sums[2 * j + 1];
+    if (rules.features.has(Feature::Physical)) {
+        any = fillEnergies(sums, factor_.data(), quantum, bins.data(), bins.size());
+    } else {
+        for (size_t j = 0; j < bins.size(); ++j) {
+            const uint64_t sum = sums[2 * j], weight = sums[2 * j + 1];
+            any |= sum;
             bins[j] = intensity(j, weight ? static_cast<double>(sum) / static_cast<double>(weight) : 0);
         }
     }

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "components/sonar/beams/Directivity.hpp"
-#include "components/sonar/effects/Places.hpp"
 #include "components/sonar/plan/Effect.hpp"
 #include "types/Angle.hpp"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/sonar/effects/Places.hpp"
 #include "components/sonar/plan/Effect.hpp"
 #include "types/Check.hpp"
 #include "types/Hash.hpp"

@@ -169,4 +169,8 @@ const Effect& only() {
     return effect;
 }
 
+/** Adds a diagnostic for each entry of a list that is not an index of one of `count` things. */
+void checkPlaces(const char* path, const std::vector<uint32_t>& list, size_t count, const char* things,
+                 types::Diagnostics& diagnostics);
+
 }  // namespace insonify::sonar

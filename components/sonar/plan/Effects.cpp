@@ -125,6 +125,14 @@ void PingInMaking::report(size_t bin, bool passes_walls) const {
     truth->share[bin] = 0;
 }
 
+void checkPlaces(const char* path, const std::vector<uint32_t>& list, size_t count, const char* things,
+                 types::Diagnostics& diagnostics) {
+    for (size_t i = 0; i < list.size(); ++i)
+        if (list[i] >= count)
+            diagnostics.push_back({fmt::format("{}[{}]", path, i),
+                                   fmt::format("is {}; there are {} {}, 0 to {}", list[i], count, things, count - 1)});
+}
+
 PingEffects::PingEffects(const RenderPlan& plan, const types::Geometry& geometry) : selection_(plan.options.selection) {
     for (const Effect* effect : plan.effects)
         if (auto made = effect->make(plan, geometry)) {
