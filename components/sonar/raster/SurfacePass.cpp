@@ -22,9 +22,10 @@ std::array<GLint, 4> samplesOfQuarters() {
 
 bool hasNormalMaps(const SurfacePass::Setup& setup) { return std::ranges::count(setup.defines, "HAVE_NORMAL_MAP") > 0; }
 
-/** Returns the number of contexts that are worth their memory; the device culls for one. */
+/** Returns the number of contexts that are worth their memory; the device culls for one. Mesa's zink reads the texture
+ *  of another context as it was before (22.3, over lavapipe: the picture read last, after pictures are made anew). */
 size_t partCount(const gpu::EglContext& context, const SurfacePass::Setup& setup, const ThreadPool& threads) {
-    return context.isSoftware() && !setup.cull_on_device
+    return context.isSoftware() && !context.renderer().starts_with("zink") && !setup.cull_on_device
                ? std::min(setup.frusta.size(), static_cast<size_t>(threads.size()))
                : 1;
 }
