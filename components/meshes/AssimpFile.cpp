@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <exception>
+#include <fstream>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 #include <type_traits>
 
 #include "components/scene/Gltf.hpp"
@@ -86,6 +88,22 @@ std::string shortened(const std::string& text) {
     throw std::runtime_error(shortened(importer.GetErrorString()));
 }
 
+/** Returns a .dae with a colour in place of each texture: assimp refuses whole files for pictures that are not named,
+ *  which no sonar needs. */
+std::string withoutTextures(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    constexpr std::string_view colour = "<color>1 1 1 1</color>";
+    for (size_t at = 0; (at = text.find("<texture", at)) != std::string::npos; at += colour.size()) {
+        const size_t end = text.find('>', at);
+        if (end == std::string::npos) break;
+        const size_t closing = text.find("</texture>", end);
+        const size_t last = text[end - 1] == '/' || closing == std::string::npos ? end + 1 : closing + 10;
+        text.replace(at, last - at, colour);
+    }
+    return text;
+}
+
 }  // namespace
 
 FileMeshes readByAssimp(const std::filesystem::path& file, MeshAxes axes) {
@@ -97,8 +115,13 @@ FileMeshes readByAssimp(const std::filesystem::path& file, MeshAxes axes) {
                                                             aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                                             aiComponent_TEXTURES);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene* from = importer.ReadFile(file.string(), aiProcess_RemoveComponent | aiProcess_Triangulate |
-                                                               aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
+    constexpr unsigned steps =
+        aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices;
+    const aiScene* from = importer.ReadFile(file.string(), steps);
+    if (!from && std::string_view(importer.GetErrorString()).find("texture") != std::string_view::npos) {
+        const std::string text = withoutTextures(file);
+        from = importer.ReadFileFromMemory(text.data(), text.size(), steps, "dae");
+    }
     if (!from || !from->mRootNode) refuse(importer);
     FileMeshes meshes;
     for (unsigned i = 0; i < from->mNumMaterials; ++i)

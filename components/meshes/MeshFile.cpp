@@ -18,7 +18,9 @@
 #include "components/scene/Clusters.hpp"
 #include "components/scene/Gltf.hpp"
 #include "components/scene/Surface.hpp"
+#include "components/scene/UniqueNames.hpp"
 #include "types/ConfigError.hpp"
+#include "types/Extent.hpp"
 
 namespace insonify::meshes {
 
@@ -163,7 +165,7 @@ types::GeometryPtr readGltfMesh(const std::filesystem::path& file, MeshAxes axes
 types::GeometryPtr readApart(const std::filesystem::path& file, MeshAxes axes) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error))
-        throw types::ConfigError(file.string(), "", "is not a file; give the path of a .dae, .obj or .stl file");
+        throw types::ConfigError(file.string(), "", "is not a file; give the path of a .dae, .obj, .stl or .ply file");
     const ReadLimits limits = ReadLimits::forFile(std::filesystem::file_size(file, error));
     FileMeshes from = readMeshesApart(file, axes, limits);
     auto geometry = std::make_shared<types::Geometry>();
@@ -212,9 +214,49 @@ types::GeometryPtr readMeshFile(const std::filesystem::path& file, MeshAxes axes
     const std::string extension = extensionOf(file);
     if (isGltf(file)) return readGltfMesh(file, axes);
     if (extension == ".dae") return readApart(file, axes);
-    if (extension == ".obj" || extension == ".stl") return readApart(file, MeshAxes::AsStored);
-    throw types::ConfigError(file.string(), "",
-                             fmt::format("has extension \"{}\"; may be .dae, .obj, .stl, .gltf or .glb", extension));
+    if (extension == ".obj" || extension == ".stl" || extension == ".ply") return readApart(file, MeshAxes::AsStored);
+    throw types::ConfigError(
+        file.string(), "",
+        fmt::format("has extension \"{}\"; may be .dae, .obj, .stl, .ply, .gltf or .glb", extension));
+}
+
+std::string unitWarning(const std::filesystem::path& file, const glm::dvec3& size, const char* remedy) {
+    constexpr double longest_ship = 500, flattest = 0.1;
+    const std::string extension = extensionOf(file);
+    const double most = std::max({size.x, size.y, size.z}), least = std::min({size.x, size.y, size.z});
+    if ((extension != ".stl" && extension != ".obj" && extension != ".ply") || most < longest_ship ||
+        least < flattest * most)
+        return "";
+    return fmt::format(
+        "{} is {:.4g} x {:.4g} x {:.4g} m: it states no unit and is taken as metres; if it is in "
+        "millimetres, {}",
+        file.filename().string(), size.x, size.y, size.z, remedy);
+}
+
+Scene readMeshScene(const std::filesystem::path& file) {
+    const types::GeometryPtr read = readMeshFile(file, MeshAxes::ZUp);
+    types::Geometry geometry = *read;
+    Scene scene;
+    if (extensionOf(file) == ".dae")  // its turn is what both readings differ by
+        scene.z_up_from_file = geometry.objects.front().world_from_object *
+                               glm::inverse(readMeshFile(file, MeshAxes::AsStored)->objects.front().world_from_object);
+    const glm::dvec3 size = types::extentOf(geometry).size();
+    if (const std::string warning = unitWarning(file, size, "set placement.scale: 0.001"); !warning.empty())
+        geometry.notices.push_back(types::warning(warning));
+    const std::string name = file.stem().string();
+    for (types::Material& material : geometry.materials)
+        if (material.name.empty() || material.name == "DefaultMaterial") material.name = name;
+    UniqueNames names, object_names;
+    scene.nodes.push_back({names.add(name), -1, scene.z_up_from_file, glm::dvec3(1)});
+    for (types::Object& object : geometry.objects) {
+        const std::string own = object.name.empty() ? name : object.name;
+        scene.object_nodes.push_back(static_cast<int>(scene.nodes.size()));
+        scene.nodes.push_back({names.add(own), 0, glm::inverse(scene.z_up_from_file) * object.world_from_object});
+        scene.node_from_object.emplace_back(1);
+        object.name = object_names.add(own);
+    }
+    scene.geometry = std::make_shared<const types::Geometry>(std::move(geometry));
+    return scene;
 }
 
 }  // namespace insonify::meshes

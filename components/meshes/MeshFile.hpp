@@ -1,13 +1,16 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
 
 #include "components/meshes/FileMeshes.hpp"
+#include "components/scene/Scene.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::meshes {
 
-/** The program that reads .dae, .obj and .stl: damaged files may crash or hang its library or exhaust memory. */
+/** The program that reads .dae, .obj, .stl and .ply: damaged files may crash or hang its library or exhaust memory. */
 inline constexpr const char* mesh_reader = "insonify-read-mesh";
 
 /** Resource limits for reading one file. */
@@ -28,11 +31,19 @@ struct ReadLimits {
  *  the file, the failure and the remedy. Safe to call from any thread. */
 FileMeshes readMeshesApart(const std::filesystem::path& file, MeshAxes axes, const ReadLimits& limits);
 
-/** Reads a mesh that a scene refers to: .dae, .obj, .stl, .gltf or .glb.
+/** Reads a mesh that a scene refers to: .dae, .obj, .stl, .ply, .gltf or .glb.
  *
- *  Objects are placed as in the file, in metres: the unit of .dae is applied; .gltf and .glb are in metres; .obj and
- *  .stl specify neither unit nor up axis and are taken as they are. Geometry::notices lists what was omitted. Throws
- *  types::ConfigError for a file of another kind, a damaged file, or a file without triangles. */
+ *  Objects are placed as in the file, in metres: the unit of .dae is applied; .gltf and .glb are in metres; .obj, .stl
+ *  and .ply specify neither unit nor up axis and are taken as they are. Geometry::notices lists what was omitted.
+ * Throws types::ConfigError for a file of another kind, a damaged file, or a file without triangles. */
 types::GeometryPtr readMeshFile(const std::filesystem::path& file, MeshAxes axes);
+
+/** Returns what to ask about a mesh of this size [m] whose file states no unit, if it is a body larger than any ship;
+ *  empty: nothing. Ground is flat, and may be as large. */
+std::string unitWarning(const std::filesystem::path& file, const glm::dvec3& size, const char* remedy);
+
+/** Reads a mesh file, .dae, .obj, .stl or .ply, as a scene: a node with the name of the file, below it those of the
+ *  file. A material without a name has that of the file. Throws as readMeshFile(). */
+scene::Scene readMeshScene(const std::filesystem::path& file);
 
 }  // namespace insonify::meshes

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
 #include <memory>
 
 #include "components/meshes/MeshFile.hpp"
@@ -92,16 +91,18 @@ int VisualMeshes::mergeMesh(const types::Geometry& from, int index, const Look& 
     return static_cast<int>(geometry_.meshes.size()) - 1;
 }
 
-std::vector<Placing> VisualMeshes::centred(std::vector<Placing> placings) const {
-    glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+types::Extent VisualMeshes::extent(const std::vector<Placing>& placings) const {
+    types::Extent box;
     for (const Placing& placing : placings)
-        for (const glm::vec3 position : geometry_.meshes[static_cast<size_t>(placing.mesh)].positions) {
-            const glm::dvec3 point(placing.visual_from_object * glm::dvec4(position, 1));
-            low = glm::min(low, point);
-            high = glm::max(high, point);
-        }
+        box.add(types::extentOf(geometry_.meshes[static_cast<size_t>(placing.mesh)], placing.visual_from_object));
+    return box;
+}
+
+std::vector<Placing> VisualMeshes::centred(std::vector<Placing> placings) const {
+    const types::Extent box = extent(placings);
     for (Placing& placing : placings)
-        placing.visual_from_object = glm::translate(glm::dmat4(1), -(low + high) / 2.0) * placing.visual_from_object;
+        placing.visual_from_object =
+            glm::translate(glm::dmat4(1), -(box.low + box.high) / 2.0) * placing.visual_from_object;
     return placings;
 }
 

@@ -10,6 +10,7 @@
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Surface.hpp"
 #include "types/ConfigError.hpp"
+#include "types/Extent.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::meshes {
@@ -42,6 +43,8 @@ public:
      *  none. Throws types::ConfigError for a file that cannot be read. */
     const std::vector<Placing>& file(const std::filesystem::path& path, const std::string& submesh, const Look& look);
 
+    /** Returns the box of placings, in the visual's axes [m]. */
+    types::Extent extent(const std::vector<Placing>& placings) const;
     /** Returns placings moved so that the centre of their box is the origin. */
     std::vector<Placing> centred(std::vector<Placing> placings) const;
 

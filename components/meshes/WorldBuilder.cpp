@@ -1,6 +1,7 @@
 #include "components/meshes/WorldBuilder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <stb_image.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "components/meshes/MeshFile.hpp"
 #include "components/scene/Surface.hpp"
 #include "components/scene/SurfaceMaps.hpp"
 
@@ -155,6 +157,15 @@ Placing turnedTo(Placing placing, glm::dvec3 normal) {
     return placing;
 }
 
+std::string leftOutText(const std::vector<std::string>& visuals, const std::string& why) {
+    constexpr size_t named = 3;
+    if (visuals.size() == 1) return fmt::format("visual {} is omitted: {}", visuals.front(), why);
+    const std::vector<std::string> first(visuals.begin(),
+                                         visuals.begin() + static_cast<ptrdiff_t>(std::min(visuals.size(), named)));
+    const std::string others = visuals.size() > named ? fmt::format(" and {} more", visuals.size() - named) : "";
+    return fmt::format("{} visuals are omitted: {} ({}{})", visuals.size(), why, fmt::join(first, ", "), others);
+}
+
 }  // namespace
 
 types::Diagnostic faultOf(const Shape& shape) {
@@ -208,11 +219,9 @@ void WorldBuilder::addVisual(const std::string& name, int node, const glm::dmat4
     }
 }
 
-void WorldBuilder::leaveOut(const std::string& visual, const std::string& why) {
-    notice(fmt::format("visual {} is omitted: {}", visual, why));
-}
-
 Scene WorldBuilder::take() {
+    for (const auto& [why, visuals] : left_out_) notice(leftOutText(visuals, why));
+    for (const std::string& where : searched_) notice(where);
     addCount(flat_visuals_, "visuals omitted, their size is zero in some direction or not finite", geometry_.notices);
     if (geometry_.objects.empty()) notice("the scene has no triangles: an empty sea");
     scene_.geometry = std::make_shared<const types::Geometry>(std::move(geometry_));
@@ -245,7 +254,10 @@ std::vector<Placing> WorldBuilder::placingsOf(const std::string& name, const Sha
             },
             [&](const MeshShape& mesh) -> Placings { return placingsOfMesh(name, mesh, look); },
             [&](const HeightmapShape& map) -> Placings { return placingsOfHeightmap(name, map, look); },
-            [&](const OtherShape&) -> Placings { return leaveOut(name, "its geometry is not supported"), Placings{}; },
+            [&](const OtherShape& other) -> Placings {
+                const std::string which = other.name.empty() ? "" : fmt::format(", <{}>,", other.name);
+                return leaveOut(name, fmt::format("its geometry{} is not supported", which)), Placings{};
+            },
         },
         shape);
 }
@@ -253,13 +265,17 @@ std::vector<Placing> WorldBuilder::placingsOf(const std::string& name, const Sha
 std::vector<Placing> WorldBuilder::placingsOfMesh(const std::string& name, const MeshShape& mesh,
                                                   const Look& look) try {
     const auto path = paths_.find(mesh.uri, mesh.named_in);
-    if (!path) return leaveOut(name, mesh.uri + " is not found"), std::vector<Placing>{};
+    if (!path) return missed(mesh.uri), leaveOut(name, mesh.uri + " is not found"), std::vector<Placing>{};
     std::vector<Placing> placings = meshes_.file(*path, mesh.submesh, look);
     if (placings.empty())
         return leaveOut(name, fmt::format("{} has no submesh \"{}\"", mesh.uri, mesh.submesh)), placings;
     if (mesh.is_centred) placings = meshes_.centred(std::move(placings));
     const glm::dmat4 scale = glm::scale(glm::dmat4(1), mesh.scale);
     for (Placing& placing : placings) placing.visual_from_object = scale * placing.visual_from_object;
+    const std::string warning =
+        unitWarning(*path, meshes_.extent(placings).size(),
+                    "give it <scale>0.001 0.001 0.001</scale>, in URDF scale=\"0.001 0.001 0.001\"");
+    if (!warning.empty() && unit_warnings_.insert(warning).second) geometry_.notices.push_back(types::warning(warning));
     return placings;
 } catch (const types::ConfigError& failure) {
     leaveOut(name, fmt::format("{} {}", mesh.uri, failure.diagnostics().front().message));
@@ -269,7 +285,7 @@ std::vector<Placing> WorldBuilder::placingsOfMesh(const std::string& name, const
 std::vector<Placing> WorldBuilder::placingsOfHeightmap(const std::string& name, const HeightmapShape& map,
                                                        const Look& look) try {
     const auto path = paths_.find(map.uri, map.named_in);
-    if (!path) return leaveOut(name, map.uri + " is not found"), std::vector<Placing>{};
+    if (!path) return missed(map.uri), leaveOut(name, map.uri + " is not found"), std::vector<Placing>{};
     const glm::dvec3 size = map.size;
     Placing placing = meshes_.shape(fmt::format("{} {} {} {}", path->string(), size.x, size.y, size.z), look,
                                     [&] { return readHeightmap(*path, size); });

@@ -3,12 +3,14 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "components/meshes/FileMeshes.hpp"
+#include "components/meshes/ModelPaths.hpp"
 #include "components/meshes/VisualMeshes.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/Surface.hpp"
@@ -70,7 +72,9 @@ struct HeightmapShape {
     std::filesystem::path named_in;  ///< The file that contains the URI, if any.
 };
 /** A geometry that is not supported. */
-struct OtherShape {};
+struct OtherShape {
+    std::string name;  ///< Its element; empty: unknown.
+};
 using Shape = std::variant<OtherShape, BoxShape, EllipsoidShape, CylinderShape, ConeShape, CapsuleShape, PlaneShape,
                            MeshShape, HeightmapShape>;
 
@@ -89,8 +93,10 @@ public:
     /** Adds a visual. `name` starts with the names of its model and link. */
     void addVisual(const std::string& name, int node, const glm::dmat4& node_from_visual, const Shape& shape,
                    const Look& look, const scene::Drawing& drawing);
-    /** Adds a notice with the reason why a visual is omitted. */
-    void leaveOut(const std::string& visual, const std::string& why);
+    /** Notes why a visual is omitted: visuals with the same reason share one notice. */
+    void leaveOut(const std::string& visual, const std::string& why) { left_out_[why].push_back(visual); }
+    /** Notes that a file is not found, for the notice of where files were searched. */
+    void missed(const std::string& uri) { searched_.insert(paths_.searched(uri)); }
     void notice(std::string text) { geometry_.notices.push_back(std::move(text)); }
     types::Notices& notices() { return geometry_.notices; }
     const ModelPaths& paths() const { return paths_; }
@@ -109,6 +115,9 @@ private:
     scene::Scene scene_;
     std::vector<glm::dmat4> world_from_node_;  ///< For each node.
     scene::UniqueNames names_, object_names_;
+    std::map<std::string, std::vector<std::string>> left_out_;  ///< Visuals by the reason.
+    std::set<std::string> unit_warnings_;                       ///< Already given.
+    std::set<std::string> searched_;                            ///< Sentences about files that are not found.
     size_t flat_visuals_ = 0;
 };
 

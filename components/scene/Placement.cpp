@@ -48,7 +48,9 @@ std::string nameOf(const glm::dvec3& direction) {
 
 Scene placed(const Scene& scene, const Placement& placement) {
     const glm::dmat4 z_up_from_file = zUpFromFile(scene, placement);
-    const glm::dmat4 placed_from_scene = worldFromZUp(placement) * z_up_from_file * glm::inverse(scene.z_up_from_file);
+    const glm::dmat4 sized = glm::scale(glm::dmat4(1), glm::dvec3(placement.scale));
+    const glm::dmat4 placed_from_scene =
+        worldFromZUp(placement) * z_up_from_file * glm::inverse(scene.z_up_from_file) * sized;
     Scene result = scene;
     auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
     for (types::Object& object : geometry->objects)

@@ -19,6 +19,7 @@ struct Placement {
     double yaw_deg = 0;
     types::WorldFrame frame = types::WorldFrame::AsIs;
     std::optional<UpAxis> up = {};
+    double scale = 1;
 
     bool operator==(const Placement&) const = default;
 
@@ -32,7 +33,10 @@ struct Placement {
                "east, y "
                "north; ned: x north, y east, z down"},
               self.frame);
-        visit({"up", "", "axis of the file that points up; absent: y of glTF, z of SDF"}, self.up);
+        visit({"up", "", "axis of the file that points up; absent: y of glTF, that of .dae as it states it, else z"},
+              self.up);
+        visit({"scale", "1", "factor of all lengths of the file, such as 0.001 for one in millimetres", 1e-6, 1e6},
+              self.scale);
     }
 };
 

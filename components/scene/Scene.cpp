@@ -50,8 +50,9 @@ glm::dmat3 withoutRotation(const glm::dmat3& matrix, glm::dvec3 scale) {
 }
 
 constexpr SceneFormat all_formats[] = {
-    {".gltf", "glTF", readGltf},     {".glb", "glTF", readGltf},        {".world", "SDF", nullptr, "sdf"},
-    {".sdf", "SDF", nullptr, "sdf"}, {".urdf", "URDF", nullptr, "sdf"},
+    {".gltf", "glTF", readGltf},        {".glb", "glTF", readGltf},         {".world", "SDF", nullptr, "sdf"},
+    {".sdf", "SDF", nullptr, "sdf"},    {".urdf", "URDF", nullptr, "sdf"},  {".dae", "COLLADA", nullptr, "meshes"},
+    {".obj", "OBJ", nullptr, "meshes"}, {".stl", "STL", nullptr, "meshes"}, {".ply", "PLY", nullptr, "meshes"},
 };
 
 /** Returns the names of scenes in a folder. */

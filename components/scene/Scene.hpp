@@ -83,7 +83,7 @@ std::string sceneEndings(std::optional<std::string_view> library = {});
 const char* sceneFileMeaning();
 
 /** Reads a scene. .gltf or .glb is y-up and is turned to z-up: (x, y, z) of the file is (x, -z, y) of the world.
- *  .world, .sdf or .urdf is z-up and is read by the component library sdf.
+ *  .world, .sdf or .urdf is z-up and is read by the component library sdf; a mesh by the component library meshes.
  *  Throws types::ConfigError for any error in the file. Geometry::notices lists what was omitted. */
 Scene readScene(const std::filesystem::path& file);
 

@@ -1,14 +1,18 @@
 #include "components/sdf/Sdf.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tinyxml2.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
+#include <numbers>
+#include <random>
 #include <sdf/Box.hh>
 #include <sdf/Capsule.hh>
 #include <sdf/Cylinder.hh>
@@ -32,6 +36,7 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/Surface.hpp"
 #include "components/sdf/SdfFile.hpp"
+#include "types/Ascii.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::sdf {
@@ -171,8 +176,13 @@ meshes::Shape shapeOf(const ::sdf::Geometry& geometry) {
             const ::sdf::Heightmap& map = *geometry.HeightmapShape();
             return meshes::HeightmapShape{map.Uri(), vectorOf(map.Size()), vectorOf(map.Position()), map.FilePath()};
         }
-        default: return meshes::OtherShape{};
+        default: break;
     }
+    const ::sdf::ElementPtr element = geometry.Element();  // newer than this libsdformat
+    const ::sdf::ElementPtr cone = element && element->HasElement("cone") ? element->FindElement("cone") : nullptr;
+    if (cone) return meshes::ConeShape{cone->Get<double>("radius", 0.5).first, cone->Get<double>("length", 1.0).first};
+    const ::sdf::ElementPtr other = element ? element->GetFirstElement() : nullptr;
+    return meshes::OtherShape{other ? other->GetName() : ""};
 }
 
 /** @param is_urdf whether the alpha of the colour is the visual's transparency, which SDF gives apart */
@@ -183,6 +193,46 @@ Drawing drawingOf(const ::sdf::Visual& visual, bool is_urdf) {
             visual.VisibilityFlags() != for_all && visual.VisibilityFlags() != 0, visual.VisibilityFlags() == 0};
 }
 
+/** Returns the places of a population's models as Gazebo classic has them (Population.cc): copies lie in a box of
+ * `size` whose lowest corner is at `pose`, or in a cylinder about it. Random and even places are drawn, the same each
+ * time, which `drawn` says. */
+std::vector<glm::dvec3> placesOf(::sdf::Element& population, std::string& drawn) {
+    const auto vector = [](const ::sdf::ElementPtr& of, const char* key) {
+        return of ? vectorOf(of->Get<ignition::math::Vector3d>(key, {}).first) : glm::dvec3(0);
+    };
+    constexpr int most = 10'000;
+    const ::sdf::ElementPtr rule = population.FindElement("distribution"), box = population.FindElement("box"),
+                            cylinder = population.FindElement("cylinder");
+    const std::string type = rule ? rule->Get<std::string>("type", "random").first : "random";
+    const glm::dmat4 world_from_region = matrixOf(population.Get<ignition::math::Pose3d>("pose", {}).first);
+    const glm::dvec3 size = vector(box, "size"), step = vector(rule, "step");
+    const int columns = std::clamp(rule ? rule->Get<int>("cols", 1).first : 1, 0, most);
+    const int rows = std::clamp(rule ? rule->Get<int>("rows", 1).first : 1, 0, most);
+    const int count =
+        std::clamp(type == "grid" ? rows * columns : population.Get<int>("model_count", 1).first, 0, most);
+    std::mt19937 engine(1);
+    const auto draw = [&] { return static_cast<double>(engine()) / 4294967296.0; };
+    const auto place = [&](int i) -> glm::dvec3 {
+        if (type == "grid") return {step.x * (i % columns), step.y * (i / columns), 0};
+        for (int axis = 0; axis < 3; ++axis)
+            if (type == std::string("linear-") + "xyz"[axis]) {
+                glm::dvec3 at = size / 2.0;
+                at[axis] = size[axis] * i / count;
+                return at;
+            }
+        if (box) return size * glm::dvec3(draw(), draw(), draw());
+        if (!cylinder) return glm::dvec3(0);
+        const double radius = cylinder->Get<double>("radius", 0.0).first * std::sqrt(draw());
+        const double angle = 2 * std::numbers::pi * draw();
+        return {radius * std::cos(angle), radius * std::sin(angle),
+                cylinder->Get<double>("length", 0.0).first * (draw() - 0.5)};
+    };
+    if (type == "random" || type == "uniform") drawn = ", at places that are drawn, the same in each run";
+    std::vector<glm::dvec3> places;
+    for (int i = 0; i < count; ++i) places.emplace_back(world_from_region * glm::dvec4(place(i), 1));
+    return places;
+}
+
 class SdfReader {
 public:
     explicit SdfReader(const std::filesystem::path& file) : file_(std::filesystem::absolute(file)), builder_(file_) {}
@@ -190,12 +240,14 @@ public:
     Scene read() {
         CerrCapture console;
         if (isUrdf(file_) && std::filesystem::is_regular_file(file_)) urdf_ = readUrdf(file_, textOf(file_));
-        const ::sdf::Root root = readSdfFile(file_, builder_.paths(), console, builder_.notices(), urdf_.text);
+        const ::sdf::Root root = readSdfFile(file_, builder_, console, urdf_.text);
         if (const ::sdf::World* world = root.WorldByIndex(0))
             addWorld(*world);
         else
             addModel(*root.Model(), "", -1, glm::dmat4(1));
         if (!diagnostics_.empty()) throw types::ConfigError(std::move(diagnostics_));
+        if (!unused_.empty())
+            builder_.notice(fmt::format("not used: {}; a surface's echo is of its material", fmt::join(unused_, ", ")));
         addCount(root.WorldCount() > 1 ? root.WorldCount() - 1 : 0, "worlds omitted, the first of the file is read",
                  builder_.notices());
         return builder_.take();
@@ -204,15 +256,51 @@ public:
 private:
     void addWorld(const ::sdf::World& world) {
         for (uint64_t i = 0; i < world.ModelCount(); ++i) addModel(*world.ModelByIndex(i), "", -1, glm::dmat4(1));
+        addPopulations(*world.Element());
         addCount(world.ActorCount(), "actors omitted", builder_.notices());
+        addCount(childrenOf(*world.Element(), "road").size(), "roads omitted: drawn strips on the ground",
+                 builder_.notices());
         if (world.Element()->HasElement("state"))
             builder_.notice("the poses of <state> are not used, the poses of the models are");
+    }
+
+    static std::vector<::sdf::ElementPtr> childrenOf(::sdf::Element& element, const std::string& name) {
+        std::vector<::sdf::ElementPtr> children;
+        if (!element.HasElement(name)) return children;
+        for (::sdf::ElementPtr child = element.FindElement(name); child; child = child->GetNextElement(name))
+            children.push_back(child);
+        return children;
+    }
+
+    /** Adds the copies of a model that Gazebo would place, as `<model>_clone_<i>`. */
+    void addPopulations(::sdf::Element& world) {
+        for (const ::sdf::ElementPtr& population : childrenOf(world, "population")) {
+            const std::string name = population->Get<std::string>("name");
+            ::sdf::Model model;
+            const ::sdf::ElementPtr element = population->FindElement("model");
+            if (!element || !model.Load(element).empty() || model.Name().empty()) {
+                builder_.notice(fmt::format("population {} is omitted: it has no model that can be read", name));
+                continue;
+            }
+            std::string drawn;
+            const std::vector<glm::dvec3> places = placesOf(*population, drawn);
+            for (size_t i = 0; i < places.size(); ++i)
+                addModelAt(model, fmt::format("{}_clone_{}", model.Name(), i), -1,
+                           glm::translate(glm::dmat4(1), places[i]));
+            builder_.notice(fmt::format("population {}: {} times {}{}", name, places.size(), model.Name(), drawn));
+        }
     }
 
     /** Adds a model. `scope` is the name of its container, followed by "::". */
     void addModel(const ::sdf::Model& model, const std::string& scope, int parent, const glm::dmat4& world_from_scope) {
         const std::string name = scope + model.Name();
-        const glm::dmat4 world_from_model = world_from_scope * poseOf(model, name);
+        addModelAt(model, name, parent, world_from_scope * poseOf(model, name));
+    }
+
+    void addModelAt(const ::sdf::Model& model, const std::string& name, int parent,
+                    const glm::dmat4& world_from_model) {
+        const std::string outer_matter = matter_;
+        if (const std::string own = matterOf(*model.Element()); !own.empty()) matter_ = own;
         const int node = addNode(name, parent, world_from_model);
         const std::map<std::string, std::string> carriers = carriersOf(model);
         std::set<std::string> begun;
@@ -231,6 +319,16 @@ private:
         };
         for (uint64_t i = 0; i < model.LinkCount(); ++i) addPart(model.LinkByIndex(i)->Name());
         for (uint64_t i = 0; i < model.ModelCount(); ++i) addPart(model.ModelByIndex(i)->Name());
+        matter_ = outer_matter;
+    }
+
+    /** Returns the material of a model's surface by DAVE's `surface_props`; empty: it has none. */
+    std::string matterOf(const ::sdf::Element& model) {
+        for (const char* unused :
+             {"surface_props:biofouling_rating", "surface_props:roughness", "surface_props:distort_extent"})
+            if (model.HasElement(unused)) unused_.insert(unused);
+        const std::string name = model.Get<std::string>("surface_props:material", "").first;
+        return types::lowered(name) == "metal" ? "steel" : name;
     }
 
     void addLink(const ::sdf::Link& link, const std::string& scope, int parent, const glm::dmat4& world_from_model) {
@@ -245,8 +343,14 @@ private:
                 named != urdf_.materials.end() && i < named->second.size())
                 look.name = named->second[i];
             meshes::Shape shape = shapeOf(*visual.Geom());
-            if (auto* const mesh = std::get_if<meshes::MeshShape>(&shape); mesh && !urdf_.text.empty())
+            if (auto* const mesh = std::get_if<meshes::MeshShape>(&shape); mesh && !urdf_.text.empty()) {
                 mesh->named_in = file_;
+                // libsdformat gives the packages of ROS as models.
+                if (const std::string as_written =
+                        "package" + mesh->uri.substr(std::min(mesh->uri.find(':'), mesh->uri.size()));
+                    mesh->uri.starts_with("model://") && urdf_.text.find(as_written) != std::string::npos)
+                    mesh->uri = as_written;
+            }
             if (const types::Diagnostic fault = meshes::faultOf(shape); !fault.message.empty())
                 fail(*visual.Element(), fmt::format("{}.{}", visual_name, fault.path), fault.message);
             builder_.addVisual(visual_name, node, link_from_visual, shape, look,
@@ -273,6 +377,8 @@ private:
     meshes::Look lookOf(const ::sdf::Visual& visual, const std::string& name) {
         meshes::Look look;
         if (const ::sdf::Material* material = visual.Material()) look.name = material->ScriptName();
+        if (!matter_.empty()) look.name = matter_;
+        if (visual.Element()->Get<double>("laser_retro", 0.0).first > 0) unused_.insert("laser_retro");
         const ::sdf::ElementPtr tag = visual.Element()->FindElement("insonify:acoustics");
         if (!tag) return look;
         for (const ::sdf::ParamPtr& attribute : tag->GetAttributes())
@@ -301,6 +407,8 @@ private:
     std::map<std::string, int> nodes_;  ///< By name in the file.
     Urdf urdf_;                         ///< Empty if the file is SDF.
     types::Diagnostics diagnostics_;
+    std::string matter_;            ///< Material of the present model by `surface_props`; empty: none.
+    std::set<std::string> unused_;  ///< Elements about surfaces that nothing is made of.
 };
 
 }  // namespace

@@ -1,12 +1,15 @@
 #include "components/sdf/SdfFile.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <regex>
 #include <sdf/Error.hh>
 #include <sdf/Exception.hh>
 #include <sdf/ParserConfig.hh>
@@ -111,20 +114,138 @@ void checkIncludes(const std::filesystem::path& file, const meshes::ModelPaths& 
                              "14000 in one; divide it, or make one mesh of many shapes");
 }
 
+/** Models that libsdformat refuses, written anew without what it refuses, in folders of their own. */
+class MendedModels {
+public:
+    MendedModels() = default;
+    ~MendedModels() {
+        std::error_code error;
+        if (!folder_.empty()) std::filesystem::remove_all(folder_, error);
+    }
+    MendedModels(const MendedModels&) = delete;
+    MendedModels& operator=(const MendedModels&) = delete;
+
+    /** Mends a file once. Returns whether it was mended. */
+    bool mend(const std::filesystem::path& file) {
+        if (folders_.contains(file) || !std::filesystem::is_regular_file(file)) return false;
+        const std::string text = mended(textOf(file), file.parent_path());
+        if (text.empty()) return false;
+        if (folder_.empty()) {
+            std::string name = (std::filesystem::temp_directory_path() / "insonify_sdf_XXXXXX").string();
+            if (!mkdtemp(name.data())) return false;
+            folder_ = name;
+        }
+        const std::filesystem::path own = folder_ / std::to_string(folders_.size());
+        std::error_code error;
+        std::filesystem::create_directory(own, error);
+        std::filesystem::copy_file(file.parent_path() / "model.config", own / "model.config", error);
+        std::ofstream(own / file.filename(), std::ios::binary) << text;
+        folders_[file] = own;
+        return true;
+    }
+    /** Returns the mended form of a model's folder or file; the same where it was not mended. */
+    std::filesystem::path inPlaceOf(const std::filesystem::path& found) const {
+        for (const auto& [file, own] : folders_)
+            if (file.parent_path() == found)
+                return own;
+            else if (file == found)
+                return own / file.filename();
+        return found;
+    }
+    bool empty() const { return folders_.empty(); }
+    /** Returns the file of the user that was mended as this one; empty: none. */
+    std::filesystem::path origin(const std::filesystem::path& written) const {
+        for (const auto& [file, own] : folders_)
+            if (own / file.filename() == written) return file;
+        return {};
+    }
+
+    /** Returns an SDF text without what a sonar does not need and libsdformat may refuse; empty if it is no XML. */
+    static std::string mended(std::string text, const std::filesystem::path& folder);
+
+private:
+    std::filesystem::path folder_;
+    std::map<std::filesystem::path, std::filesystem::path> folders_;  ///< Of each mended file.
+};
+
+/** Quotes attributes, as older parsers read them: `<visual name=blade>`. */
+std::string withQuotes(const std::string& text) {
+    static const std::regex bare(R"(([A-Za-z_:]+)=([^\s"'<>/=]+)(?=[\s/>]))");
+    std::string out;
+    for (size_t at = 0; at < text.size();) {
+        const size_t begin = std::min(text.find('<', at), text.size());
+        const size_t end = std::min(text.find('>', begin), text.size());
+        out.append(text, at, begin - at);
+        const std::string tag = text.substr(begin, end - begin + (end < text.size()));
+        out +=
+            tag.size() < 4096 && tag.find('=') != std::string::npos ? std::regex_replace(tag, bare, "$1=\"$2\"") : tag;
+        at = begin + tag.size();
+        if (tag.empty()) break;
+    }
+    return out;
+}
+
+/** Removes elements that say nothing of shapes, pads poses to six numbers, and makes relative files absolute. */
+void clean(tinyxml2::XMLElement& element, const std::filesystem::path& folder) {
+    static const std::set<std::string_view> needless = {
+        "inertial", "sensor",  "plugin",  "collision",    "physics",    "gui",
+        "gripper",  "battery", "surface", "audio_source", "audio_sink", "spherical_coordinates",
+        "wind",     "light"};
+    for (tinyxml2::XMLElement* child = element.FirstChildElement(); child;) {
+        tinyxml2::XMLElement* const next = child->NextSiblingElement();
+        const std::string_view name = child->Name();
+        const char* const words = child->GetText();
+        if (needless.contains(name)) {
+            element.DeleteChild(child);
+        } else if (name == "pose" && words) {
+            std::istringstream numbers(words);
+            std::string padded;
+            size_t count = 0;
+            for (std::string number; numbers >> number; ++count) padded += number + " ";
+            for (; count > 0 && count < 6; ++count) padded += "0 ";
+            child->SetText(padded.c_str());
+        } else if (name == "uri" && words && std::string_view(words).find("://") == std::string_view::npos &&
+                   std::filesystem::exists(folder / words)) {
+            child->SetText(("file://" + std::filesystem::absolute(folder / words).string()).c_str());
+        } else {
+            clean(*child, folder);
+        }
+        child = next;
+    }
+}
+
+std::string MendedModels::mended(std::string text, const std::filesystem::path& folder) {
+    if (const size_t declared = text.find("<?xml"); declared != std::string::npos && declared > 0)
+        text.erase(declared, std::min(text.find("?>", declared), text.size() - 2) + 2 - declared);
+    tinyxml2::XMLDocument document;
+    if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+        text = withQuotes(text);
+        if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) return "";
+    }
+    tinyxml2::XMLElement* const root = document.RootElement();
+    if (!root) return "";
+    if (std::string_view(root->Name()) == "gazebo" && root->Attribute("version")) root->SetName("sdf");
+    clean(*root, folder);
+    tinyxml2::XMLPrinter printer;
+    document.Print(&printer);
+    return printer.CStr();
+}
+
 /** Installs the file search in libsdformat's global configuration, the only one that nested includes use. */
 class SearchConfig {
 public:
     SearchConfig(const std::filesystem::path& world, const meshes::ModelPaths& paths,
-                 const std::set<std::string>& unreadable)
+                 const std::set<std::string>& unreadable, const MendedModels& mended)
         : before_(global()) {
-        if (unreadable.empty())  // these paths precede libsdformat's own search, the callback follows it
+        if (unreadable.empty() && mended.empty())  // these precede libsdformat's own search, the callback follows it
             for (const std::filesystem::path& folder : paths.folders()) global().AddURIPath("model://", folder);
-        global().SetFindCallback([&](const std::string& uri) {
+        global().SetFindCallback([&](const std::string& uri) -> std::string {
             const auto found = paths.find(uri, world);
             const auto isIt = [&](const std::filesystem::path& file) {
                 return file == *found || file.parent_path() == *found;
             };
-            return found && std::ranges::none_of(unreadable, isIt) ? found->string() : "";
+            if (!found || std::ranges::any_of(unreadable, isIt)) return "";
+            return mended.inPlaceOf(*found).string();
         });
     }
     ~SearchConfig() { global() = before_; }
@@ -160,9 +281,8 @@ std::string load(::sdf::Root& root, const std::filesystem::path& file, const std
     }
 }
 
-/** Returns the file with "__" for each "::"; empty if it has none. */
-std::string withoutColons(const std::filesystem::path& file) {
-    std::string text = textOf(file);
+/** Returns the text with "__" for each "::"; empty if it has none. */
+std::string withoutColons(std::string text) {
     size_t at = text.find("::");
     if (at == std::string::npos) return "";
     for (; at != std::string::npos; at = text.find("::", at)) text.replace(at, 2, "__");
@@ -217,7 +337,6 @@ types::Diagnostic readLine(const std::string& line) {
     return diagnostic;
 }
 
-/** Adds a diagnostic unless it repeats a known diagnostic or is that of an enclosing element. */
 /** Returns a message without the file's text, which libsdformat repeats whole, and which may be binary. */
 std::string shortened(const std::string& message) {
     constexpr size_t longest = 400;
@@ -227,6 +346,7 @@ std::string shortened(const std::string& message) {
     return kept == message.size() ? message : message.substr(0, kept) + "...";
 }
 
+/** Adds a diagnostic unless it repeats a known diagnostic or is that of an enclosing element. */
 void add(types::Diagnostic diagnostic, types::Diagnostics& diagnostics) {
     diagnostic.message = shortened(plain(diagnostic.message));
     const auto says = [&diagnostic](const char* text) { return diagnostic.message.starts_with(text); };
@@ -258,6 +378,22 @@ void findUnreadable(const types::Diagnostics& diagnostics, std::set<std::string>
             unreadable.insert(diagnostic.message.substr(text.size(), diagnostic.message.rfind(']') - text.size()));
 }
 
+/** Returns the first diagnostic in a file, or at all, with the first of those without a place, which give the reason.
+ */
+std::string reasonIn(const types::Diagnostics& diagnostics, const std::string& file) {
+    const auto first = [&](const auto& is) {
+        const auto found = std::ranges::find_if(diagnostics, is);
+        return found == diagnostics.end() ? nullptr : &*found;
+    };
+    const types::Diagnostic* place = first([&](const types::Diagnostic& each) { return each.file == file; });
+    const types::Diagnostic* reason = first([](const types::Diagnostic& each) { return each.file.empty(); });
+    std::string text = place && place->line > 0 ? fmt::format("line {}: {}", place->line, place->message)
+                       : place                  ? place->message
+                                                : "";
+    if (reason) text += (text.empty() ? "" : ": ") + reason->message;
+    return text.empty() ? "libsdformat refuses it" : text;
+}
+
 /** Joins diagnostics without a place, which give the reason, to the first with a place, and throws them. */
 [[noreturn]] void refuse(const std::filesystem::path& file, types::Diagnostics diagnostics) {
     if (diagnostics.empty()) diagnostics.push_back({"", "holds neither a world nor a model of SDF"});
@@ -274,20 +410,88 @@ void findUnreadable(const types::Diagnostics& diagnostics, std::set<std::string>
     throw types::ConfigError(std::move(diagnostics));
 }
 
-/** Adds the diagnostics of a world that was read nevertheless. Gazebo's `model://sun` is a light and does not matter to
- *  a sonar. */
-void noteDiagnostics(const types::Diagnostics& diagnostics, types::Notices& notices) {
-    bool looked_for_models = false;
-    for (const types::Diagnostic& diagnostic : diagnostics) {
-        const std::string text = diagnostic.text();
-        if (text.find("Unable to find uri[model://sun]") != text.npos) continue;
-        notices.push_back(text + (diagnostic.path.ends_with("/uri") ? "; omitted" : ""));
-        looked_for_models |= text.find("Unable to find uri[model://") != text.npos;
+/** What is tried in turn until libsdformat reads a file. */
+struct Reading {
+    Reading(const std::filesystem::path& file, meshes::WorldBuilder& builder, const std::string& given)
+        : text(given), file_(file), builder_(builder), given_(given.empty() ? textOf(file) : given) {}
+
+    /** Mends the models that libsdformat refused, or omits those that cannot be mended. Returns whether the next
+     * reading differs. */
+    bool replaces(const types::Diagnostics& diagnostics) {
+        std::set<std::string> refused;
+        findUnreadable(diagnostics, refused);
+        bool is_new = false;
+        for (const std::string& model : refused) {
+            const std::string origin = models.origin(model).string();  // of a model that was mended in vain
+            if (origin.empty() && models.mend(model)) {
+                mended_[model] = diagnostics;
+                is_new = true;
+            } else if (unreadable.insert(origin.empty() ? model : origin).second) {
+                lost = origin.empty() ? diagnostics : mended_.at(origin);
+                mended_.erase(origin);
+                is_new = true;
+            }
+        }
+        return is_new;
     }
-    if (looked_for_models)
-        notices.push_back(
-            "models are searched next to the world, and in the folders of INSONIFY_MODEL_PATH, which contain the "
-            "folders of the models");
+    /** Mends the file itself, then also its names. Throws types::ConfigError with the diagnostics of the file as it is
+     *  where nothing is left to try. */
+    bool mends(const types::Diagnostics& diagnostics) {
+        if (form_ == AsGiven) first_ = diagnostics;
+        const auto folder = std::filesystem::absolute(file_).parent_path();
+        for (text.clear(); text.empty();) {
+            form_ = static_cast<Form>(form_ + 1);
+            if (form_ == Mended) text = MendedModels::mended(given_, folder);
+            if (form_ == Renamed) text = MendedModels::mended(withoutColons(given_), folder);
+            if (form_ == Refused) refuse(file_, first_);
+        }
+        return true;
+    }
+    /** Notes what was tried with success. */
+    void note() const {
+        for (const auto& [model, diagnostics] : mended_)
+            builder_.notice(
+                fmt::format("{} is read without what a sonar does not need: {}", model, reasonIn(diagnostics, model)));
+        if (form_ > AsGiven)
+            builder_.notice("read without what a sonar does not need: " + reasonIn(first_, file_.string()));
+        if (form_ == Renamed) builder_.notice("names are read with \"__\" for \"::\", which libsdformat refuses");
+    }
+
+    std::string text;                  ///< To be read; empty: the file.
+    std::set<std::string> unreadable;  ///< Files that are omitted.
+    types::Diagnostics lost;           ///< Of these files.
+    MendedModels models;
+
+private:
+    enum Form { AsGiven, Mended, Renamed, Refused } form_ = AsGiven;
+    std::filesystem::path file_;
+    meshes::WorldBuilder& builder_;
+    std::string given_;
+    types::Diagnostics first_;                          ///< Of the file as it is.
+    std::map<std::string, types::Diagnostics> mended_;  ///< Of each model that is mended, as it was.
+};
+
+/** Adds the diagnostics of a world that was read nevertheless; missing models of Fuel are one notice. Gazebo's
+ *  `model://sun` is a light and does not matter to a sonar. */
+void noteDiagnostics(const types::Diagnostics& diagnostics, meshes::WorldBuilder& builder) {
+    constexpr std::string_view not_found = "Unable to find uri[";
+    std::set<std::string> of_fuel;
+    for (const types::Diagnostic& diagnostic : diagnostics) {
+        std::string uri;
+        if (const size_t at = diagnostic.message.find(not_found); at != std::string::npos)
+            uri = diagnostic.message.substr(at + not_found.size(),
+                                            diagnostic.message.find(']', at) - at - not_found.size());
+        if (uri == "model://sun") continue;
+        if (!uri.empty()) builder.missed(uri);
+        if (uri.starts_with("http"))
+            of_fuel.insert(uri);
+        else
+            builder.notice(diagnostic.text() + (diagnostic.path.ends_with("/uri") ? "; omitted" : ""));
+    }
+    if (!of_fuel.empty())
+        builder.notice(fmt::format("{} of Fuel {} not found, and omitted: {}",
+                                   of_fuel.size() == 1 ? "1 model" : fmt::format("{} models", of_fuel.size()),
+                                   of_fuel.size() == 1 ? "is" : "are", fmt::join(of_fuel, ", ")));
 }
 
 }  // namespace
@@ -312,31 +516,27 @@ std::string CerrCapture::take() {
     return text;
 }
 
-::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
-                        types::Notices& notices, const std::string& text) {
+::sdf::Root readSdfFile(const std::filesystem::path& file, meshes::WorldBuilder& builder, CerrCapture& console,
+                        const std::string& text) {
     if (!std::filesystem::is_regular_file(file))
         throw types::ConfigError(file.string(), "",
                                  "is not a file; give the path of a " + scene::sceneEndings("sdf") + " file");
-    checkIncludes(file, paths);
-    std::set<std::string> unreadable;
-    std::string renamed = text;
-    types::Diagnostics diagnostics;
+    checkIncludes(file, builder.paths());
+    Reading reading(file, builder, text);
     while (true) {
-        const SearchConfig search(file, paths, unreadable);
-        const size_t known = unreadable.size();
+        const SearchConfig search(file, builder.paths(), reading.unreadable, reading.models);
         ::sdf::Root root;
         ::sdf::Errors errors;
-        const std::string failure = load(root, file, renamed, errors);
+        types::Diagnostics diagnostics = reading.lost;
+        const std::string failure = load(root, file, reading.text, errors);
         if (!failure.empty()) add({"", "cannot be read as SDF: " + failure}, diagnostics);
         add(console.take(), errors, diagnostics);
-        findUnreadable(diagnostics, unreadable);
-        if (failure.empty() && (root.WorldCount() > 0 || root.Model())) {
-            noteDiagnostics(diagnostics, notices);
-            if (renamed != text) notices.push_back("names are read with \"__\" for \"::\", which libsdformat refuses");
-            return root;
-        }
-        if (unreadable.size() > known) continue;  // tries again without the include that prevents reading the world
-        if (!renamed.empty() || (renamed = withoutColons(file)).empty()) refuse(file, std::move(diagnostics));
+        const bool is_read = failure.empty() && (root.WorldCount() > 0 || root.Model());
+        if (reading.replaces(diagnostics)) continue;
+        if (!is_read && reading.mends(diagnostics)) continue;
+        reading.note();
+        noteDiagnostics(diagnostics, builder);
+        return root;
     }
 }
 

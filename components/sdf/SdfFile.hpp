@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "components/meshes/FileMeshes.hpp"
+#include "components/meshes/WorldBuilder.hpp"
 
 namespace insonify::sdf {
 
@@ -33,9 +33,9 @@ private:
 std::string textOf(const std::filesystem::path& file);
 
 /** Loads an SDF file with its includes, or `text` instead of the file unless `text` is empty. Diagnostics of
- *  libsdformat are added to `notices` if there is still a world or a model, otherwise they are thrown as
+ *  libsdformat are notices of `builder` if there is still a world or a model, otherwise they are thrown as
  *  types::ConfigError. An include that is missing or unreadable is omitted. */
-::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
-                        types::Notices& notices, const std::string& text = {});
+::sdf::Root readSdfFile(const std::filesystem::path& file, meshes::WorldBuilder& builder, CerrCapture& console,
+                        const std::string& text = {});
 
 }  // namespace insonify::sdf

@@ -7,7 +7,9 @@ namespace insonify::fuzz {
 namespace {
 
 void readMesh(const Input& input) try {
-    const types::GeometryPtr geometry = meshes::readMeshFile(input.file(), meshes::MeshAxes::ZUp);
+    const scene::Scene scene = meshes::readMeshScene(input.file());
+    const types::GeometryPtr& geometry = scene.geometry;
+    EXPECT_EQ(scene.object_nodes.size(), geometry->objects.size());
     for (const types::Mesh& mesh : geometry->meshes) scene::expectSoundMesh(mesh, geometry->materials.size());
 } catch (const types::ConfigError& error) {
     expectOurWords(error.what());
@@ -35,6 +37,14 @@ TEST(MeshFuzzTest, EveryStlIsAMeshOrAnError) {
           "part.stl",
           {"solid a\n", "facet normal 0 0 1\n", "outer loop\n", "vertex 0 0 0\n", "endloop\n", "endfacet\n",
            "endsolid\n"},
+          readMesh});
+}
+
+TEST(MeshFuzzTest, EveryPlyIsAMeshOrAnError) {
+    push({"ply",
+          "part.ply",
+          {"format ascii 1.0\n", "format binary_little_endian 1.0\n", "element vertex 3\n", "element face 1\n",
+           "property float x\n", "property list uchar int vertex_indices\n", "end_header\n", "3 0 1 2\n", "-1 "},
           readMesh});
 }
 

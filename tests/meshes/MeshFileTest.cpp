@@ -1,7 +1,11 @@
 // Meshes that worlds refer to: units, up axes, submeshes.
+#include <fmt/format.h>
+
 #include <map>
 
 #include "components/meshes/MeshFile.hpp"
+#include "components/scene/Acoustics.hpp"
+#include "components/scene/Placement.hpp"
 #include "tests/meshes/Dae.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 
@@ -103,6 +107,88 @@ TEST_F(MeshFileTest, AGltfInAWorldIsNotTurnedAndBringsItsAcoustics) {
     expectBounds(boundsOf(*readMeshFile(folder_ / "leaf.gltf", MeshAxes::ZUp)), {0, -3, 0}, {1, 0, 2});
     EXPECT_EQ(geometry->materials.at(0).name, "oak");
     EXPECT_FLOAT_EQ(geometry->materials.at(0).lambert_db, -7);
+}
+
+TEST_F(MeshFileTest, AMeshFileIsASceneOfItsOwn) {
+    write("part.mtl", "newmtl steel_grey\n");
+    write("part.obj", "mtllib part.mtl\nv 0 0 0\nv 11 0 0\nv 11 2 3\nv 0 2 3\no hull\nusemtl steel_grey\nf 1 2 3 4\n");
+    write("part.stl",
+          "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 11 0 0\nvertex 11 2 3\nendloop\nendfacet\n"
+          "endsolid s\n");
+    write("part.PLY",
+          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face "
+          "1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n11 0 0\n11 2 3\n3 0 1 2\n");
+    for (const char* file : {"part.obj", "part.stl", "part.PLY"}) {
+        SCOPED_TRACE(file);
+        const Scene scene = readScene(folder_ / file);
+        expectSound(*scene.geometry);
+        expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {11, 2, 3});
+        ASSERT_EQ(findNode(scene, "part"), 0) << "the whole file moves with the node of its name";
+        EXPECT_EQ(partsOf(scene, 0).size(), scene.geometry->objects.size());
+        expectBounds(boundsOf(*placed(scene, {.position = {1, 2, 3}, .scale = 0.1}).geometry), {1, 2, 3},
+                     {2.1, 2.2, 3.3});
+        expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Y}).geometry), {0, -3, 0}, {11, 0, 2});
+        expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Z}).geometry), {0, 0, 0}, {11, 2, 3});
+        EXPECT_EQ(scene.geometry->materials.at(0).name, std::string(file) == "part.obj" ? "steel_grey" : "part");
+    }
+    types::Diagnostics faults;
+    const std::map<std::string, Acoustics> steel = {{"part", readAcoustics({{"material", "steel"}}, "", faults)}};
+    EXPECT_EQ(overrideMaterials(readScene(folder_ / "part.stl"), steel, faults)->materials.at(0).matter, "steel");
+    EXPECT_TRUE(faults.empty());
+}
+
+TEST_F(MeshFileTest, ADaeAsASceneIsUprightAndItsAxesMayBeOverridden) {
+    const std::map<std::string, Bounds> upright = {
+        {"Z_UP", {{0, 0, 0}, {11, 2, 3}}}, {"Y_UP", {{0, -3, 0}, {11, 0, 2}}}, {"X_UP", {{-2, -3, 0}, {0, 0, 11}}}};
+    for (const auto& [up_axis, bounds] : upright) {
+        SCOPED_TRACE(up_axis);
+        const Scene scene = readScene(writeDae("1", up_axis));
+        expectBounds(boundsOf(*scene.geometry), bounds.low, bounds.high);
+        for (const char* node : {"part", "near", "far"}) EXPECT_GE(findNode(scene, node), 0) << node;
+        EXPECT_EQ(partsOf(scene, findNode(scene, "part")).size(), 2u);
+        expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Z}).geometry), {0, 0, 0}, {11, 2, 3});
+        expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Y}).geometry), {0, -3, 0}, {11, 0, 2});
+    }
+}
+
+TEST_F(MeshFileTest, ABodyLargerThanAnyShipWhoseFileStatesNoUnitIsAsked) {
+    const auto obj = [&](double x, double y, double z) {
+        return write("big.obj", fmt::format("v 0 0 0\nv {} 0 0\nv 0 {} {}\nf 1 2 3\n", x, y, z));
+    };
+    const auto warns = [&](const Scene& scene) { return hasNotice(*scene.geometry, "if it is in millimetres"); };
+    EXPECT_TRUE(warns(readScene(obj(5000, 2000, 1000))));
+    EXPECT_FALSE(warns(readScene(obj(300, 50, 60)))) << "a ship";
+    EXPECT_FALSE(warns(readScene(obj(5000, 2000, 40)))) << "ground";
+    obj(5000, 2000, 1000);
+    const std::string uri = "<mesh><uri>big.obj</uri>";
+    const Scene twice = world("<model name='m'><link name='l'>" + visual("a", uri + "</mesh>") +
+                              visual("b", uri + "</mesh>") + "</link></model>");
+    EXPECT_TRUE(warns(twice));
+    EXPECT_EQ(twice.geometry->notices.size(), 1u);
+    EXPECT_FALSE(warns(world(model("m", uri + "<scale>0.001 0.001 0.001</scale></mesh>"))));
+}
+
+TEST_F(MeshFileTest, AMeshFileWithoutTrianglesOrThatIsNoMeshIsNoScene) {
+    write("points.ply",
+          "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
+          "z\nend_header\n0 0 0\n");
+    write("empty.stl", "");
+    write("words.obj", "hello\n");
+    write("words.ply", "ply\nhello\n");
+    for (const char* file : {"points.ply", "empty.stl", "words.obj", "words.ply"})
+        EXPECT_NE(diagnosticOf(folder_ / file).find(file), std::string::npos) << diagnosticOf(folder_ / file);
+}
+
+TEST_F(MeshFileTest, ADaeWhoseTextureHasNoPictureIsReadWithoutIt) {
+    std::string text = Dae().text();
+    const std::string effects =
+        R"(<library_images><image id="i"/></library_images><library_effects><effect id="e"><profile_COMMON>
+<newparam sid="s"><surface type="2D"><init_from>i</init_from></surface></newparam>
+<newparam sid="t"><sampler2D><source>s</source></sampler2D></newparam>
+<technique sid="c"><phong><diffuse><texture texture="t" texcoord="u"/></diffuse></phong></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m" name="paint"><instance_effect url="#e"/></material></library_materials>)";
+    text.insert(text.find("<library_geometries>"), effects);
+    expectBounds(boundsOf(*readMeshFile(write("paint.dae", text), MeshAxes::AsStored)), {0, 0, 0}, {1, 2, 3});
 }
 
 TEST_F(MeshFileTest, TheScaleOfAMeshMayMirrorIt) {

@@ -177,8 +177,8 @@ TEST_F(MeshProcessTest, AMeshThatCannotBeReadIsTriedOnceInAWorld) {
     const std::string part = "<mesh><uri>part.dae</uri></mesh>";
     const auto geometry = world(model("a", part) + model("b", part) + model("c", box_)).geometry;
     EXPECT_EQ(geometry->objects.size(), 1u);
-    EXPECT_TRUE(hasNotice(*geometry, "visual a::hull::skin is omitted: part.dae cannot be read"));
-    EXPECT_TRUE(hasNotice(*geometry, "visual b::hull::skin is omitted: part.dae cannot be read"));
+    EXPECT_TRUE(hasNotice(*geometry, "2 visuals are omitted: part.dae cannot be read"));
+    EXPECT_TRUE(hasNotice(*geometry, "(a::hull::skin, b::hull::skin)"));
     EXPECT_EQ(std::filesystem::file_size(folder_ / "tries"), std::string("tried\n").size());
 }
 
@@ -242,7 +242,7 @@ TEST_F(MeshProcessTest, ForeignFilesAreReadBitForBitAsWithoutAProcess) {
     size_t files = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(shared)) {
         const std::string extension = extensionOf(entry.path());
-        if (extension != ".dae" && extension != ".obj" && extension != ".stl") continue;
+        if (extension != ".dae" && extension != ".obj" && extension != ".stl" && extension != ".ply") continue;
         SCOPED_TRACE(entry.path());
         const MeshAxes axes = extension == ".dae" ? MeshAxes::ZUp : MeshAxes::AsStored;
         const ReadLimits limits = ReadLimits::forFile(std::filesystem::file_size(entry.path()));

@@ -39,6 +39,7 @@ inline std::string triangle(const std::string& corners = bytesOf<float>({0, 0, 0
 /** Has a separate folder for each test. */
 struct SceneFiles : ::testing::Test {
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+        std::filesystem::create_directories((folder_ / name).parent_path());
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;
     }

@@ -168,8 +168,140 @@ TEST_F(SdfTest, AnIncludeThatIsNotFoundIsANoticeWithItsLine) {
     EXPECT_EQ(scene.geometry->objects.size(), 1u);
     EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:2: ")) << scene.geometry->notices.at(0).text;
     EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://crate]; omitted"));
-    EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:4: "));
-    EXPECT_TRUE(hasNotice(*scene.geometry, "in the folders of INSONIFY_MODEL_PATH"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "1 model of Fuel is not found, and omitted: https://fuel.gazebosim.org"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "INSONIFY_MODEL_PATH adds folders"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "gz fuel download"));
+}
+
+TEST_F(SdfTest, MissingModelsOfFuelAreOneNotice) {
+    std::string includes;
+    for (int i = 0; i < 20; ++i)
+        includes += "<include><uri>https://fuel.gazebosim.org/1.0/x/models/m" + std::to_string(i) + "</uri></include>";
+    const Scene scene = world(includes + model("m", box_));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "20 models of Fuel are not found"));
+    EXPECT_EQ(scene.geometry->notices.size(), 2u) << "that, and where they were searched";
+}
+
+TEST_F(SdfTest, AModelInTheCacheOfFuelIsRead) {
+    const Variable home("HOME", folder_.string());
+    write(".gz/fuel/fuel.gazebosim.org/open/models/post/2/model.config",
+          "<model><name>post</name><sdf version='1.9'>model.sdf</sdf></model>");
+    write(".gz/fuel/fuel.gazebosim.org/open/models/post/2/model.sdf",
+          "<sdf version='1.9'>" + model("post", box_) + "</sdf>");
+    const Scene scene = world("<include><uri>https://fuel.gazebosim.org/1.0/Open/models/Post</uri>" +
+                              pose("5 0 0 0 0 0") + "</include>");
+    expectBounds(boundsOf(*scene.geometry), {4, -2, -3}, {6, 2, 3});
+}
+
+TEST_F(SdfTest, APopulationHasTheCopiesThatGazeboPlaces) {
+    const auto population = [&](const std::string& rule, const std::string& region, const std::string& count) {
+        return "<population name='p'>" + model("m", "<box><size>1 1 1</size></box>") +
+               pose("10 20 30 0 0 1.5707963267948966") + region + "<model_count>" + count +
+               "</model_count><distribution>" + rule + "</distribution></population>";
+    };
+    const std::string box = "<box><size>6 4 2</size></box>",
+                      cylinder = "<cylinder><radius>3</radius><length>2</length></cylinder>";
+    const Scene grid = world(population("<type>grid</type><rows>2</rows><cols>3</cols><step>4 5 6</step>", box, "0"));
+    ASSERT_EQ(grid.geometry->objects.size(), 6u);
+    EXPECT_GE(findNode(grid, "m_clone_5"), 0);
+    // The region is turned by 90 degrees: its x is along y. The copies are not turned.
+    expectBounds(boundsOf(*grid.geometry), {10 - 5 - 0.5, 20 - 0.5, 29.5}, {10.5, 20 + 8 + 0.5, 30.5}, 1e-5);
+    const Scene row = world(population("<type>linear-x</type>", box, "3"));
+    expectBounds(boundsOf(*row.geometry), {10 - 2 - 0.5, 19.5, 31 - 0.5}, {10 - 2 + 0.5, 24.5, 31.5}, 1e-5);
+    for (const char* type : {"random", "uniform"})
+        for (const std::string& region : {box, cylinder}) {
+            const Scene drawn = world(population(std::string("<type>") + type + "</type>", region, "40"));
+            ASSERT_EQ(drawn.geometry->objects.size(), 40u);
+            const Bounds bounds = boundsOf(*drawn.geometry);
+            const glm::dvec3 low = region == box ? glm::dvec3(6, 20, 30) : glm::dvec3(7, 17, 29),
+                             high = region == box ? glm::dvec3(10, 26, 32) : glm::dvec3(13, 23, 31);
+            for (int axis = 0; axis < 3; ++axis) {
+                EXPECT_GE(bounds.low[axis], low[axis] - 0.51);
+                EXPECT_LE(bounds.high[axis], high[axis] + 0.51);
+                EXPECT_GT(bounds.high[axis] - bounds.low[axis], 1 + 0.6 * (high[axis] - low[axis]))
+                    << "they are spread";
+            }
+            EXPECT_TRUE(hasNotice(*drawn.geometry, "population p: 40 times m, at places that are drawn"));
+            const Scene again = world(population(std::string("<type>") + type + "</type>", region, "40"));
+            EXPECT_EQ(again.geometry->objects.back().world_from_object,
+                      drawn.geometry->objects.back().world_from_object);
+        }
+    EXPECT_EQ(world(population("<type>random</type>", box, "0")).geometry->objects.size(), 0u);
+    EXPECT_EQ(world(population("<type>random</type>", box, "-3")).geometry->objects.size(), 0u);
+    EXPECT_EQ(world(population("<type>random</type>", box, "1e9")).geometry->objects.size(), 1u)
+        << "a number with an end";
+    const Scene none = world("<population name='p'><model_count>2</model_count></population>" + model("n", box_));
+    EXPECT_TRUE(hasNotice(*none.geometry, "population p is omitted: it has no model"));
+}
+
+TEST_F(SdfTest, SurfacesOfOtherSimulatorsAreReadWhereTheyNameAMaterialElseOneNotice) {
+    const Scene scene =
+        readScene(write("can.sdf",
+                        "<sdf version='1.9' xmlns:surface_props='s'><model "
+                        "name='can'><surface_props:material>metal</surface_props:material>"
+                        "<surface_props:biofouling_rating>10</surface_props:biofouling_rating><link name='l'>" +
+                            visual("v", box_, "<laser_retro>2</laser_retro>") +
+                            visual("w", box_, "<laser_retro>3</laser_retro>") + "</link></model></sdf>"));
+    EXPECT_EQ(scene.geometry->materials.at(0).name, "steel");
+    EXPECT_TRUE(hasNotice(*scene.geometry, "not used: laser_retro, surface_props:biofouling_rating; a surface's echo"));
+    EXPECT_FALSE(hasNotice(*world(model("m", box_)).geometry, "not used"));
+    EXPECT_TRUE(
+        hasNotice(*world(model("m", box_) + "<road name='r'><point>0 0 0</point><point>1 0 0</point></road>").geometry,
+                  "roads omitted: drawn strips on the ground: 1"));
+}
+
+/** What Gazebo's older parsers took, and what a sonar needs nothing of. */
+TEST_F(SdfTest, FaultsInWhatASonarDoesNotNeedAreNoObstacle) {
+    const std::string body = "<link name='hull'>" + visual("skin", box_);
+    const std::map<std::string, std::string> files = {
+        {"inertia of three numbers", "<sdf version='1.6'><model name='m'>" + body + "<inertial>" + pose("1 2 3") +
+                                         "</inertial></link></model></sdf>"},
+        {"friction below 0", "<sdf version='1.6'><model name='m'>" + body + "<collision name='c'><geometry>" + box_ +
+                                 "</geometry><surface><friction><ode><mu>-1</mu></ode></friction></surface></"
+                                 "collision></link></model></sdf>"},
+        {"narrow camera",
+         "<sdf version='1.6'><model name='m'>" + body +
+             "<sensor name='s' "
+             "type='camera'><camera><horizontal_fov>0.01</horizontal_fov></camera></sensor></link></model></sdf>"},
+        {"no quotes", "<sdf version='1.6'><model name='m'><link name=hull><visual name=skin><geometry>" + box_ +
+                          "</geometry></visual></link></model></sdf>"},
+        {"late declaration",
+         "<!-- licence -->\n<?xml version='1.0'?><sdf version='1.6'>" + model("m", box_) + "</sdf>"},
+        {"root of old", "<gazebo version='1.2'>" + model("m", box_) + "</gazebo>"},
+    };
+    for (const auto& [what, text] : files) {
+        SCOPED_TRACE(what);
+        const Scene alone = readScene(write("alone.sdf", text));
+        expectBounds(boundsOf(*alone.geometry), {-1, -2, -3}, {1, 2, 3});
+        writeModel("bad", "");
+        write("bad/model.sdf", text);
+        const Scene included =
+            world("<include><uri>model://bad</uri>" + pose("7 0 0 0 0 0") + "</include>" + model("n", box_));
+        expectBounds(boundsOf(*included.geometry), {-1, -2, -3}, {8, 2, 3});
+        EXPECT_TRUE(hasNotice(*included.geometry, "is read without what a sonar does not need"));
+    }
+    const Scene padded =
+        readScene(write("alone.sdf", "<sdf version='1.6'>" + model("m", box_, pose("5 0 0 0 0")) + "</sdf>"));
+    expectBounds(boundsOf(*padded.geometry), {4, -2, -3}, {6, 2, 3});
+    EXPECT_TRUE(hasNotice(*padded.geometry, "must have 6 values, but 5 were found"));
+}
+
+TEST_F(SdfTest, AMendedModelFindsItsMeshes) {
+    writeModel("bad", "<model name='bad'><link name='l'><inertial>" + pose("1 2 3") + "</inertial>" +
+                          visual("v", "<mesh><uri>meshes/plate.obj</uri></mesh>") +
+                          visual("w", "<mesh><uri>model://bad/meshes/plate.obj</uri></mesh>", pose("0 0 9 0 0 0")) +
+                          "</link></model>");
+    write("bad/meshes/plate.obj", "v 0 0 0\nv 1 0 0\nv 1 2 3\nf 1 2 3\n");
+    const Scene scene = world("<include><uri>model://bad</uri></include>");
+    expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {1, 2, 12});
+}
+
+TEST_F(SdfTest, ConesAreReadThoughTheyAreNewerThanTheLibrary) {
+    const Scene scene = world(model("m", "<cone><radius>2</radius><length>6</length></cone>"));
+    expectBounds(boundsOf(*scene.geometry), {-2, -2, -3}, {2, 2, 3}, 1e-5);
+    EXPECT_NEAR(volumeOf(*scene.geometry), 3.14159 * 4 * 6 / 3, 0.1);
+    EXPECT_TRUE(hasNotice(*world(model("m", "<polyline><height>1</height><point>0 0</point></polyline>")).geometry,
+                          "its geometry, <polyline>, is not supported"));
 }
 
 TEST_F(SdfTest, AMissingSunIsNoNotice) {
@@ -186,12 +318,12 @@ TEST_F(SdfTest, AnIncludeInAnIncludeThatIsNotFoundIsANoticeToo) {
 }
 
 TEST_F(SdfTest, OmitsAnUnreadableIncludeWithTheReason) {
-    writeModel("bad", "<model name='bad'>" + pose("1 2 3") + link("l") + "</model>");
+    writeModel("bad", "<model name='bad'>" + pose("1 2 east") + link("l") + "</model>");
     writeModel("good", model("good", box_));
     const Scene scene = world("<include><uri>model://bad</uri></include><include><uri>model://good</uri></include>");
     EXPECT_GE(findNode(scene, "good"), 0);
     EXPECT_LT(findNode(scene, "bad"), 0);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "must have 6 values, but 3 were found"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "1 2 east"));
     EXPECT_TRUE(hasNotice(*scene.geometry, "bad/model.sdf]; omitted"));
 }
 

@@ -182,7 +182,7 @@ TEST_F(SdfVisualsTest, AnUnsupportedVisualIsANotice) {
                              "visual m::l::f is omitted: animation.png is neither PNG nor JPEG",
                              "visual m::l::c is omitted: gone.png is not found",
                              "visuals omitted, their size is zero in some direction or not finite: 1",
-                             "visual m::l::e is omitted: its geometry is not supported", "an empty sea"})
+                             "visual m::l::e is omitted: its geometry, <empty>, is not supported", "an empty sea"})
         EXPECT_TRUE(hasNotice(*scene.geometry, part)) << part;
 }
 

@@ -101,6 +101,15 @@ TEST_F(UrdfTest, RefusesOtherXmlAtItsLine) {
     EXPECT_THAT(diagnosticOf(folder_ / "none.urdf"), HasSubstr("does not exist"));
 }
 
+TEST_F(UrdfTest, AMeshOfAPackageThatIsNotFoundKeepsItsName) {
+    const Scene scene = readScene(robot(link("base", "<mesh filename='package://blue/meshes/prop.dae'/>") +
+                                        link("arm", "<mesh filename='package://blue/meshes/prop.dae'/>") +
+                                        joint("j", "fixed", "base", "arm", "xyz='0 0 0'")));
+    EXPECT_TRUE(
+        hasNotice(*scene.geometry, "2 visuals are omitted: package://blue/meshes/prop.dae is not found (rov::"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "AMENT_PREFIX_PATH and ROS_PACKAGE_PATH"));
+}
+
 TEST_F(UrdfTest, AVisualOfAnInvisibleColourIsAnInvisibleDrawing) {
     const auto coloured = [](const char* alpha) {
         return std::string("<material name='m") + alpha + "'><color rgba='0 0 1 " + alpha + "'/></material>";

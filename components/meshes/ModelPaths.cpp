@@ -1,0 +1,242 @@
+#include "components/meshes/ModelPaths.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "types/Ascii.hpp"
+
+namespace insonify::meshes {
+namespace {
+
+using std::filesystem::path;
+
+bool isThere(const path& place) {
+    std::error_code error;
+    return std::filesystem::exists(place, error);
+}
+
+/** Returns the folders of a list in the environment, separated by ':'. */
+std::vector<path> foldersIn(const char* variable) {
+    std::vector<path> folders;
+    const char* const list = std::getenv(variable);
+    std::istringstream stream(list ? list : "");
+    for (std::string folder; std::getline(stream, folder, ':');)
+        if (!folder.empty()) folders.push_back(std::filesystem::absolute(folder));
+    return folders;
+}
+
+path home() {
+    const char* const folder = std::getenv("HOME");
+    return folder ? folder : "";
+}
+
+constexpr const char* model_variables[] = {"INSONIFY_MODEL_PATH",  "GAZEBO_MODEL_PATH",        "SDF_PATH",
+                                           "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_RESOURCE_PATH"};
+
+/** Returns the text with "%20" as " "; a '%' without two digits stays, and %00. */
+std::string decoded(std::string_view text) {
+    std::string out;
+    for (size_t i = 0; i < text.size(); ++i) {
+        unsigned byte = 0;
+        const char* const end = text.data() + std::min(i + 3, text.size());
+        if (text[i] == '%' && end == text.data() + i + 3 &&
+            std::from_chars(text.data() + i + 1, end, byte, 16).ptr == end && byte != 0) {
+            out += static_cast<char>(byte);
+            i += 2;
+        } else {
+            out += text[i];
+        }
+    }
+    return out;
+}
+
+/** Returns the root of the repository that contains a folder, else the folder that contains its ROS package; empty:
+ *  neither. */
+path rootAbove(const path& folder) {
+    constexpr int levels = 10;
+    path package;
+    path at = folder;
+    for (int i = 0; i < levels && at.has_relative_path(); ++i, at = at.parent_path()) {
+        if (isThere(at / ".git")) return at;
+        if (package.empty() && isThere(at / "package.xml")) package = at.parent_path();
+    }
+    return package;
+}
+
+/** Returns the name in a package.xml; that of the folder where the file has none. */
+std::string packageName(const path& folder) {
+    std::ifstream file(folder / "package.xml");
+    std::string text(1 << 14, '\0');
+    text.resize(static_cast<size_t>(file.read(text.data(), static_cast<std::streamsize>(text.size())).gcount()));
+    const size_t begin = text.find("<name>"), end = text.find("</name>");
+    if (begin == std::string::npos || end == std::string::npos || end < begin) return folder.filename().string();
+    const std::string name = text.substr(begin + 6, end - begin - 6);
+    const size_t first = name.find_first_not_of(" \t\r\n"), last = name.find_last_not_of(" \t\r\n");
+    return first == std::string::npos ? folder.filename().string() : name.substr(first, last - first + 1);
+}
+
+/** Adds the ROS packages at and below a folder, as rospack finds them: not below a package, nor in hidden folders. The
+ *  first of a name stays. */
+void findPackages(const path& folder, int depth, size_t& left, std::map<std::string, path>& packages) {
+    constexpr int deepest = 6;
+    if (depth > deepest || left == 0) return;
+    if (isThere(folder / "package.xml")) {
+        packages.try_emplace(packageName(folder), folder);
+        return;
+    }
+    std::error_code error;
+    std::vector<path> below;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        if (left == 0) return;
+        --left;
+        if (entry.is_directory(error) && !entry.is_symlink(error) && !entry.path().filename().string().starts_with('.'))
+            below.push_back(entry.path());
+    }
+    std::ranges::sort(below);
+    for (const path& each : below) findPackages(each, depth + 1, left, packages);
+}
+
+/** A model of Fuel: https://HOST/1.0/OWNER/models/NAME/VERSION/files/FILE. */
+struct FuelUrl {
+    std::string host, owner, name, version, file;  ///< In lower case but `file`, as in the caches.
+
+    static std::optional<FuelUrl> parse(const std::string& uri) {
+        if (!uri.starts_with("https://") && !uri.starts_with("http://")) return {};
+        std::vector<std::string> parts;
+        std::istringstream stream(uri.substr(uri.find("://") + 3));
+        for (std::string part; std::getline(stream, part, '/');)
+            if (!part.empty()) parts.push_back(decoded(part));
+        const auto models = std::ranges::find(parts, "models");
+        if (parts.empty() || models - parts.begin() < 2 || parts.end() - models < 2) return {};
+        FuelUrl url{parts.front(), *(models - 1), *(models + 1), "", ""};
+        if (url.owner == "fuel" && models - parts.begin() > 2) url.owner = *(models - 2);
+        for (std::string* word : {&url.host, &url.owner, &url.name}) *word = types::lowered(*word);
+        auto next = models + 2;
+        if (next != parts.end() && *next != "files") url.version = *next++;
+        if (url.version == "tip") url.version.clear();
+        if (next != parts.end() && *next == "files") ++next;
+        for (; next != parts.end(); ++next) url.file += (url.file.empty() ? "" : "/") + *next;
+        return url;
+    }
+};
+
+std::vector<path> fuelCaches() {
+    std::vector<path> caches;
+    for (const char* variable : {"GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH"})
+        for (const path& folder : foldersIn(variable)) caches.push_back(folder);
+    caches.insert(caches.end(), {home() / ".gz/fuel", home() / ".ignition/fuel"});
+    return caches;
+}
+
+/** Returns the folder of the newest version of a model, whose versions are folders with numbers. */
+std::optional<path> newestIn(const path& model) {
+    std::optional<path> newest;
+    long highest = -1;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(model, error)) {
+        const std::string name = entry.path().filename().string();
+        long version = -1;
+        if (std::from_chars(name.data(), name.data() + name.size(), version).ptr != name.data() + name.size()) continue;
+        if (version > highest) highest = version, newest = entry.path();
+    }
+    return newest;
+}
+
+/** Returns a model of Fuel, or its file, in the caches of Gazebo: by its host, else by another. */
+std::optional<path> findInFuel(const FuelUrl& url) {
+    std::error_code error;
+    for (const path& cache : fuelCaches()) {
+        std::vector<path> hosts = {cache / url.host};
+        for (const auto& entry : std::filesystem::directory_iterator(cache, error)) hosts.push_back(entry.path());
+        for (const path& host : hosts) {
+            const path model = host / url.owner / "models" / url.name;
+            const auto version = url.version.empty() ? newestIn(model) : std::optional(model / url.version);
+            if (version && isThere(*version / url.file)) return url.file.empty() ? *version : *version / url.file;
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+ModelPaths::ModelPaths(const path& world) {
+    for (const char* variable : model_variables)
+        for (const path& folder : foldersIn(variable)) folders_.push_back(folder);
+    const path folder = std::filesystem::absolute(world).lexically_normal().parent_path();
+    folders_.push_back(folder);
+    if (isThere(folder / "model.config")) folders_.push_back(folder.parent_path());
+    root_ = rootAbove(folder);
+    for (path at = folder; !root_.empty(); at = at.parent_path()) {
+        if (at != folder) folders_.push_back(at);
+        if (isThere(at / "models")) folders_.push_back(at / "models");
+        if (at == root_) break;
+    }
+    for (const path& own :
+         {home() / ".gazebo/models", path("/usr/share/gazebo-11/models"), path("/usr/share/gazebo-11")})
+        if (isThere(own)) folders_.push_back(own);
+}
+
+std::optional<path> ModelPaths::find(const std::string& uri, const path& named_in) const {
+    if (const auto found = findRaw(uri, named_in)) return found;
+    const std::string plain = decoded(uri);
+    return plain == uri ? std::nullopt : findRaw(plain, named_in);
+}
+
+std::optional<path> ModelPaths::findRaw(const std::string& uri, const path& named_in) const {
+    if (const auto url = FuelUrl::parse(uri)) return findInFuel(*url);
+    const size_t scheme_end = uri.find("://");
+    const std::string scheme = scheme_end == std::string::npos ? "" : uri.substr(0, scheme_end);
+    const path place = scheme.empty() ? uri : uri.substr(scheme_end + 3);
+    if (!scheme.empty() && scheme != "model" && scheme != "package" && scheme != "file") return {};
+    if (place.empty()) return {};
+    if (place.is_absolute()) return isThere(place) ? std::optional(place) : std::nullopt;
+    if (scheme.empty() && named_in.is_absolute() && isThere(named_in.parent_path() / place))
+        return named_in.parent_path() / place;
+    for (const path& folder : folders_)
+        if (isThere(folder / place)) return folder / place;
+    if (scheme.empty()) return {};
+    if (const auto found = findInPackage(place)) return found;
+    // A model of Fuel names its files by its own name, and is in a folder with the number of its version.
+    const path folder = named_in.parent_path(), own = folder / place.lexically_relative(*place.begin());
+    const bool names_file = std::distance(place.begin(), place.end()) > 1;
+    if (!names_file || !named_in.is_absolute() || !isThere(folder / "model.config") || !isThere(own)) return {};
+    return own;
+}
+
+std::optional<path> ModelPaths::findInPackage(const path& place) const {
+    const path name = *place.begin(), rest = place.lexically_relative(name);
+    for (const path& prefix : foldersIn("AMENT_PREFIX_PATH"))
+        if (isThere(prefix / "share" / place)) return prefix / "share" / place;
+    if (!packages_) {
+        packages_.emplace();
+        size_t left = 50'000;  // entries of folders
+        for (const path& folder : foldersIn("ROS_PACKAGE_PATH")) findPackages(folder, 0, left, *packages_);
+        if (!root_.empty()) findPackages(root_, 0, left, *packages_);
+    }
+    const auto package = packages_->find(name.string());
+    if (package == packages_->end() || !isThere(package->second / rest)) return {};
+    return package->second / rest;
+}
+
+std::string ModelPaths::searched(const std::string& uri) const {
+    const auto listed = [](const std::vector<path>& places) {
+        std::string text;
+        for (const path& place : places) text += (text.empty() ? "" : ", ") + place.string();
+        return text;
+    };
+    if (FuelUrl::parse(uri))
+        return "models of Fuel are not downloaded: they were searched in " + listed(fuelCaches()) +
+               "; `gz fuel download -u URL` puts one there";
+    std::string text = "files of models were searched in " + listed(folders_);
+    if (uri.starts_with("package://") || uri.starts_with("model://"))
+        text += ", and as packages of ROS by AMENT_PREFIX_PATH and ROS_PACKAGE_PATH" +
+                (root_.empty() ? "" : " and below " + root_.string());
+    return text + "; INSONIFY_MODEL_PATH adds folders, which contain the folders of the models";
+}
+
+}  // namespace insonify::meshes

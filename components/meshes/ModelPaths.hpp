@@ -1,0 +1,44 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace insonify::meshes {
+
+/** The places in which the models and files of a world are searched. Nothing is downloaded. In this order:
+ *
+ *  - the folders of INSONIFY_MODEL_PATH, GAZEBO_MODEL_PATH, SDF_PATH, GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH
+ * and GAZEBO_RESOURCE_PATH (each a list separated by ':');
+ *  - the folder of the world; for a single model (with its model.config) the folder that contains its folder; in a
+ *    repository or a ROS package each folder above up to its root, and the folders `models` in them;
+ *  - ~/.gazebo/models and Gazebo classic's own models;
+ *  - packages of ROS: share/NAME of AMENT_PREFIX_PATH, packages below ROS_PACKAGE_PATH, those of the world's
+ * repository.
+ */
+class ModelPaths {
+public:
+    explicit ModelPaths(const std::filesystem::path& world);
+
+    const std::vector<std::filesystem::path>& folders() const { return folders_; }
+
+    /** Returns the file or folder of `uri`, if it exists, as it stands or with %20 and the like decoded. `model://`,
+     *  `package://` and `file://` are searched in all places; `file:///` and an absolute path are used as given; a
+     *  relative path starts at the folder of `named_in`, the file that names it. A URL of Fuel is taken from the caches
+     *  of GZ_FUEL_CACHE_PATH, IGN_FUEL_CACHE_PATH, ~/.gz/fuel and ~/.ignition/fuel: its version, else the newest. */
+    std::optional<std::filesystem::path> find(const std::string& uri, const std::filesystem::path& named_in) const;
+
+    /** Returns a sentence with the places that were searched for a file of this kind, and how to add others. */
+    std::string searched(const std::string& uri) const;
+
+private:
+    std::optional<std::filesystem::path> findRaw(const std::string& uri, const std::filesystem::path& named_in) const;
+    std::optional<std::filesystem::path> findInPackage(const std::filesystem::path& path) const;
+
+    std::vector<std::filesystem::path> folders_;
+    std::filesystem::path root_;  ///< Of the world's repository, or of its package's folder; empty: neither.
+    mutable std::optional<std::map<std::string, std::filesystem::path>> packages_;  ///< Of sources, once searched.
+};
+
+}  // namespace insonify::meshes
