@@ -135,8 +135,10 @@ int printMan(const CLI::App& app) {
         ".SH EXIT STATUS\n0: done. 1: failed while running. 2: wrong usage, file or configuration.\n"
         ".SH ENVIRONMENT\n.TP\n.B INSONIFY_EGL_DEVICE\nThe device for rasterisation: a number, software or auto.\n"
         ".TP\n.B INSONIFY_MODEL_PATH, GAZEBO_MODEL_PATH, SDF_PATH, GZ_SIM_RESOURCE_PATH, "
-        "IGN_GAZEBO_RESOURCE_PATH\nFolders in which the models of a world are looked "
-        "for.\n");
+        "IGN_GAZEBO_RESOURCE_PATH, GAZEBO_RESOURCE_PATH\nFolders in which the models of a world are searched.\n"
+        ".TP\n.B AMENT_PREFIX_PATH, ROS_PACKAGE_PATH\nWhere packages of ROS are searched that a world or a robot "
+        "names.\n"
+        ".TP\n.B GZ_FUEL_CACHE_PATH, IGN_FUEL_CACHE_PATH\nCaches of models of Fuel, before ~/.gz/fuel.\n");
     return 0;
 }
 

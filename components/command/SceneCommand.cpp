@@ -271,17 +271,39 @@ void printAnimations(const Json& scene) {
         console::printResult("  and {} more, which --json names\n", animations.size() - shown);
 }
 
+/** Prints what is omitted and why: names with the same reason share a row. */
+void printOmitted(const Json& scene) {
+    constexpr size_t named = 3;
+    std::vector<std::pair<std::string, std::vector<std::string>>> rows;  // names by reason, in the file's order
+    for (const Json& each : scene["omitted"]) {
+        const auto reason = each["reason"].get<std::string>();
+        auto row = std::ranges::find(rows, reason, &decltype(rows)::value_type::first);
+        if (row == rows.end()) row = rows.insert(rows.end(), {reason, {}});
+        row->second.push_back(each["name"].get<std::string>());
+    }
+    if (!rows.empty()) console::printResult("omitted, {}\n", scene["omitted"].size());
+    for (const auto& [reason, names] : rows) {
+        const size_t shown = std::min(names.size(), named);
+        const std::string more = names.size() > shown ? fmt::format(" and {} more", names.size() - shown) : "";
+        console::printResult(
+            "  {:40} {}\n",
+            fmt::format("{}{}", fmt::join(names.begin(), names.begin() + static_cast<ptrdiff_t>(shown), ", "), more),
+            reason);
+    }
+    const Json& notices = scene["not_understood"];
+    if (!notices.empty()) console::printResult("omitted or repaired in the file, {}\n", notices.size());
+    for (const Json& line : notices) console::printResult("  {}\n", line.get<std::string>());
+}
+
 void printScene(const Json& scene) {
     console::printResult("{}: {}\n", scene["file"].get<std::string>(), scene["axes"].get<std::string>());
     printExtent(scene["bounds"]);
-    console::printResult("triangles: {}\nmaterials, {}\n", scene["triangles"].get<size_t>(), scene["materials"].size());
+    console::printResult("nodes: {}\ntriangles: {}\nmaterials, {}\n", scene["nodes"].size(),
+                         scene["triangles"].get<size_t>(), scene["materials"].size());
     for (const Json& material : scene["materials"]) printMaterial(material);
     printObjects(scene["objects"]);
     printAnimations(scene);
-    for (const Json& each : scene["omitted"])
-        console::printResult("omitted: {}: {}\n", each["name"].get<std::string>(), each["reason"].get<std::string>());
-    for (const Json& line : scene["not_understood"])
-        console::printResult("omitted or repaired: {}\n", line.get<std::string>());
+    printOmitted(scene);
     for (const Json& line : scene["warnings"]) console::printResult("warning: {}\n", line.get<std::string>());
 }
 

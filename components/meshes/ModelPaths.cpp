@@ -80,13 +80,14 @@ std::string packageName(const path& folder) {
     return first == std::string::npos ? folder.filename().string() : name.substr(first, last - first + 1);
 }
 
-/** Adds the ROS packages at and below a folder, as rospack finds them: not below a package, nor in hidden folders. The
- *  first of a name stays. */
-void findPackages(const path& folder, int depth, size_t& left, std::map<std::string, path>& packages) {
-    constexpr int deepest = 6;
+/** Adds the ROS packages and the folders of models at and below a folder, but not in hidden folders. The first of a
+ * name stays. */
+void findNamed(const path& folder, int depth, size_t& left, std::map<std::string, path>& named) {
+    constexpr int deepest = 8;
     if (depth > deepest || left == 0) return;
-    if (isThere(folder / "package.xml")) {
-        packages.try_emplace(packageName(folder), folder);
+    if (isThere(folder / "package.xml")) named.try_emplace(packageName(folder), folder);
+    if (isThere(folder / "model.config")) {
+        named.try_emplace(folder.filename().string(), folder);
         return;
     }
     std::error_code error;
@@ -98,7 +99,7 @@ void findPackages(const path& folder, int depth, size_t& left, std::map<std::str
             below.push_back(entry.path());
     }
     std::ranges::sort(below);
-    for (const path& each : below) findPackages(each, depth + 1, left, packages);
+    for (const path& each : below) findNamed(each, depth + 1, left, named);
 }
 
 /** A model of Fuel: https://HOST/1.0/OWNER/models/NAME/VERSION/files/FILE. */
@@ -199,8 +200,8 @@ std::optional<path> ModelPaths::findRaw(const std::string& uri, const path& name
         return named_in.parent_path() / place;
     for (const path& folder : folders_)
         if (isThere(folder / place)) return folder / place;
-    if (scheme.empty()) return {};
-    if (const auto found = findInPackage(place)) return found;
+    if (scheme.empty() && std::distance(place.begin(), place.end()) > 1) return {};
+    if (const auto found = findByName(place)) return found;
     // A model of Fuel names its files by its own name, and is in a folder with the number of its version.
     const path folder = named_in.parent_path(), own = folder / place.lexically_relative(*place.begin());
     const bool names_file = std::distance(place.begin(), place.end()) > 1;
@@ -208,19 +209,20 @@ std::optional<path> ModelPaths::findRaw(const std::string& uri, const path& name
     return own;
 }
 
-std::optional<path> ModelPaths::findInPackage(const path& place) const {
+std::optional<path> ModelPaths::findByName(const path& place) const {
     const path name = *place.begin(), rest = place.lexically_relative(name);
     for (const path& prefix : foldersIn("AMENT_PREFIX_PATH"))
         if (isThere(prefix / "share" / place)) return prefix / "share" / place;
-    if (!packages_) {
-        packages_.emplace();
+    if (!named_) {
+        named_.emplace();
         size_t left = 50'000;  // entries of folders
-        for (const path& folder : foldersIn("ROS_PACKAGE_PATH")) findPackages(folder, 0, left, *packages_);
-        if (!root_.empty()) findPackages(root_, 0, left, *packages_);
+        for (const path& folder : foldersIn("ROS_PACKAGE_PATH")) findNamed(folder, 0, left, *named_);
+        if (!root_.empty()) findNamed(root_, 0, left, *named_);
     }
-    const auto package = packages_->find(name.string());
-    if (package == packages_->end() || !isThere(package->second / rest)) return {};
-    return package->second / rest;
+    const auto found = named_->find(name.string());
+    if (found == named_->end()) return {};
+    if (rest == ".") return found->second;
+    return isThere(found->second / rest) ? std::optional(found->second / rest) : std::nullopt;
 }
 
 std::string ModelPaths::searched(const std::string& uri) const {

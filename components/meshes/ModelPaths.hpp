@@ -9,13 +9,13 @@ namespace insonify::meshes {
 
 /** The places in which the models and files of a world are searched. Nothing is downloaded. In this order:
  *
- *  - the folders of INSONIFY_MODEL_PATH, GAZEBO_MODEL_PATH, SDF_PATH, GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH
- * and GAZEBO_RESOURCE_PATH (each a list separated by ':');
+ *  - folders of INSONIFY_MODEL_PATH, GAZEBO_MODEL_PATH, SDF_PATH, GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and
+ *    GAZEBO_RESOURCE_PATH (each a list separated by ':');
  *  - the folder of the world; for a single model (with its model.config) the folder that contains its folder; in a
  *    repository or a ROS package each folder above up to its root, and the folders `models` in them;
  *  - ~/.gazebo/models and Gazebo classic's own models;
- *  - packages of ROS: share/NAME of AMENT_PREFIX_PATH, packages below ROS_PACKAGE_PATH, those of the world's
- * repository.
+ *  - by name: packages of ROS in share/NAME of AMENT_PREFIX_PATH; packages and models (folders with a model.config)
+ *    below ROS_PACKAGE_PATH and anywhere in the world's repository.
  */
 class ModelPaths {
 public:
@@ -34,11 +34,12 @@ public:
 
 private:
     std::optional<std::filesystem::path> findRaw(const std::string& uri, const std::filesystem::path& named_in) const;
-    std::optional<std::filesystem::path> findInPackage(const std::filesystem::path& path) const;
+    std::optional<std::filesystem::path> findByName(const std::filesystem::path& path) const;
 
     std::vector<std::filesystem::path> folders_;
     std::filesystem::path root_;  ///< Of the world's repository, or of its package's folder; empty: neither.
-    mutable std::optional<std::map<std::string, std::filesystem::path>> packages_;  ///< Of sources, once searched.
+    mutable std::optional<std::map<std::string, std::filesystem::path>>
+        named_;  ///< Packages and models, once searched.
 };
 
 }  // namespace insonify::meshes

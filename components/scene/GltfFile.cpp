@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <regex>
 #include <string_view>
 #include <type_traits>
 
@@ -163,9 +164,29 @@ void checkExtensions(GltfFile& gltf) {
             gltf.notices.push_back(fmt::format("extension {} is not read; its fallback is used", name));
 }
 
+/** Returns a glTF text in which names with a percent sign that are files as they stand have it encoded: tinygltf decodes
+ *  all names. */
+std::string withFilesAsNamed(const std::string& text, const std::string& folder) {
+    if (isBinary(text) || text.find('%') == std::string::npos) return text;
+    static const std::regex uri(R"re("uri"\s*:\s*"([^"\\]{1,1024})")re");
+    std::string out;
+    auto from = text.begin();
+    for (std::sregex_iterator found(text.begin(), text.end(), uri), none; found != none; ++found) {
+        std::string name = (*found)[1].str();
+        std::error_code error;
+        if (name.find('%') == std::string::npos || !std::filesystem::is_regular_file(folder + "/" + name, error))
+            continue;
+        for (size_t at = 0; (at = name.find('%', at)) != std::string::npos; at += 3) name.replace(at, 1, "%25");
+        out.append(from, (*found)[1].first).append(name);
+        from = (*found)[1].second;
+    }
+    return out.append(from, text.end());
+}
+
 /** Returns false and fills `errors` when tinygltf refuses the file. Exceptions that it throws on bad input are
  *  converted to errors. */
-bool parse(GltfFile& gltf, const std::string& bytes, std::string folder, std::string& errors) try {
+bool parse(GltfFile& gltf, const std::string& given, std::string folder, std::string& errors) try {
+    const std::string bytes = withFilesAsNamed(given, folder);
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keepEncoded, nullptr);
     loader.SetFsCallbacks(callbacksIn<tinygltf::FsCallbacks>(folder));

@@ -394,8 +394,21 @@ std::string reasonIn(const types::Diagnostics& diagnostics, const std::string& f
     return text.empty() ? "libsdformat refuses it" : text;
 }
 
+/** Returns the URI that a diagnostic reports as missing; empty: none. */
+std::string missingIn(const types::Diagnostic& diagnostic) {
+    constexpr std::string_view not_found = "Unable to find uri[";
+    const size_t at = diagnostic.message.find(not_found);
+    if (at == std::string::npos) return "";
+    const size_t begin = at + not_found.size();
+    return diagnostic.message.substr(begin, diagnostic.message.find(']', begin) - begin);
+}
+
 /** Joins diagnostics without a place, which give the reason, to the first with a place, and throws them. */
-[[noreturn]] void refuse(const std::filesystem::path& file, types::Diagnostics diagnostics) {
+[[noreturn]] void refuse(const std::filesystem::path& file, const meshes::ModelPaths& paths,
+                         types::Diagnostics diagnostics) {
+    for (types::Diagnostic& diagnostic : diagnostics)
+        if (const std::string uri = missingIn(diagnostic); !uri.empty())
+            diagnostic.message += "; " + paths.searched(uri);
     if (diagnostics.empty()) diagnostics.push_back({"", "holds neither a world nor a model of SDF"});
     const auto placed =
         std::ranges::stable_partition(diagnostics, [](const auto& diagnostic) { return !diagnostic.file.empty(); });
@@ -443,7 +456,7 @@ struct Reading {
             form_ = static_cast<Form>(form_ + 1);
             if (form_ == Mended) text = MendedModels::mended(given_, folder);
             if (form_ == Renamed) text = MendedModels::mended(withoutColons(given_), folder);
-            if (form_ == Refused) refuse(file_, first_);
+            if (form_ == Refused) refuse(file_, builder_.paths(), first_);
         }
         return true;
     }
@@ -474,13 +487,9 @@ private:
 /** Adds the diagnostics of a world that was read nevertheless; missing models of Fuel are one notice. Gazebo's
  *  `model://sun` is a light and does not matter to a sonar. */
 void noteDiagnostics(const types::Diagnostics& diagnostics, meshes::WorldBuilder& builder) {
-    constexpr std::string_view not_found = "Unable to find uri[";
     std::set<std::string> of_fuel;
     for (const types::Diagnostic& diagnostic : diagnostics) {
-        std::string uri;
-        if (const size_t at = diagnostic.message.find(not_found); at != std::string::npos)
-            uri = diagnostic.message.substr(at + not_found.size(),
-                                            diagnostic.message.find(']', at) - at - not_found.size());
+        const std::string uri = missingIn(diagnostic);
         if (uri == "model://sun") continue;
         if (!uri.empty()) builder.missed(uri);
         if (uri.starts_with("http"))

@@ -110,7 +110,7 @@ TEST_F(MeshFileTest, AGltfInAWorldIsNotTurnedAndBringsItsAcoustics) {
 }
 
 TEST_F(MeshFileTest, AMeshFileIsASceneOfItsOwn) {
-    write("part.mtl", "newmtl steel_grey\n");
+    write("part.mtl", "newmtl steel_grey\nKd 1 1 1\n");
     write("part.obj", "mtllib part.mtl\nv 0 0 0\nv 11 0 0\nv 11 2 3\nv 0 2 3\no hull\nusemtl steel_grey\nf 1 2 3 4\n");
     write("part.stl",
           "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 11 0 0\nvertex 11 2 3\nendloop\nendfacet\n"

@@ -93,7 +93,13 @@ TEST_F(ModelPathsTest, AWorldInARepositoryFindsItsModelsAndPackages) {
     std::filesystem::create_directories(folder_ / "repo/.git");
     EXPECT_EQ(found("model://crate"), "repo/worlds/models/crate");
     EXPECT_EQ(found("package://rov_description/meshes/rov.dae"), "repo/rov_description/meshes/rov.dae");
+    write("repo/objects/far/below/buoy/model.config", "");
+    write("repo/objects/far/below/buoy/meshes/b.dae", "");
     EXPECT_EQ(found("model://outside.dae"), "");
+    EXPECT_EQ(found("model://buoy"), "repo/objects/far/below/buoy");
+    EXPECT_EQ(found("buoy"), "repo/objects/far/below/buoy") << "as some includes name it";
+    EXPECT_EQ(found("model://buoy/meshes/b.dae"), "repo/objects/far/below/buoy/meshes/b.dae");
+    EXPECT_EQ(found("buoy/meshes/b.dae"), "") << "a relative path";
     EXPECT_EQ(found("model://here"), "repo/worlds/here");
     EXPECT_EQ(found("model://worlds_"), "");
 }

@@ -1,6 +1,7 @@
 """USD to glTF, compared with the output of `insonify scene`."""
 
 import json
+import random
 import subprocess
 import sys
 
@@ -154,6 +155,51 @@ def test_references_instances_and_instancers_are_converted(tmp_path):
     centres = sorted(tuple(np.round(each["bounds"]["centre"], 3)) for each in scene["objects"])
     assert centres == [(0, 0, 0), (0, 20, 0), (0, 30, 0), (10, 0, 0), (20, 0, 0)]
     assert "2 meshes" in done.stdout  # one for all instances of a prototype
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_referenced_layers_are_in_their_own_units(tmp_path, seed):
+    """A chain of layers, each in a unit and up axis of its own: the cube is where its layers place it, in metres."""
+    draw = random.Random(seed)
+    layers = [(draw.choice([1, 0.01, 0.001, 0.3048]), draw.choice("YZ")) for _ in range(3)]
+    centre, size = np.array([draw.uniform(-3, 3) for _ in range(3)]), draw.uniform(0.5, 2)
+    expected = centre.copy()
+    body = f'def Cube "box"\n{{\n double size = {size}\n double3 xformOp:translate = {tuple(centre.tolist())}\n uniform token[] xformOpOrder = ["xformOp:translate"]\n}}\n'
+    for i, (metres, up) in enumerate(reversed(layers)):
+        name = "scene.usda" if i == 2 else f"layer{i}.usda"
+        head = HEAD.format(metres=metres, up=up).replace("#usda 1.0\n(", '#usda 1.0\n(\n    defaultPrim = "top"')
+        inside = draw.choice([True, False])  # who places the layer: the layer itself or the one that refers to it
+        move = np.array([draw.uniform(-3, 3) for _ in range(3)])
+        place = f' double3 xformOp:translate = {tuple(move.tolist())}\n uniform token[] xformOpOrder = ["xformOp:translate"]\n'
+        (tmp_path / name).write_text(f'{head}def Xform "top"\n{{\n{place}{body}}}\n')
+        expected = expected + move
+        if i < 2:
+            outer_metres, outer_up = layers[1 - i]
+            own = np.array([draw.uniform(-3, 3) for _ in range(3)])
+            turn = np.eye(3) if up == outer_up else np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]) if up == "Y" else np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+            if inside:
+                expected = turn @ expected * (metres / outer_metres)
+                over = ""
+            else:  # its own place is overridden, in the unit of the layer that refers to it
+                expected = turn @ (expected - move) * (metres / outer_metres) + own
+                over = f' double3 xformOp:translate = {tuple(own.tolist())}\n uniform token[] xformOpOrder = ["xformOp:translate"]\n'
+            arc = draw.choice(["references", "payload"])
+            body = f'def Xform "part" (\n prepend {arc} = @./{name}@\n)\n{{\n{over}}}\n'
+            size *= metres / outer_metres
+    metres, up = layers[0]
+    x, y, z = expected * metres
+    done, scene = run(tmp_path, "scene.usda")
+    assert done.returncode == 0, done.stderr
+    box = scene["objects"][0]["bounds"]
+    assert np.allclose(box["centre"], (x, y, z) if up == "Z" else (x, -z, y), atol=1e-5)
+    assert np.allclose(box["size"], size * metres, rtol=1e-5)
+    assert ("converted: layer" in done.stdout) == (len(set(layers)) > 1)
+
+
+def test_animated_prims_are_reported(tmp_path):
+    body = 'def Cube "box"\n{\n double3 xformOp:translate.timeSamples = {\n 10: (5, 0, 0),\n 20: (25, 0, 0),\n }\n uniform token[] xformOpOrder = ["xformOp:translate"]\n}\n'
+    done, _ = converted(tmp_path, body)
+    assert "1 animated prims, which are where they start" in done.stdout
 
 
 def test_omitted_prims_are_reported(tmp_path):

@@ -358,5 +358,21 @@ TEST_F(GltfMaterialsTest, FileNamesMayHaveSpaces) {
     EXPECT_EQ(geometry->triangleCount(), 1u);
 }
 
+TEST_F(GltfMaterialsTest, NamesOfFilesWithPercentSignsAreTakenAsTheyStand) {
+    const auto triangles = [&](const std::string& name, const std::string& uri) {
+        write(name, bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+        const auto geometry = load(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+            "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+            "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri" : ")" +
+                                   uri + "\"}]");
+        std::filesystem::remove(folder_ / name);
+        return geometry->triangleCount();
+    };
+    EXPECT_EQ(triangles("ten 10%.bin", "ten 10%.bin"), 1u) << "as Blender names it";
+    EXPECT_EQ(triangles("ten 10%.bin", "ten%2010%25.bin"), 1u) << "as the specification has it";
+    EXPECT_EQ(triangles("a%20b.bin", "a%20b.bin"), 1u);
+    EXPECT_EQ(triangles("%%%.bin", "%%%.bin"), 1u);
+}
+
 }  // namespace
 }  // namespace insonify::scene
