@@ -180,6 +180,10 @@ ModelPaths::ModelPaths(const path& world) {
     for (const path& own :
          {home() / ".gazebo/models", path("/usr/share/gazebo-11/models"), path("/usr/share/gazebo-11")})
         if (isThere(own)) folders_.push_back(own);
+    std::vector<path> once;
+    for (const path& each : folders_)
+        if (std::ranges::find(once, each) == once.end()) once.push_back(each);
+    folders_ = std::move(once);
 }
 
 std::optional<path> ModelPaths::find(const std::string& uri, const path& named_in) const {

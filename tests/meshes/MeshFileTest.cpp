@@ -129,7 +129,8 @@ TEST_F(MeshFileTest, AMeshFileIsASceneOfItsOwn) {
                      {2.1, 2.2, 3.3});
         expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Y}).geometry), {0, -3, 0}, {11, 0, 2});
         expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Z}).geometry), {0, 0, 0}, {11, 2, 3});
-        EXPECT_EQ(scene.geometry->materials.at(0).name, std::string(file) == "part.obj" ? "steel_grey" : "part");
+        const auto used = static_cast<size_t>(scene.geometry->meshes.at(0).clusters.at(0).material);
+        EXPECT_EQ(scene.geometry->materials.at(used).name, std::string(file) == "part.obj" ? "steel_grey" : "part");
     }
     types::Diagnostics faults;
     const std::map<std::string, Acoustics> steel = {{"part", readAcoustics({{"material", "steel"}}, "", faults)}};

@@ -42,7 +42,7 @@ TEST_F(BadInputTest, ReportsMissingEmptyAndForeignFilesAndFolders) {
     expectDiagnostic(folder_ / "missing.glb", "must be a scene, which may be " + sceneEndings());
     expectDiagnostic(folder_ / "folder.glb", "is not a file");
     expectDiagnostic(write("empty.glb", ""), "is empty");
-    expectDiagnostic(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be " + sceneEndings());
+    expectDiagnostic(write("cube.fbx", "v 0 0 0"), "has extension \".fbx\"; may be " + sceneEndings());
     expectDiagnostic(write("noise.glb", "this is no model at all"), "cannot be read as glTF 2.0");
 }
 
