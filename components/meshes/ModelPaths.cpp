@@ -20,6 +20,8 @@ bool isThere(const path& place) {
     return std::filesystem::exists(place, error);
 }
 
+std::optional<path> ifThere(path place) { return isThere(place) ? std::optional(std::move(place)) : std::nullopt; }
+
 /** Returns the folders of a list in the environment, separated by ':'. */
 std::vector<path> foldersIn(const char* variable) {
     std::vector<path> folders;
@@ -199,18 +201,18 @@ std::optional<path> ModelPaths::findRaw(const std::string& uri, const path& name
     const path place = scheme.empty() ? uri : uri.substr(scheme_end + 3);
     if (!scheme.empty() && scheme != "model" && scheme != "package" && scheme != "file") return {};
     if (place.empty()) return {};
-    if (place.is_absolute()) return isThere(place) ? std::optional(place) : std::nullopt;
-    if (scheme.empty() && named_in.is_absolute() && isThere(named_in.parent_path() / place))
-        return named_in.parent_path() / place;
+    if (place.is_absolute()) return ifThere(place);
+    const path own_folder = named_in.is_absolute() ? named_in.parent_path() : path();
+    if (scheme.empty() && !own_folder.empty())
+        if (auto found = ifThere(own_folder / place)) return found;
     for (const path& folder : folders_)
-        if (isThere(folder / place)) return folder / place;
-    if (scheme.empty() && std::distance(place.begin(), place.end()) > 1) return {};
-    if (const auto found = findByName(place)) return found;
+        if (auto found = ifThere(folder / place)) return found;
+    const bool is_name = std::distance(place.begin(), place.end()) == 1;
+    if (scheme.empty() && !is_name) return {};
+    if (auto found = findByName(place)) return found;
     // A model of Fuel names its files by its own name, and is in a folder with the number of its version.
-    const path folder = named_in.parent_path(), own = folder / place.lexically_relative(*place.begin());
-    const bool names_file = std::distance(place.begin(), place.end()) > 1;
-    if (!names_file || !named_in.is_absolute() || !isThere(folder / "model.config") || !isThere(own)) return {};
-    return own;
+    if (is_name || own_folder.empty() || !isThere(own_folder / "model.config")) return {};
+    return ifThere(own_folder / place.lexically_relative(*place.begin()));
 }
 
 std::optional<path> ModelPaths::findByName(const path& place) const {
@@ -226,7 +228,7 @@ std::optional<path> ModelPaths::findByName(const path& place) const {
     const auto found = named_->find(name.string());
     if (found == named_->end()) return {};
     if (rest == ".") return found->second;
-    return isThere(found->second / rest) ? std::optional(found->second / rest) : std::nullopt;
+    return ifThere(found->second / rest);
 }
 
 std::string ModelPaths::searched(const std::string& uri) const {

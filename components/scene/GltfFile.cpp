@@ -164,11 +164,11 @@ void checkExtensions(GltfFile& gltf) {
             gltf.notices.push_back(fmt::format("extension {} is not read; its fallback is used", name));
 }
 
-/** Returns a glTF text in which names with a percent sign that are files as they stand have it encoded: tinygltf decodes
- *  all names. */
+/** Returns a glTF text in which names with a percent sign that are files as they stand have it encoded: tinygltf
+ * decodes all names. */
 std::string withFilesAsNamed(const std::string& text, const std::string& folder) {
     if (isBinary(text) || text.find('%') == std::string::npos) return text;
-    static const std::regex uri(R"re("uri"\s*:\s*"([^"\\]{1,1024})")re");
+    static const std::regex uri("\"uri\"\\s*:\\s*\"([^\"\\\\]{1,1024})\"");
     std::string out;
     auto from = text.begin();
     for (std::sregex_iterator found(text.begin(), text.end(), uri), none; found != none; ++found) {
