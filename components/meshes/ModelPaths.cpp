@@ -194,14 +194,24 @@ std::optional<path> ModelPaths::find(const std::string& uri, const path& named_i
     return plain == uri ? std::nullopt : findRaw(plain, named_in);
 }
 
+namespace {
+
+/** Returns the scheme and the rest of a URI; an empty rest for a scheme that is not searched. */
+std::pair<std::string, path> parted(const std::string& uri) {
+    const size_t end = uri.find("://");
+    if (end == std::string::npos) return {"", uri};
+    const std::string scheme = uri.substr(0, end);
+    const bool is_searched = scheme == "model" || scheme == "package" || scheme == "file";
+    return {scheme, is_searched ? uri.substr(end + 3) : ""};
+}
+
+}  // namespace
+
 std::optional<path> ModelPaths::findRaw(const std::string& uri, const path& named_in) const {
     if (const auto url = FuelUrl::parse(uri)) return findInFuel(*url);
-    const size_t scheme_end = uri.find("://");
-    const std::string scheme = scheme_end == std::string::npos ? "" : uri.substr(0, scheme_end);
-    const path place = scheme.empty() ? uri : uri.substr(scheme_end + 3);
-    if (!scheme.empty() && scheme != "model" && scheme != "package" && scheme != "file") return {};
-    if (place.empty()) return {};
+    const auto [scheme, place] = parted(uri);
     if (place.is_absolute()) return ifThere(place);
+    if (place.empty()) return {};
     const path own_folder = named_in.is_absolute() ? named_in.parent_path() : path();
     if (scheme.empty() && !own_folder.empty())
         if (auto found = ifThere(own_folder / place)) return found;
