@@ -219,8 +219,17 @@ void WorldBuilder::addVisual(const std::string& name, int node, const glm::dmat4
     }
 }
 
+void WorldBuilder::leaveOut(const std::string& visual, const std::string& why) {
+    LeftOut& with_reason = left_out_[why];
+    if (with_reason.visuals.empty()) {
+        with_reason.notice = geometry_.notices.size();
+        notice("");
+    }
+    with_reason.visuals.push_back(visual);
+    geometry_.notices[with_reason.notice].text = leftOutText(with_reason.visuals, why);
+}
+
 Scene WorldBuilder::take() {
-    for (const auto& [why, visuals] : left_out_) notice(leftOutText(visuals, why));
     for (const std::string& where : searched_) notice(where);
     addCount(flat_visuals_, "visuals omitted, their size is zero in some direction or not finite", geometry_.notices);
     if (geometry_.objects.empty()) notice("the scene has no triangles: an empty sea");

@@ -94,7 +94,7 @@ public:
     void addVisual(const std::string& name, int node, const glm::dmat4& node_from_visual, const Shape& shape,
                    const Look& look, const scene::Drawing& drawing);
     /** Notes why a visual is omitted: visuals with the same reason share one notice. */
-    void leaveOut(const std::string& visual, const std::string& why) { left_out_[why].push_back(visual); }
+    void leaveOut(const std::string& visual, const std::string& why);
     /** Notes that a file is not found, for the notice of where files were searched. */
     void missed(const std::string& uri) { searched_.insert(paths_.searched(uri)); }
     void notice(std::string text) { geometry_.notices.push_back(std::move(text)); }
@@ -115,9 +115,13 @@ private:
     scene::Scene scene_;
     std::vector<glm::dmat4> world_from_node_;  ///< For each node.
     scene::UniqueNames names_, object_names_;
-    std::map<std::string, std::vector<std::string>> left_out_;  ///< Visuals by the reason.
-    std::set<std::string> unit_warnings_;                       ///< Already given.
-    std::set<std::string> searched_;                            ///< Sentences about files that are not found.
+    struct LeftOut {
+        size_t notice = 0;  ///< Index into the notices.
+        std::vector<std::string> visuals;
+    };
+    std::map<std::string, LeftOut> left_out_;  ///< By the reason.
+    std::set<std::string> unit_warnings_;      ///< Already given.
+    std::set<std::string> searched_;           ///< Sentences about files that are not found.
     size_t flat_visuals_ = 0;
 };
 
