@@ -71,7 +71,7 @@ TEST_F(WorldTest, AWorldOfHarmonicIsAScene) {
     sdf::expectBounds(boundsOf(scene, "buoy::part0"), {-20.5, -0.5, -1}, {-19.5, 0.5, 1});
     sdf::expectBounds(boundsOf(scene, "buoy::part1"), {-21, -2, 3.5}, {-19, 2, 4.5});
     sdf::expectBounds(boundsOf(scene, "buoy::part2"), {-21, -1, 6.5}, {-19, 1, 9.5});
-    EXPECT_THAT(scene.geometry->notices,
+    EXPECT_THAT(types::lines(scene.geometry->notices),
                 ElementsAre("visual rov::link::visual is omitted: file:///nowhere/models/rov/meshes/hull.obj is not "
                             "found",
                             "visual hill::link::visual is omitted: /nowhere/hill.png is not found",
