@@ -55,6 +55,25 @@ struct Sample {
     Part part = Part::Train;
 };
 
+inline constexpr uint64_t max_samples = 100'000'000;  ///< Of one sweep.
+
+/** The numbers of the samples of a data set, in ascending order: all those of a sweep, or some drawn at random. */
+class Selection {
+public:
+    /** All numbers below `total`. */
+    explicit Selection(uint64_t total = 0) : size_(total) {}
+    /** Draws `count` different numbers below `total`, each set equally likely; a larger count adds to a smaller one.
+     *  Throws types::ConfigError at `--count` for a count of 0, and for one above `total`. */
+    Selection(uint64_t total, uint64_t count, uint64_t seed);
+
+    uint64_t size() const { return size_; }
+    uint64_t operator[](uint64_t position) const { return drawn_.empty() ? position : drawn_[position]; }
+
+private:
+    uint64_t size_ = 0;
+    std::vector<uint64_t> drawn_;
+};
+
 /** All samples of a sweep. The pose varies fastest, then the settings, of which the last named varies fastest, then the
  *  scene. */
 class Samples {
