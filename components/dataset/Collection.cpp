@@ -325,43 +325,39 @@ void Parts::add(const Title& other, size_t folder) {
 void Parts::find() {
     for (const Member& member : title_.members) {
         const Selection selection = member.selection();
-        std::vector<std::pair<uint32_t, Store>> stores;  // the folders that have samples of this member
-        for (uint32_t i = 0; i < folders_.size(); ++i)
-            if (const auto digests = digestsOf(titles_[i]); std::ranges::count(digests, member.digest) > 0)
-                stores.emplace_back(i, Store(folders_[i], member.digest, digests));
-        std::vector<uint32_t>& places = places_.emplace_back(selection.size(), UINT32_MAX);
-        uint64_t missing = 0, first_missing = 0;
-        for (uint64_t i = 0; i < selection.size(); ++i) {
-            const std::string record = stores[0].second.stemOf(selection[i]) + ".json";
-            for (const auto& [folder, store] : stores) {
-                if (!fs::exists(folders_[folder] / record)) continue;
-                if (places[i] != UINT32_MAX)
-                    throw types::ConfigError(folders_[folder] / record, "",
-                                             fmt::format("sample {} of seed {} is in {} as well; give each sample once",
-                                                         selection[i], member.seed, folders_[places[i]].string()));
-                if (!store.has(selection[i]))
-                    throw types::ConfigError(folders_[folder] / record, "",
+        std::map<uint64_t, const fs::path*>& places = places_.emplace_back();
+        for (size_t i = 0; i < folders_.size(); ++i) {
+            const std::vector<std::string> digests = digestsOf(titles_[i]);
+            if (std::ranges::count(digests, member.digest) == 0) continue;
+            const Store store(folders_[i], member.digest, digests);
+            for (const uint64_t index : store.recorded()) {
+                const fs::path record = folders_[i] / (store.stemOf(index) + ".json");
+                if (!selection.contains(index) || !store.has(index))
+                    throw types::ConfigError(record, "",
                                              "the sample is damaged; make it again: run its shard with this --out");
-                places[i] = folder;
+                if (const auto [place, is_new] = places.emplace(index, &folders_[i]); !is_new)
+                    throw types::ConfigError(record, "",
+                                             fmt::format("sample {} of seed {} is in {} as well; give each sample once",
+                                                         index, member.seed, place->second->string()));
             }
-            if (places[i] == UINT32_MAX && missing++ == 0) first_missing = selection[i];
         }
-        if (missing > 0)
+        uint64_t whole = 0;  // samples before the first that is missing
+        while (whole < selection.size() && places.contains(selection[whole])) ++whole;
+        if (whole < selection.size())
             throw types::ConfigError(
                 "", "dataset join",
                 fmt::format("{} of {} samples of seed {} are in none of the parts, the first is {}; "
                             "make them by their --shard, and name its folder",
-                            missing, selection.size(), member.seed, first_missing));
+                            selection.size() - places.size(), selection.size(), member.seed, selection[whole]));
     }
 }
 
 void Parts::copyTo(Collection& set) const {
     for (size_t member = 0; member < title_.members.size(); ++member) {
         Store& store = set.store(member);
-        for (uint64_t i = 0; i < places_[member].size(); ++i) {
-            const uint64_t index = set.selection(member)[i];
+        for (const auto& [index, folder] : places_[member]) {
             if (store.has(index)) continue;
-            const fs::path& from = folders_[places_[member][i]];
+            const fs::path& from = *folder;
             const auto copy = [&](const std::string& name) {
                 return store.put(name, [&](const fs::path& to) { fs::copy_file(from / name, to); });
             };

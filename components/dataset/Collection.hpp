@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -89,6 +90,8 @@ public:
      *  deployment, sweep, format or version, a sample that is in two of them, in none, or damaged.
      *  @param version of this program */
     Parts(std::vector<std::filesystem::path> folders, const std::string& version);
+    Parts(const Parts&) = delete;
+    Parts& operator=(const Parts&) = delete;
 
     const Title& title() const { return title_; }
     /** Copies all samples to a set with this title. Throws std::runtime_error for a file that has changed. */
@@ -101,7 +104,8 @@ private:
     const std::vector<std::filesystem::path> folders_;
     std::vector<Title> titles_;  ///< One for each folder.
     Title title_;
-    std::vector<std::vector<uint32_t>> places_;  ///< Number of the folder, by member and position in its selection.
+    /** Folder of each sample, by its number, of each member. */
+    std::vector<std::map<uint64_t, const std::filesystem::path*>> places_;
 };
 
 }  // namespace insonify::dataset

@@ -69,6 +69,8 @@ Selection::Selection(uint64_t total, uint64_t count, uint64_t seed) : size_(coun
     if (count == 0 || count > total)
         throw types::ConfigError(
             "", "--count", fmt::format("is {}; may be 1 to {}, the number of samples of the sweep", count, total));
+    if (count > max_drawn)
+        throw types::ConfigError("", "--count", fmt::format("is {}; at most {} are drawn", count, max_drawn));
     // Fisher-Yates: the numbers that a step has moved, by place
     std::unordered_map<uint64_t, uint64_t> moved;
     const auto numberAt = [&](uint64_t place) {

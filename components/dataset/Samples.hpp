@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -56,6 +57,7 @@ struct Sample {
 };
 
 inline constexpr uint64_t max_samples = 100'000'000;  ///< Of one sweep.
+inline constexpr uint64_t max_drawn = 10'000'000;     ///< Of these, by `--count`.
 
 /** The numbers of the samples of a data set, in ascending order: all those of a sweep, or some drawn at random. */
 class Selection {
@@ -63,11 +65,14 @@ public:
     /** All numbers below `total`. */
     explicit Selection(uint64_t total = 0) : size_(total) {}
     /** Draws `count` different numbers below `total`, each set equally likely; a larger count adds to a smaller one.
-     *  Throws types::ConfigError at `--count` for a count of 0, and for one above `total`. */
+     *  Throws types::ConfigError at `--count` for a count of 0, and for one above `total` or max_drawn. */
     Selection(uint64_t total, uint64_t count, uint64_t seed);
 
     uint64_t size() const { return size_; }
     uint64_t operator[](uint64_t position) const { return drawn_.empty() ? position : drawn_[position]; }
+    bool contains(uint64_t number) const {
+        return drawn_.empty() ? number < size_ : std::ranges::binary_search(drawn_, number);
+    }
 
 private:
     uint64_t size_ = 0;

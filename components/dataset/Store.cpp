@@ -145,6 +145,16 @@ bool Store::has(uint64_t index) const {
     return true;
 }
 
+std::vector<uint64_t> Store::recorded() const {
+    std::vector<uint64_t> all;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+        const std::string name = entry.path().filename();
+        if (const auto index = indexOf(name); index && name == stemOf(*index) + ".json") all.push_back(*index);
+    }
+    std::ranges::sort(all);
+    return all;
+}
+
 void Store::removeLeftovers() const {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder_))

@@ -46,6 +46,8 @@ public:
     std::optional<Json> record(uint64_t index) const;
     /** Returns whether a sample has its record, and each file named in it is unchanged. */
     bool has(uint64_t index) const;
+    /** Returns the numbers of the samples that have a record, ascending. */
+    std::vector<uint64_t> recorded() const;
     /** Removes files that killed writers have left. Call it when all samples exist. A live writer whose file was
      *  removed writes it again. */
     void removeLeftovers() const;

@@ -141,6 +141,7 @@ TEST(SelectionTest, EachNumberIsEquallyLikely) {
 TEST(SelectionTest, RefusesACountThatTheSweepDoesNotHave) {
     EXPECT_THROW(Selection(24, 0, 1), types::ConfigError);
     EXPECT_THROW(Selection(24, 25, 1), types::ConfigError);
+    EXPECT_THROW(Selection(max_samples, max_drawn + 1, 1), types::ConfigError);
     EXPECT_EQ(Selection(24, 24, 1)[23], 23u);
 }
 
