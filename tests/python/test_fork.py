@@ -161,7 +161,8 @@ def test_the_loader_of_the_examples_gives_the_items_of_the_parent(deploy, monkey
     if torch:
         pytest.importorskip("torch", reason="torch is not installed; the other half of the test does without")
     else:
-        monkeypatch.setitem(sys.modules, "torch", None)
+        for name in ("torch", "torch.utils.data"):  # may be loaded already
+            monkeypatch.setitem(sys.modules, name, None)
     monkeypatch.syspath_prepend(str(ROOT / "components/python/examples"))
     import loader
 

@@ -42,7 +42,18 @@ def test_gymnasiums_checker_passes(deploy, channels):
     check_env(made(deploy, scatter=1.0, **channels), skip_render_check=True)
 
 
-@pytest.mark.parametrize("channels, shape", zip(CHANNELS, SHAPES))
+@pytest.mark.parametrize("channels", CHANNELS[1:])
+def test_a_policy_with_convolutions_of_stable_baselines3_learns_from_it(deploy, channels):
+    baselines = pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
+    from stable_baselines3.common.env_checker import check_env as check
+
+    pictures = {"sonar.beam_count": 48, "sonar.bin_count": 64}
+    env = insonify.gym.SonarEnv(deploy / "minimal.yml", START, overrides=QUICK | pictures, max_steps=10, **channels)
+    check(env)
+    assert baselines.PPO("CnnPolicy", env, n_steps=16, batch_size=8, n_epochs=1).learn(16).num_timesteps == 16
+
+
+@pytest.mark.parametrize("channels, shape", list(zip(CHANNELS, SHAPES)))
 def test_observations_have_an_axis_of_channels_on_request(deploy, channels, shape):
     env, envs = made(deploy, **channels), many(deploy, 2, **channels)
     assert env.observation_space.shape == envs.single_observation_space.shape == shape
