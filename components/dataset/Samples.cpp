@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "components/dataset/Placement.hpp"
 #include "types/ConfigError.hpp"
@@ -14,9 +15,8 @@
 namespace insonify::dataset {
 namespace {
 
-constexpr uint64_t max_samples = 100'000'000;
 constexpr uint64_t pose_stream = 0x706f7365, setting_stream = 0x73657474696e6700, noise_stream = 0x6e6f697365,
-                   motion_stream = 0x6d6f74696f6e00;
+                   motion_stream = 0x6d6f74696f6e00, selection_stream = 0x73656c656374;
 
 /** Returns the coordinates of a pose of a grid. */
 std::vector<double> gridded(const PoseAxes& axes, uint64_t pose) {
@@ -63,6 +63,26 @@ std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::stri
 
 uint64_t word(const Sweep& sweep, uint64_t index, size_t number) {
     return types::hashed(sweep.seed, index, setting_stream + number);
+}
+
+Selection::Selection(uint64_t total, uint64_t count, uint64_t seed) : size_(count) {
+    if (count == 0 || count > total)
+        throw types::ConfigError(
+            "", "--count", fmt::format("is {}; may be 1 to {}, the number of samples of the sweep", count, total));
+    if (count > max_drawn)
+        throw types::ConfigError("", "--count", fmt::format("is {}; at most {} are drawn", count, max_drawn));
+    // Fisher-Yates: the numbers that a step has moved, by place
+    std::unordered_map<uint64_t, uint64_t> moved;
+    const auto numberAt = [&](uint64_t place) {
+        const auto found = moved.find(place);
+        return found == moved.end() ? place : found->second;
+    };
+    for (uint64_t step = 0; step < count; ++step) {
+        const uint64_t place = step + types::hashed(seed, step, selection_stream) % (total - step);
+        drawn_.push_back(numberAt(place));
+        moved[place] = numberAt(step);
+    }
+    std::ranges::sort(drawn_);
 }
 
 Samples::Samples(const Sweep& sweep, std::vector<std::vector<TimedPose>> trajectory, std::vector<SceneParts> scenes)

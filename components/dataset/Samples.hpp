@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -53,6 +54,29 @@ struct Sample {
     std::vector<std::pair<std::string, std::string>> settings;  ///< "task.property" and YAML: listed, then drawn.
     uint64_t seed = 1;                                          ///< Seed of noise and other random effects; not 0.
     Part part = Part::Train;
+};
+
+inline constexpr uint64_t max_samples = 100'000'000;  ///< Of one sweep.
+inline constexpr uint64_t max_drawn = 10'000'000;     ///< Of these, by `--count`.
+
+/** The numbers of the samples of a data set, in ascending order: all those of a sweep, or some drawn at random. */
+class Selection {
+public:
+    /** All numbers below `total`. */
+    explicit Selection(uint64_t total = 0) : size_(total) {}
+    /** Draws `count` different numbers below `total`, each set equally likely; a larger count adds to a smaller one.
+     *  Throws types::ConfigError at `--count` for a count of 0, and for one above `total` or max_drawn. */
+    Selection(uint64_t total, uint64_t count, uint64_t seed);
+
+    uint64_t size() const { return size_; }
+    uint64_t operator[](uint64_t position) const { return drawn_.empty() ? position : drawn_[position]; }
+    bool contains(uint64_t number) const {
+        return drawn_.empty() ? number < size_ : std::ranges::binary_search(drawn_, number);
+    }
+
+private:
+    uint64_t size_ = 0;
+    std::vector<uint64_t> drawn_;
 };
 
 /** All samples of a sweep. The pose varies fastest, then the settings, of which the last named varies fastest, then the

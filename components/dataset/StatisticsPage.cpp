@@ -116,15 +116,14 @@ std::string StatisticsPage::tableOfClasses() const {
     std::string text =
         "<h2>Classes</h2>\n<table><tr><th></th><th>class</th><th>objects</th><th>samples with any</th>"
         "<th>pixels in the mean</th><th>from [m]</th><th>to [m]</th></tr>\n";
-    for (uint32_t category = 1; category <= classes_.names().size(); ++category) {
+    for (uint32_t category = 1; category <= classes_.size(); ++category) {
         const auto found = of_class_.find(category);
         const OfClass of = found == of_class_.end() ? OfClass{} : found->second;
         const double mean = of.objects ? static_cast<double>(of.pixels) / static_cast<double>(of.objects) : 0;
         text += fmt::format(
             "<tr><td style=\"background:{}\">&nbsp;</td><td>{}</td><td>{}</td><td>{}</td><td>{:.0f}</td>"
             "<td>{:.2f}</td><td>{:.2f}</td></tr>\n",
-            colourOf(category), escaped(classes_.names()[category - 1]), of.objects, of.samples, mean, of.nearest,
-            of.farthest);
+            colourOf(category), escaped(classes_[category - 1]), of.objects, of.samples, mean, of.nearest, of.farthest);
     }
     return text + "</table>\n";
 }

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "components/dataset/Classes.hpp"
 #include "components/dataset/Store.hpp"
 
 namespace insonify::dataset {
@@ -13,7 +12,9 @@ namespace insonify::dataset {
  *  examples with their boxes. It needs no network and no script. */
 class StatisticsPage {
 public:
-    StatisticsPage(std::string title, const Classes& classes) : title_(std::move(title)), classes_(classes) {}
+    /** @param classes names of the classes from 1 on */
+    StatisticsPage(std::string title, const std::vector<std::string>& classes)
+        : title_(std::move(title)), classes_(classes) {}
 
     /** @param picture file in the folder of the page; empty: none */
     void add(const Json& record, const std::string& picture);
@@ -41,7 +42,7 @@ private:
     static std::string example(const Json& record, const std::string& picture);
 
     const std::string title_;
-    const Classes& classes_;
+    const std::vector<std::string>& classes_;
     uint64_t samples_ = 0;
     std::map<std::string, uint64_t> parts_, scenes_;
     std::map<std::string, OfSetting> settings_;  ///< By property.

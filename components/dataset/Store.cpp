@@ -40,6 +40,10 @@ std::optional<uint64_t> indexOf(const std::string& name) {
     return std::stoull(name.substr(0, digits));
 }
 
+std::string stem(const std::string& digest, uint64_t index) {
+    return fmt::format("{:06}_{}", index, console::sha256(fmt::format("{}\n{}", digest, index)).substr(0, hash_digits));
+}
+
 std::string bytesOf(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -54,20 +58,40 @@ std::string sumOf(Json record) {
 
 std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-Store::Store(fs::path folder, std::string digest) : folder_(std::move(folder)), digest_(std::move(digest)) {
-    refuseOthers();
+std::string signedText(Json json) {
+    json["sum"] = sumOf(json);
+    return textOf(json) + "\n";
 }
 
-void Store::refuseOthers() const {
+std::optional<Json> readSigned(const fs::path& file) {
+    if (!fs::exists(file)) return std::nullopt;
+    Json json = console::readJson(bytesOf(file), deepest_record);
+    if (!json.is_object() || json.value("sum", Json()) != sumOf(json)) return std::nullopt;
+    return json;
+}
+
+Store::Store(fs::path folder, std::string digest, const std::vector<std::string>& others)
+    : folder_(std::move(folder)), digest_(std::move(digest)) {
+    refuseOthers(others);
+}
+
+void Store::refuseOthers(const std::vector<std::string>& others) const {
     constexpr std::string_view of_whole_sets[] = {"manifest.json", "statistics.html", "data.yaml"};
+    const auto isOwn = [&](uint64_t index, const std::string& name) {
+        return name.starts_with(stemOf(index)) || std::ranges::any_of(others, [&](const std::string& digest) {
+                   return name.starts_with(stem(digest, index));
+               });
+    };
     std::string foreign;
     bool has_own = false;
     for (const auto& entry : fs::directory_iterator(folder_)) {
         const std::string name = entry.path().filename();
-        if (std::ranges::count(of_whole_sets, name) > 0 || name.starts_with("instances_")) foreign = name;
+        if (std::ranges::count(of_whole_sets, name) > 0 || name.starts_with("instances_") ||
+            (name == description_file && !readSigned(entry.path())))
+            foreign = name;
         const std::optional<uint64_t> index = indexOf(name);
-        has_own |= index && name.starts_with(stemOf(*index));
-        if (index && !name.starts_with(stemOf(*index)))
+        has_own |= index && isOwn(*index, name);
+        if (index && !isOwn(*index, name))
             throw types::ConfigError(folder_, "--out",
                                      fmt::format("holds {}, a sample of another sweep, deployment, scene, format or "
                                                  "version; give an empty folder",
@@ -78,10 +102,7 @@ void Store::refuseOthers() const {
             folder_, "--out", fmt::format("holds {}, which a data set would replace; give an empty folder", foreign));
 }
 
-std::string Store::stemOf(uint64_t index) const {
-    return fmt::format("{:06}_{}", index,
-                       console::sha256(fmt::format("{}\n{}", digest_, index)).substr(0, hash_digits));
-}
+std::string Store::stemOf(uint64_t index) const { return stem(digest_, index); }
 
 std::string Store::put(const std::string& name, const std::function<void(const fs::path&)>& writer) {
     constexpr int max_tries = 5;
@@ -110,26 +131,28 @@ std::string Store::putText(const std::string& name, const std::string& text) {
     });
 }
 
-void Store::putRecord(uint64_t index, Json record) {
-    record["sum"] = sumOf(record);
-    putText(stemOf(index) + ".json", textOf(record) + "\n");
-}
+void Store::putRecord(uint64_t index, Json record) { putText(stemOf(index) + ".json", signedText(std::move(record))); }
 
-std::optional<Json> Store::record(uint64_t index) const {
-    const fs::path file = folder_ / (stemOf(index) + ".json");
-    if (!fs::exists(file)) return std::nullopt;
-    Json record = console::readJson(bytesOf(file), deepest_record);
-    if (!record.is_object() || record.value("sum", Json()) != sumOf(record)) return std::nullopt;
-    return record;
-}
+std::optional<Json> Store::record(uint64_t index) const { return readSigned(folder_ / (stemOf(index) + ".json")); }
 
 bool Store::has(uint64_t index) const {
     const std::optional<Json> found = record(index);
     if (!found) return false;
     for (const auto& [name, sum] : (*found)["files"].items())
-        if (!fs::exists(folder_ / name) || console::sha256OfFile(folder_ / name) != sum.get<std::string>())
+        if (!name.starts_with(stemOf(index)) || name.find('/') != std::string::npos || !fs::exists(folder_ / name) ||
+            console::sha256OfFile(folder_ / name) != sum.get<std::string>())
             return false;
     return true;
+}
+
+std::vector<uint64_t> Store::recorded() const {
+    std::vector<uint64_t> all;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+        const std::string name = entry.path().filename();
+        if (const auto index = indexOf(name); index && name == stemOf(*index) + ".json") all.push_back(*index);
+    }
+    std::ranges::sort(all);
+    return all;
 }
 
 void Store::removeLeftovers() const {

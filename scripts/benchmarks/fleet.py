@@ -1,4 +1,5 @@
-"""Fleets in one process: vehicles with a forward-looking sonar each in one scene, with and without receiving each other's pings."""
+"""Fleets in one process: vehicles with a forward-looking sonar each in one scene, with and without receiving each other's pings;
+and hundreds of vehicles in one process of Python."""
 import json
 import os
 import subprocess
@@ -12,6 +13,7 @@ from benchmarks.common import INSONIFY, ROOT, fail
 SIZES = [1, 2, 5, 10]
 PERIOD = 0.5       # time between the pings of a sonar [s]
 BUFFER = {"type": "circular_buffer", "size": 64}
+HUNDREDS = [1, 10, 100, 300]
 SONAR = {"range": 30, "beam_count": 256, "bin_count": 500, "field_of_view_deg": 120, "beam_height_deg": 20,
          "frequency_khz": 720, "quality": {"rows": 64, "columns_per_beam": 2}, "visibility": "cpu",
          "beam_pattern": {"transmit": {"elevation": {"width_deg": 20}},
@@ -74,3 +76,51 @@ def show_fleet(results):
     for name, fleet_of in results.items():
         print(f"{name:28}{fleet_of['ms_per_ping']:20.1f}{fleet_of['mb']:8.0f}{fleet_of['realtime_pings']:16.0f}"
               f"{fleet_of['sent']:6.0f}")
+
+
+# One process of Python with `count` vehicles: made, then stepped in turn, or all as a batch.
+VEHICLES = """
+import os, sys, time, numpy as np, insonify
+file, count, steps, how = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
+poses = np.tile([-10, 0, -6, 1, 0, 0, 0], (count, 1)).astype(float)
+poses[:, 1] += np.linspace(-8, 2, count)
+given = [insonify.Pose(each[:3], each[3:]) for each in poses]
+start = time.process_time()
+if how == "batch":
+    batch = insonify.SimulationBatch(file, count, seed=1)
+    step = lambda: batch.step(poses)
+else:
+    vehicles = [insonify.Simulation(file, 1 + i) for i in range(count)]
+    step = lambda: [vehicle.step(pose) for vehicle, pose in zip(vehicles, given)]
+step()
+made = time.process_time() - start
+start = time.process_time()
+for _ in range(steps): step()
+took = time.process_time() - start
+status = dict(line.split(":", 1) for line in open("/proc/self/status"))
+print(1e3 * made / count, 1e3 * took / steps / count, int(status["VmRSS"].split()[0]) / 1024, int(status["Threads"]),
+      len(os.listdir("/proc/self/fd")))
+"""
+
+
+def measure_vehicles(options):
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "build/python")}
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "vehicle.yml")
+        file.write_text(fleet(1, False, "lockstep"))
+        for how in ("apart", "batch"):
+            for count in HUNDREDS:
+                steps = max(2, options.pings // count)
+                done = subprocess.run(["/usr/bin/python3", "-c", VEHICLES, file, str(count), str(steps), how],
+                                      stdout=subprocess.PIPE, text=True, env=environment)
+                if done.returncode != 0:
+                    fail("vehicles in one process of Python", done.returncode)
+                found[f"{count}, {how}"] = [float(number) for number in done.stdout.split()]
+    return found
+
+
+def show_vehicles(found):
+    print(f"{'vehicles':16}{'ms to make, with a ping':>24}{'processor ms a step':>20}{'MB':>8}{'threads':>9}{'files':>7}")
+    for name, (made, step, memory, threads, files) in found.items():
+        print(f"{name:16}{made:24.1f}{step:20.2f}{memory:8.0f}{threads:9.0f}{files:7.0f}")

@@ -116,6 +116,83 @@ TEST_F(DatasetCommandTest, TheBytesDoNotDependOnTheProcess) {
     }
 }
 
+TEST_F(DatasetCommandTest, ACountDrawsSamplesOfTheSweepWhateverTheNumberOfWorkers) {
+    ASSERT_EQ(make("whole").code, 0);
+    ASSERT_THAT(make("five", {"--count", "5"}), prints(HasSubstr("5 of 5 samples in ")));
+    for (const char* shard : {"1/2", "0/2"}) ASSERT_EQ(make("shards", {"--count", "5", "--shard", shard}).code, 0);
+    EXPECT_EQ(filesOf(folder_ / "five"), filesOf(folder_ / "shards"));
+    ASSERT_EQ(make("three", {"--count", "3"}).code, 0);
+    ASSERT_EQ(make("other", {"--count", "3", "--seed", "4"}).code, 0);
+    const auto drawn = [&](const char* out) {
+        std::set<std::string> all;
+        for (const auto& [name, bytes] : filesOf(folder_ / out))
+            if (name.starts_with("00") && name.ends_with(".png")) all.insert(name.substr(0, 6) + bytes);
+        return all;
+    };
+    EXPECT_EQ(drawn("five").size(), 5u);
+    EXPECT_EQ(drawn("three").size(), 3u);
+    EXPECT_THAT(drawn("whole"), testing::IsSupersetOf(drawn("five")));
+    EXPECT_THAT(drawn("five"), testing::IsSupersetOf(drawn("three")));
+    EXPECT_NE(drawn("other"), drawn("three"));
+    EXPECT_THAT(make("five", {"--count", "3"}), isRefused(HasSubstr("a sample of another sweep")));
+    EXPECT_THAT(make("out", {"--count", "9"}),
+                isRefused(HasSubstr("--count: is 9; may be 1 to 8, the number of samples of the sweep")));
+    EXPECT_THAT(make("out", {"--count", "0"}), isRefused(HasSubstr("--count: is 0; may be 1 to 8")));
+    EXPECT_EQ(make("out", {"--count", "2.5"}).code, 2);
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(DatasetCommandTest, PartsAreJoinedToTheBytesOfTheWholeSetAndSeedsToOneSet) {
+    ASSERT_EQ(make("whole").code, 0);
+    for (const char* shard : {"0/3", "1/3", "2/3"})
+        ASSERT_EQ(make(std::string("part") + shard[0], {"--shard", shard}).code, 0);
+    const auto join = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"dataset", "join"});
+        return callInsonify(folder_, words);
+    };
+    ASSERT_THAT(join({"part2", "part0", "part1", "--out", "joined"}),
+                prints(HasSubstr("8 samples of 3 parts in joined: manifest.json, statistics.html")));
+    EXPECT_EQ(filesOf(folder_ / "joined"), filesOf(folder_ / "whole"));
+    ASSERT_EQ(make("nine", {"--seed", "9", "--count", "2"}).code, 0);
+    ASSERT_THAT(join({"whole", "nine", "--out", "both"}), prints(HasSubstr("10 samples of 2 parts")));
+    std::multiset<int> images, annotations;
+    for (const char* part : {"train", "val"}) {
+        const json coco = json::parse(readFile(folder_ / fmt::format("both/instances_{}.json", part)));
+        for (const json& image : coco["images"]) images.insert(image["id"].get<int>());
+        for (const json& each : coco["annotations"]) annotations.insert(each["id"].get<int>());
+    }
+    EXPECT_EQ(images.size(), 10u);
+    EXPECT_EQ(std::set<int>(images.begin(), images.end()).size(), 10u);
+    EXPECT_GT(annotations.size(), 10u);
+    EXPECT_EQ(std::set<int>(annotations.begin(), annotations.end()).size(), annotations.size());
+}
+
+TEST_F(DatasetCommandTest, PartsThatDoNotFitAreRefusedBeforeAnythingIsWritten) {
+    const auto join = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"dataset", "join"});
+        return callInsonify(folder_, words);
+    };
+    ASSERT_EQ(make("a", {"--shard", "0/2"}).code, 0);
+    ASSERT_EQ(make("b", {"--shard", "1/2", "--set", "sonar.bin_count=100"}).code, 0);
+    EXPECT_THAT(join({"a", "b", "--out", "out"}),
+                isRefused(HasSubstr("b/dataset.json: origin: another deployment (d.yml), sweep (sweep.yml), scene or "
+                                    "--set than a")));
+    EXPECT_THAT(join({"a", "--out", "out"}),
+                isRefused(HasSubstr("4 of 8 samples of seed 3 are in none of the parts, the first is 1")));
+    EXPECT_THAT(join({"a", "a", "--out", "out"}), isRefused(HasSubstr("sample 0 of seed 3 is in a as well")));
+    EXPECT_THAT(join({"a", "nowhere", "--out", "out"}), isRefused(HasSubstr("nowhere: has no dataset.json")));
+    EXPECT_THAT(join({"a"}).err, HasSubstr("--out is required"));
+    EXPECT_THAT(join({"--out", "out"}).err, HasSubstr("PART is required"));
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    ASSERT_EQ(make("c", {"--shard", "1/2"}).code, 0);
+    const auto before = filesOf(folder_ / "a");
+    EXPECT_THAT(join({"a", "c", "--out", "a"}), isRefused(HasSubstr("--out: is a, one of the parts")));
+    fs::create_directory(folder_ / "own");
+    writeFile(folder_ / "own/manifest.json", "mine");
+    EXPECT_THAT(join({"a", "c", "--out", "own"}), isRefused(HasSubstr("holds manifest.json, which a data set would")));
+    EXPECT_EQ(filesOf(folder_ / "a"), before);
+}
+
 TEST_F(DatasetCommandTest, DrawnSettingsAreInTheRecordAndChangeThePicture) {
     writeFile(folder_ / "sweep.yml", "poses: {random: {count: 3, x: 5, y: -4, z: -5.5}}\n" +
                                          replaced(drawn_settings, ", {law: k, shape: 5}]", "]"));

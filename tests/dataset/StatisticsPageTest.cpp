@@ -19,8 +19,7 @@ Json recordOf(uint64_t index, const std::string& part, uint32_t area) {
 }
 
 TEST(StatisticsPageTest, ShowsCountsSizesRangesAndExamples) {
-    Sweep sweep;
-    const Classes classes(sweep, {"pile_0", "rock"});
+    const std::vector<std::string> classes{"pile", "rock"};
     StatisticsPage page("sweep.yml", classes);
     page.add(recordOf(0, "train", 100), "000000_a.png");
     page.add(recordOf(1, "val", 300), "000001_b.png");
@@ -38,8 +37,7 @@ TEST(StatisticsPageTest, ShowsCountsSizesRangesAndExamples) {
 }
 
 TEST(StatisticsPageTest, ASettingWithAValueInEachSampleIsOneRow) {
-    Sweep sweep;
-    const Classes classes(sweep, {"pile_0"});
+    const std::vector<std::string> classes{"pile"};
     StatisticsPage page("sweep.yml", classes);
     for (uint64_t index = 0; index < 5; ++index) page.add(recordOf(index, "train", 100), "");
     EXPECT_THAT(page.text(), HasSubstr("<td>sonar.gain: 0 to 2, median 1</td>"));
@@ -50,8 +48,7 @@ TEST(StatisticsPageTest, ASettingWithAValueInEachSampleIsOneRow) {
 }
 
 TEST(StatisticsPageTest, ValuesOfAListAreInNumericOrder) {
-    Sweep sweep;
-    const Classes classes(sweep, {"pile_0"});
+    const std::vector<std::string> classes{"pile"};
     StatisticsPage page("sweep.yml", classes);
     for (const int value : {100, 20, 9, 20}) {
         Json record = recordOf(0, "train", 100);
@@ -66,8 +63,7 @@ TEST(StatisticsPageTest, ValuesOfAListAreInNumericOrder) {
 }
 
 TEST(StatisticsPageTest, WithoutPicturesThereAreNoExamples) {
-    Sweep sweep;
-    const Classes classes(sweep, {"pile_0"});
+    const std::vector<std::string> classes{"pile"};
     StatisticsPage page("sweep.yml", classes);
     page.add(recordOf(0, "train", 100), "");
     EXPECT_THAT(page.text(), Not(HasSubstr("Examples")));

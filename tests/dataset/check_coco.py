@@ -1,6 +1,6 @@
 """Reads a data set with pycocotools: check_coco.py COCO NPZ, two data sets of one sweep.
 
-Every box must contain the energy of its object, computed from the bins and the truth of the other data set, independently of the
+Ids of images and annotations must be unique over train, val and test, and categories the same. Every box must contain the energy of its object, computed from the bins and the truth of the other data set, independently of the
 program's pictures; and every mask must be inside its box."""
 
 import glob
@@ -24,8 +24,12 @@ def places(ping, width, height):
 
 def main(coco_folder, npz_folder):
     worst, boxes, pictures = 1.0, 0, 0
+    seen, categories = [], None
     for file in sorted(glob.glob(os.path.join(coco_folder, "instances_*.json"))):
         coco = COCO(file)
+        seen += [("image", number) for number in coco.getImgIds()] + [("annotation", number) for number in coco.getAnnIds()]
+        assert categories in (None, coco.cats), file
+        categories = coco.cats
         for image in coco.loadImgs(coco.getImgIds()):
             pictures += 1
             assert os.path.exists(os.path.join(coco_folder, image["file_name"]))
@@ -45,6 +49,7 @@ def main(coco_folder, npz_folder):
                 assert rows.min() >= top and rows.max() < top + height, annotation
                 assert columns.min() >= left and columns.max() < left + width, annotation
                 boxes += 1
+    assert len(seen) == len(set(seen)) == pictures + boxes
     print(json.dumps({"pictures": pictures, "boxes": boxes, "worst": worst}))
     assert worst >= MIN_SHARE, worst
 

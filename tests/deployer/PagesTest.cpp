@@ -51,7 +51,7 @@ struct Commands {
 
     Commands() {
         add("");
-        for (const char* parent : {"log", "study", "device", "scene"}) add(parent);
+        for (const char* parent : {"log", "study", "device", "scene", "dataset"}) add(parent);
     }
     /** Returns the longest command at the beginning of a call. */
     std::string nameOf(const std::vector<std::string>& words) const {

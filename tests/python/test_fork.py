@@ -1,15 +1,19 @@
 """Processes that fork with a simulation in memory, as pools and data loaders do. A hang fails by its timeout."""
 
+import concurrent.futures
 import gc
 import multiprocessing
 import os
 import pickle
 import signal
+import subprocess
+import sys
 import time
 
 import insonify
 import numpy as np
 import pytest
+from conftest import ROOT
 
 HERE = insonify.Pose([0, 0, 0])
 OVERRIDES = {"sonar.visibility": "cpu", "sonar.beam_count": 16, "sonar.bin_count": 64}
@@ -141,3 +145,43 @@ def test_a_simulation_that_is_sent_to_a_process_is_refused_when_it_is_pickled(si
     process = multiprocessing.get_context("spawn").Process(target=print, args=(simulation,))
     with pytest.raises(TypeError, match="cannot be copied or sent to another process; make a simulation there"):
         process.start()
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_an_executor_makes_simulations_in_its_workers(deploy, simulation, method):
+    bins = simulation.step(HERE).bins.copy()
+    with concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context(method)) as workers:
+        for made in workers.map(_own_bins, [deploy / "minimal.yml"] * 3, timeout=TIMEOUT):
+            np.testing.assert_array_equal(made, bins)
+
+
+@pytest.mark.parametrize("torch", [False, True])
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_the_loader_of_the_examples_gives_the_items_of_the_parent(deploy, monkeypatch, method, torch):
+    if torch:
+        pytest.importorskip("torch", reason="torch is not installed; the other half of the test does without")
+    else:
+        for name in ("torch", "torch.utils.data"):  # may be loaded already
+            monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.syspath_prepend(str(ROOT / "components/python/examples"))
+    import loader
+
+    data = loader.Pings(deploy / "minimal.yml", 5, seed=3, overrides=OVERRIDES)
+    expected = [data[i] for i in range(5)]  # the parent has a simulation when the workers are forked
+    assert len(data) == 5 and expected[0][0].shape == (16, 64) and not np.array_equal(expected[0][0], expected[1][0])
+    for index in (-1, 5):
+        with pytest.raises(IndexError):
+            data[index]
+    batches = list(loader.batches(data, 2, 2, method))
+    assert [len(bins) for bins, _ in batches] == [2, 2, 1]
+    for part in (0, 1):
+        made = np.concatenate([np.asarray(batch[part]) for batch in batches])
+        np.testing.assert_array_equal(made, np.stack([each[part] for each in expected]))
+    np.testing.assert_array_equal(data[2][0], expected[2][0])  # the parent goes on
+
+
+def test_the_loader_runs_as_on_its_page(deploy):
+    command = [sys.executable, ROOT / "components/python/examples/loader.py", deploy / "minimal.yml", "--pings", "4", "--batch", "2"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("the parent looks at the first: (96, 128)\nbatch 0: (2, 96, 128), ")

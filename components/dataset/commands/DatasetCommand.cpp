@@ -1,10 +1,11 @@
-// insonify dataset DEPLOYMENT --sweep SWEEP --out DIR
+// insonify dataset DEPLOYMENT --sweep SWEEP --out DIR; insonify dataset join PART... --out DIR
 #include "components/dataset/commands/DatasetCommand.hpp"
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <memory>
+#include <utility>
 
 #include "components/console/Action.hpp"
 #include "components/console/Console.hpp"
@@ -14,6 +15,7 @@
 #include "components/dataset/Collection.hpp"
 #include "components/dataset/commands/DatasetRun.hpp"
 #include "components/deployer/StopSignal.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {
@@ -40,12 +42,13 @@ struct Made {
 Made makeMissing(DatasetRun& run, Store& store, const DatasetOptions& options) {
     const console::Shard shard = console::Shard::read(options.shard);
     const std::atomic<bool>& stop = deployer::stopOnSignals();
-    const uint64_t count = run.samples().count();
+    const Selection& selection = run.selection();
     SampleFiles files(run.sweep(), run.format(), run.classes(), store);
     console::ProgressLine line(!options.quiet);
     const auto start = std::chrono::steady_clock::now();
     Made done;
-    for (uint64_t index = shard.index; index < count && !done.stopped; index += shard.count) {
+    for (uint64_t i = shard.index; i < selection.size() && !done.stopped; i += shard.count) {
+        const uint64_t index = selection[i];
         if (store.has(index)) {
             ++done.found;
         } else {
@@ -53,8 +56,9 @@ Made makeMissing(DatasetRun& run, Store& store, const DatasetOptions& options) {
             ++done.made;
         }
         const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-        const double share = static_cast<double>(index + 1) / static_cast<double>(count);
-        line.show(wall.count(), fmt::format("sample {} of {}{}", index, count, console::timeLeft(share, wall.count())));
+        const double share = static_cast<double>(i + 1) / static_cast<double>(selection.size());
+        line.show(wall.count(),
+                  fmt::format("sample {} of {}{}", i, selection.size(), console::timeLeft(share, wall.count())));
         done.stopped = stop;
     }
     return done;
@@ -64,16 +68,14 @@ int makeDataset(const DatasetOptions& options) {
     DatasetRun run(options.deployment, options.sweep, formatOf(options.format), options.changes);
     console::OutputFolder folder(options.out, options.deployment);
     folder.keep();
-    Store store(folder.path(), run.digest());
-    const Made done = makeMissing(run, store, options);
+    Collection collection(run.title(options.sweep), folder.path());
+    collection.describe();
+    const Made done = makeMissing(run, collection.store(0), options);
     if (!options.quiet)
         console::printResult("{} of {} samples in {}, {} of them new{}\n", done.made + done.found,
-                             run.samples().count(), folder.path().string(), done.made,
+                             run.selection().size(), folder.path().string(), done.made,
                              done.stopped ? "; the same command makes the others" : "");
     if (done.stopped) return 1;
-    const Title title{fs::path(run.deployment()).filename(), fs::path(options.sweep).filename(), INSONIFY_VERSION,
-                      run.format(), run.sweep().trajectory.has_value() && !run.sweep().lines};
-    Collection collection(title, run.samples().count(), run.classes(), store);
     if (!collection.isWhole(false)) {
         if (!options.quiet)
             console::printResult("others are missing; the run that makes the last one writes manifest.json\n");
@@ -86,15 +88,51 @@ int makeDataset(const DatasetOptions& options) {
     return 0;
 }
 
+struct JoinOptions {
+    std::vector<std::string> parts;
+    std::string out;
+    bool quiet = false;
+};
+
+/** Joins the folders of parts to one data set in another folder. */
+int joinParts(const JoinOptions& options) {
+    const Parts parts({options.parts.begin(), options.parts.end()}, INSONIFY_VERSION);
+    for (const std::string& part : options.parts)
+        if (std::error_code none; fs::equivalent(part, options.out, none))
+            throw types::ConfigError("", "--out", fmt::format("is {}, one of the parts; give another folder", part));
+    console::OutputFolder folder(options.out, "");
+    Collection collection(parts.title(), folder.path());
+    folder.keep();
+    collection.describe();
+    parts.copyTo(collection);
+    collection.write();
+    if (options.quiet) return 0;
+    uint64_t samples = 0;
+    for (size_t member = 0; member < parts.title().members.size(); ++member)
+        samples += collection.selection(member).size();
+    console::printResult("{} samples of {} parts in {}: manifest.json, statistics.html\n", samples,
+                         options.parts.size(), folder.path().string());
+    return 0;
+}
+
+void addJoinCommand(CLI::App& dataset, console::Action& action) {
+    const auto options = std::make_shared<JoinOptions>();
+    CLI::App* command = dataset.add_subcommand("join", "Joins shards, or sets with other seeds, to one data set");
+    command->add_option("PART", options->parts, "folders of data sets that `insonify dataset` has made")->required();
+    command->add_option("--out", options->out, "folder of the joined data set")->required();
+    command->add_flag("--quiet", options->quiet, "no summary");
+    command->callback([options, &action] { action = [options] { return joinParts(*options); }; });
+}
+
 }  // namespace
 
 void addCommand(CLI::App& app, console::Action& action) {
     const auto options = std::make_shared<DatasetOptions>();
     CLI::App* command =
         app.add_subcommand("dataset", "Makes a training data set: pictures with their objects and places");
-    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
-    command->add_option("--sweep", options->sweep, "a YAML file with scenes, poses, settings")->required();
-    command->add_option("--out", options->out, "folder of the data set; existing samples are kept")->required();
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment");
+    command->add_option("--sweep", options->sweep, "a YAML file with scenes, poses, settings");
+    command->add_option("--out", options->out, "folder of the data set; existing samples are kept");
     const auto& names = types::EnumNames<Format>::names;
     command->add_option("--format", options->format, "file format of samples")
         ->check(CLI::IsMember(std::vector<std::string>(std::begin(names), std::end(names))))
@@ -105,11 +143,23 @@ void addCommand(CLI::App& app, console::Action& action) {
         ->add_option("--set", options->changes.set,
                      "task.property.path=value: a property other than in the deployment; may be repeated")
         ->allow_extra_args(false);
+    command
+        ->add_option("--count", options->changes.count,
+                     "draws this number of samples from those of the sweep, by its seed")
+        ->type_name("N")
+        ->check(console::refuseUnlessWhole);
     command->add_option("--seed", options->changes.seed, "the sweep's seed (0: the seed in the sweep)")
         ->type_name("N")
         ->check(console::refuseUnlessWhole);
     command->add_flag("--quiet", options->quiet, "no progress and no summary");
-    command->callback([options, &action] { action = [options] { return makeDataset(*options); }; });
+    addJoinCommand(*command, action);
+    command->callback([options, command, &action] {
+        if (!command->get_subcommands().empty()) return;
+        for (const auto& [name, value] :
+             {std::pair("DEPLOYMENT", &options->deployment), {"--sweep", &options->sweep}, {"--out", &options->out}})
+            if (value->empty()) throw CLI::RequiredError(name);
+        action = [options] { return makeDataset(*options); };
+    });
 }
 
 }  // namespace insonify::dataset

@@ -236,8 +236,29 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
     samples_.emplace(sweep_, runsOf(sweep_), std::move(parts));
     classes_.emplace(sweep_, objects, nodes);
     for (const SceneFile& scene : scenes_) instances_.emplace_back(*classes_, scene.objects);
+    selection_ =
+        changes_.count ? Selection(samples_->count(), *changes_.count, sweep_.seed) : Selection(samples_->count());
     checkDrawn();
-    digest_ = digestOfAll();
+    computeDigests();
+}
+
+Title DatasetRun::title(const std::string& sweep) const {
+    bool draws_poses = false;
+    if (sweep_.random)
+        PoseAxes::forEach(*sweep_.random,
+                          [&](const char*, const char*, const Axis& axis) { draws_poses |= axis.isDrawn(); });
+    const Split& split = sweep_.split;
+    const bool is_split = (split.train > 0) + (split.val > 0) + (split.test > 0) > 1;
+    return {INSONIFY_VERSION,
+            fs::path(deployment_).filename(),
+            fs::path(sweep).filename(),
+            origin_,
+            format_,
+            sweep_.trajectory.has_value() && !sweep_.lines,
+            is_split && !draws_poses,
+            sweep_.scenes.size(),
+            classes_->names(),
+            {{sweep_.seed, samples_->count(), changes_.count, digest_}}};
 }
 
 framework::DeploymentSpec DatasetRun::loaded() const {
@@ -281,10 +302,10 @@ void DatasetRun::checkDrawn() const {
         for (size_t k = 0; k < drawn.choice.size(); ++k)
             checkAssignment(fmt::format("{}.choice[{}]", path, k), drawn.property, drawn.choice[k]);
         if (!drawn.choice.empty()) continue;
-        const double first = drawn.law.draw(word(sweep_, 0, i));
+        const double first = drawn.law.draw(word(sweep_, selection_[0], i));
         double minimum = first, maximum = first;
-        for (uint64_t index = 1; index < samples_->count(); ++index) {
-            const double value = drawn.law.draw(word(sweep_, index, i));
+        for (uint64_t k = 1; k < selection_.size(); ++k) {
+            const double value = drawn.law.draw(word(sweep_, selection_[k], i));
             minimum = std::min(minimum, value), maximum = std::max(maximum, value);
         }
         for (const double value : {first, minimum, maximum}) try {
@@ -349,12 +370,13 @@ void DatasetRun::readScenes() {
     }
 }
 
-std::string DatasetRun::digestOfAll() const {
+void DatasetRun::computeDigests() {
     const fs::path folder = fs::path(deployment_).parent_path();
-    std::string text = fmt::format("insonify {}\n{}\ndeployment {}\nsweep {}\n", INSONIFY_VERSION,
-                                   types::EnumNames<Format>::names[static_cast<size_t>(format_)],
-                                   console::sha256(spec_.text), console::sha256(sweep_.text));
-    text += fmt::format("seed {}\nset {}\n", sweep_.seed, console::Json(changes_.set).dump());
+    const std::string seed = fmt::format("seed {}\n", sweep_.seed);
+    const std::string head = fmt::format("insonify {}\n{}\ndeployment {}\nsweep {}\n", INSONIFY_VERSION,
+                                         types::EnumNames<Format>::names[static_cast<size_t>(format_)],
+                                         console::sha256(spec_.text), console::sha256(sweep_.text));
+    std::string text = fmt::format("set {}\n", console::Json(changes_.set).dump());
     for (const framework::TaskSpec& task : spec_.tasks) {
         if (decides(task)) addFiles(task.properties, folder, text);
         for (const std::string& file : task.property_files.files)
@@ -364,7 +386,8 @@ std::string DatasetRun::digestOfAll() const {
     text += originsOf(sweep_);
     for (const SceneFile& scene : scenes_) text += fmt::format("scene {} {}\n", scene.name, scene.digest);
     if (sweep_.trajectory) text += fmt::format("trajectory {}\n", console::sha256OfFile(sweep_.trajectory->file));
-    return console::sha256(text);
+    origin_ = console::sha256(head + text);
+    digest_ = console::sha256(head + seed + text + (changes_.count ? fmt::format("count {}\n", *changes_.count) : ""));
 }
 
 std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {

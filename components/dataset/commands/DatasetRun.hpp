@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/dataset/Annotate.hpp"
+#include "components/dataset/Collection.hpp"
 #include "components/dataset/SampleFiles.hpp"
 #include "components/dataset/Samples.hpp"
 #include "components/dataset/Sweep.hpp"
@@ -23,8 +24,9 @@ std::string originsOf(const Sweep& sweep);
 
 /** Changes of the files by the command line. */
 struct Changes {
-    std::vector<std::string> set;  ///< "task.property.path=value"; values of the sweep take precedence.
-    std::optional<uint64_t> seed;  ///< Replaces the sweep's seed.
+    std::vector<std::string> set;        ///< "task.property.path=value"; values of the sweep take precedence.
+    std::optional<uint64_t> seed;        ///< Replaces the sweep's seed.
+    std::optional<uint64_t> count = {};  ///< Number of samples that are drawn from the sweep's; none: all.
 };
 
 /** Makes the samples of a data set with a deployment: the work of `insonify dataset`.
@@ -40,9 +42,10 @@ public:
     const Sweep& sweep() const { return sweep_; }
     const Samples& samples() const { return *samples_; }
     const Classes& classes() const { return *classes_; }
-    const std::string& digest() const { return digest_; }  ///< Hash of everything that determines the samples.
+    const Selection& selection() const { return selection_; }
     Format format() const { return format_; }
-    const std::string& deployment() const { return deployment_; }
+    /** Returns the description of the data set; `sweep` is the file as given. */
+    Title title(const std::string& sweep) const;
 
     /** Renders and writes one sample. */
     void make(uint64_t index, SampleFiles& files);
@@ -61,7 +64,7 @@ private:
     void refuseBudgets() const;
     void readScenes();
     SceneFile readScene(const std::string& file) const;
-    std::string digestOfAll() const;
+    void computeDigests();
     std::vector<std::string> overridesOf(const Sample& sample) const;
     std::string scaleOf(const std::string& task, const Sample& sample) const;
     std::vector<std::string> tasksOfType(const std::string& type) const;
@@ -77,7 +80,8 @@ private:
     std::vector<SceneFile> scenes_;
     std::optional<Samples> samples_;
     std::optional<Classes> classes_;
-    std::string digest_;
+    Selection selection_;
+    std::string digest_, origin_;                       ///< As in Title.
     std::unique_ptr<deployer::Simulation> simulation_;  ///< One scene with its settings.
     std::unique_ptr<deployer::Simulation> before_;      ///< The previous one, kept until the next first sample.
     std::vector<std::string> overrides_;                ///< Overrides of the current simulation.

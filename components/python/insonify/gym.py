@@ -31,10 +31,43 @@ def _distances_ahead(bins, bearings, ranges, half_sector: float = np.radians(15)
     return np.where(is_echo.any(axis=1), np.append(ranges, np.inf)[np.where(is_echo.any(axis=1), is_echo.argmax(axis=1), -1)], np.inf)
 
 
-def _levels(bins: np.ndarray, reference: float, floor_db: float) -> np.ndarray:
-    floor = 10 ** (floor_db / 10)
-    db = 10 * np.log10(np.maximum(np.nan_to_num(bins) / reference, floor))
-    return np.clip(255 * (1 - db / floor_db), 0, 255).astype(np.uint8)
+class _Frames:
+    """Observations of several vehicles: pings as levels, uint8, or the newest `stack` of each along an axis of channels.
+
+    :param bins: first pings [vehicles, beams, bins]; the loudest bin of the first vehicle is 0 dB.
+    """
+
+    def __init__(self, bins: np.ndarray, floor_db: float, channel_axis: bool, stack: int) -> None:
+        if isinstance(stack, bool) or not isinstance(stack, (int, np.integer)) or stack < 1:
+            raise ValueError(f"stack: is {stack!r}; must be a whole number of frames from 1")
+        loudest = float(np.nanmax(bins[0], initial=0))
+        self._reference, self._floor_db = loudest if loudest > 0 else 1.0, floor_db
+        self._stacked = np.zeros((len(bins), stack, *bins.shape[1:]), np.uint8)
+        self._has_channels = channel_axis or stack > 1
+        shape = self._stacked.shape[1:] if self._has_channels else bins.shape[1:]
+        self.space = gymnasium.spaces.Box(0, 255, shape, np.uint8)
+
+    def add(self, bins: np.ndarray, begins: np.ndarray) -> np.ndarray:
+        """The observations [vehicles, ...] with a ping each; where an episode `begins` [vehicles], all frames are its first."""
+        floor = 10 ** (self._floor_db / 10)
+        db = 10 * np.log10(np.maximum(np.nan_to_num(bins) / self._reference, floor))
+        levels = np.clip(255 * (1 - db / self._floor_db), 0, 255).astype(np.uint8)
+        self._stacked = np.concatenate([self._stacked[:, 1:], levels[:, None]], axis=1)
+        self._stacked[begins] = levels[begins, None]
+        return self._stacked.copy() if self._has_channels else levels
+
+
+def _velocities(name: str, actions, shape: tuple[int, ...], speeds: np.ndarray) -> np.ndarray:
+    """Velocities of actions, which are cut to -1 to 1. ValueError for another shape and for a number that is not finite."""
+    given = np.asarray(actions, float)
+    if given.shape != shape:
+        raise ValueError(f"{name}: has the shape {given.shape}; must be {shape}: ahead, port, up, turn to port")
+    if not np.isfinite(given).all():
+        place = np.argwhere(~np.isfinite(given))[0]
+        raise ValueError(
+            f"{name}[{', '.join(map(str, place))}]: is {given[tuple(place)]}; must be finite, from -1 to 1; nothing has moved"
+        )
+    return np.clip(given, -1, 1) * speeds
 
 
 def _turned(quaternions: np.ndarray, angles: np.ndarray) -> np.ndarray:
@@ -59,11 +92,15 @@ class SonarEnv(gymnasium.Env):
     """One vehicle with one sonar.
 
     An action is the velocity of the vehicle in its own axes and its rate of turn, (ahead, port, up, turn to port), each
-    from -1 to 1 of `max_speed` [m/s] and `max_turn` [rad/s]; it stays level. An observation is the ping as levels,
+    from -1 to 1 of `max_speed` [m/s] and `max_turn` [rad/s]; it stays level. An action that is not finite is a
+    ValueError, after which the episode goes on from where it was. An observation is the ping as levels,
     uint8 [beams, bins]: 0 at `floor_db`, 255 at 0 dB of the loudest bin a first ping had. The episode ends when
     something ahead is nearer than `collision_range` [m], and is cut off after `max_steps`.
 
     :param start: where episodes begin; `scatter` [m] moves it at random in x and y.
+    :param channel_axis: observations are [1, beams, bins], as policies with convolutions take them.
+    :param stack: the newest pings of the episode that an observation has, [stack, beams, bins], the newest last; above 1
+        there is an axis of channels always. After a reset all of them are the first ping.
     :param reward: function of a ping, the pose before and the pose now; None: metres made good along x.
     """
 
@@ -82,6 +119,8 @@ class SonarEnv(gymnasium.Env):
         floor_db: float = -60.0,
         collision_range: float = 1.0,
         max_steps: int = 200,
+        channel_axis: bool = False,
+        stack: int = 1,
         reward: Callable[[Ping, Pose, Pose], float] | None = None,
         render_mode: str | None = None,
     ) -> None:
@@ -89,39 +128,37 @@ class SonarEnv(gymnasium.Env):
         self._made_of = (str(deployment), dict(overrides or {}))
         self._start, self._scatter, self._period = start, scatter, period
         self._speeds = np.array([max_speed, max_speed, max_speed, max_turn])
-        self._floor_db, self._collision_range, self._max_steps = floor_db, collision_range, max_steps
+        self._collision_range, self._max_steps = collision_range, max_steps
         self._reward = reward or _progress
         self._simulation = self._simulate(0)
-        self._reference = None
-        first = self._simulation.step(start)
-        self._begin(first)
+        self._pose, self._steps, self._ping = start, 0, self._simulation.step(start)
+        self._frames = _Frames(self._ping.bins[None], floor_db, channel_axis, stack)
         self.action_space = gymnasium.spaces.Box(-1, 1, (4,), np.float32)
-        self.observation_space = gymnasium.spaces.Box(0, 255, first.bins.shape, np.uint8)
+        self.observation_space = self._frames.space
 
     def _simulate(self, seed: int) -> Simulation:
         deployment, overrides = self._made_of
         return Simulation(deployment, seed, overrides, period=self._period)
 
-    def _begin(self, ping: Ping) -> None:
-        loudest = float(np.nanmax(ping.bins, initial=0))
-        self._reference = self._reference or (loudest if loudest > 0 else 1.0)
-        self._ping, self._steps = ping, 0
+    def _observe(self, begins: bool) -> np.ndarray:
+        return self._frames.add(self._ping.bins[None], np.array([begins]))[0]
 
     def reset(self, *, seed: int | None = None, options: dict | None = None):
         super().reset(seed=seed)
         aside = self.np_random.uniform(-self._scatter, self._scatter, 2)
         self._pose = Pose(self._start.position + [*aside, 0], self._start.orientation_wxyz)
         self._simulation.reset(int(self.np_random.integers(1, 2**31)))
-        self._begin(self._simulation.step(self._pose))
-        return _levels(self._ping.bins, self._reference, self._floor_db), self._info()
+        self._ping, self._steps = self._simulation.step(self._pose), 0
+        return self._observe(True), self._info()
 
     def step(self, action):
-        before, self._pose = self._pose, self._moved(np.clip(np.asarray(action, float), -1, 1) * self._speeds)
-        self._ping = self._simulation.step(self._pose)
+        before, now = self._pose, self._moved(_velocities("action", action, (4,), self._speeds))
+        self._ping = self._simulation.step(now)
+        self._pose = now
         self._steps += 1
         terminated = distance_ahead(self._ping) < self._collision_range
-        reward = float(self._reward(self._ping, before, self._pose))
-        return _levels(self._ping.bins, self._reference, self._floor_db), reward, terminated, self._steps >= self._max_steps, self._info()
+        observation = self._observe(False)
+        return observation, float(self._reward(self._ping, before, now)), terminated, self._steps >= self._max_steps, self._info()
 
     def _moved(self, velocity: np.ndarray) -> Pose:
         way = _rotated(self._pose.orientation_wxyz, velocity[:3]) * self._period
@@ -159,21 +196,21 @@ class SonarVectorEnv(gymnasium.vector.VectorEnv):
         floor_db: float = -60.0,
         collision_range: float = 1.0,
         max_steps: int = 200,
+        channel_axis: bool = False,
+        stack: int = 1,
         reward: Callable[[Pings, np.ndarray, np.ndarray], np.ndarray] | None = None,
     ) -> None:
         self.num_envs = num_envs
         self._start, self._scatter, self._period = start, scatter, period
         self._speeds = np.array([max_speed, max_speed, max_speed, max_turn])
-        self._floor_db, self._collision_range, self._max_steps = floor_db, collision_range, max_steps
+        self._collision_range, self._max_steps = collision_range, max_steps
         self._reward = reward or (lambda pings, before, now: now[:, 0] - before[:, 0])
         self._batch = SimulationBatch(deployment, num_envs, overrides=overrides, period=period)
         self._poses = np.tile(np.concatenate([start.position, start.orientation_wxyz]), (num_envs, 1))
         self._steps, self._ended = np.zeros(num_envs, int), np.zeros(num_envs, bool)
-        first = self._batch.step(self._poses)
-        loudest = float(np.nanmax(first.bins[0], initial=0))
-        self._reference = loudest if loudest > 0 else 1.0
+        self._frames = _Frames(self._batch.step(self._poses).bins, floor_db, channel_axis, stack)
         self.single_action_space = gymnasium.spaces.Box(-1, 1, (4,), np.float32)
-        self.single_observation_space = gymnasium.spaces.Box(0, 255, first.bins.shape[1:], np.uint8)
+        self.single_observation_space = self._frames.space
         self.action_space = gymnasium.vector.utils.batch_space(self.single_action_space, num_envs)
         self.observation_space = gymnasium.vector.utils.batch_space(self.single_observation_space, num_envs)
 
@@ -185,32 +222,29 @@ class SonarVectorEnv(gymnasium.vector.VectorEnv):
         self._poses[numbers, 2:] = [self._start.position[2], *self._start.orientation_wxyz]
         self._steps[numbers] = 0
 
-    def _observe(self) -> tuple[Pings, np.ndarray]:
+    def _observe(self, begins: np.ndarray) -> tuple[np.ndarray, dict]:
         self._pings = self._batch.step(self._poses)
-        return self._pings, _distances_ahead(self._pings.bins, self._pings.bearings, self._pings.ranges)
-
-    def _observation(self, distances: np.ndarray) -> tuple[np.ndarray, dict]:
+        distances = _distances_ahead(self._pings.bins, self._pings.bearings, self._pings.ranges)
         info = {"position": self._poses[:, :3].copy(), "distance_ahead": distances, "time": self._pings.times}
-        return _levels(self._pings.bins, self._reference, self._floor_db), info
+        return self._frames.add(self._pings.bins, begins), info
 
     def reset(self, *, seed: int | None = None, options: dict | None = None):
         super().reset(seed=seed)
         self._begin(np.ones(self.num_envs, bool))
         self._ended[:] = False
-        return self._observation(self._observe()[1])
+        return self._observe(np.ones(self.num_envs, bool))
 
     def step(self, actions):
-        velocities = np.clip(np.asarray(actions, float), -1, 1) * self._speeds
+        velocities = _velocities("actions", actions, (self.num_envs, 4), self._speeds)
         before, begins = self._poses[:, :3].copy(), self._ended.copy()
         self._poses[:, :3] += _rotated(self._poses[:, 3:], velocities[:, :3]) * self._period
         self._poses[:, 3:] = _turned(self._poses[:, 3:], velocities[:, 3] * self._period)
         self._steps += 1
         if begins.any():
             self._begin(begins)
-        pings, distances = self._observe()
-        rewards = np.where(begins, 0.0, self._reward(pings, before, self._poses[:, :3]))
-        terminated = (distances < self._collision_range) & ~begins
+        observations, info = self._observe(begins)
+        rewards = np.where(begins, 0.0, self._reward(self._pings, before, self._poses[:, :3]))
+        terminated = (info["distance_ahead"] < self._collision_range) & ~begins
         truncated = (self._steps >= self._max_steps) & ~begins
         self._ended = terminated | truncated
-        observations, info = self._observation(distances)
         return observations, rewards, terminated, truncated, info

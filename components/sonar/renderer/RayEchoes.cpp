@@ -173,7 +173,7 @@ RayEchoes::RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEf
       rules_(makeEchoRules(plan, effects)),
       surface_(plan.config),
       visibility_(*geometry_),
-      threads_(plan.options.threads),
+      threads_(plan.options.threads, ThreadPool::Threads::Shared),
       workers_(static_cast<size_t>(threads_.size())) {
     for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
     setScene(geometry_, false);
