@@ -8,7 +8,7 @@ namespace insonify::fuzz {
 namespace {
 
 void readTrajectory(const Input& input) try {
-    const auto trajectory = pose::Trajectory::fromCsv(input.file());
+    const auto trajectory = pose::Trajectory::fromFile(input.file());
     for (const double time : {-1e9, 0.0, 0.7, 1e9}) EXPECT_TRUE(types::isUsable(trajectory.at(time))) << time;
 } catch (const types::ConfigError& error) {
     expectOurWords(error.what());
