@@ -20,6 +20,7 @@
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/Export.hpp"
+#include "components/log/PoseSources.hpp"
 #include "components/recordings/RecordingReader.hpp"
 #include "types/DidYouMean.hpp"
 
@@ -74,6 +75,26 @@ std::unique_ptr<log::Reader> opened(const std::string& file) {
     return log;
 }
 
+/** Returns what could be poses in a log of another program; empty for a log of Insonify, whose streams have the names
+ * of its deployment. */
+std::vector<log::FoundPoses> foreignPoses(log::Reader& log) {
+    return log.metadatum("insonify_deployment").empty() ? log::findPoses(log) : std::vector<log::FoundPoses>{};
+}
+
+Json posesJson(const std::vector<log::FoundPoses>& found) {
+    Json poses = Json::array();
+    for (const log::FoundPoses& each : found)
+        poses.push_back({{"source", each.source},
+                         {"type", each.type},
+                         {"parent", each.parent},
+                         {"child", each.child},
+                         {"count", each.count},
+                         {"first_s", each.first.seconds()},
+                         {"last_s", each.last.seconds()},
+                         {"needs_datum", each.has_fixes}});
+    return poses;
+}
+
 /** Returns the metadata of each stream: the deployment, the seed and the plan, which the streams of a run share, and
  *  the meaning of the stream's numbers. */
 Json metadataJson(const log::Reader& log) {
@@ -95,12 +116,16 @@ void printMetadata(const log::Reader& log) {
 
 int logInfo(const std::string& file, bool json, bool metadata) {
     const auto log = opened(file);
+    const std::vector<log::FoundPoses> poses = foreignPoses(*log);
     if (!json) {
         printTable(*log);
+        if (!poses.empty())
+            console::printResult("\ncould be the poses of a body in `insonify replay`:\n{}", log::tableOf(poses));
         if (metadata) printMetadata(*log);
         return 0;
     }
     Json all = infoJson(*log);
+    all["poses"] = posesJson(poses);
     if (metadata) all["metadata"] = metadataJson(*log);
     print(all);
     return 0;

@@ -4,11 +4,11 @@
 
 #include "components/log/Stream.hpp"
 #include "components/log/TypeNames.hpp"
+#include "components/log/db3/Reader.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "types/Check.hpp"
 #include "types/DidYouMean.hpp"
-#include "types/Elapsed.hpp"
 
 namespace insonify::log {
 
@@ -40,7 +40,51 @@ std::string Reader::metadatum(const std::string& key) const {
     return found == streams_.end() ? "" : found->metadatum(key);
 }
 
+void Reader::addPoses(Stream stream, MadePoses made) {
+    const auto& poses = made.poses;
+    const size_t own = streams_.size();
+    stream.sample = types::sampleIndex<types::Pose>();
+    stream.type = typelibName<types::Pose>();
+    for (const MadePose& pose : poses) stream.note(pose.time);
+    std::vector<SampleRef> all;
+    all.reserve(samples_.size() + poses.size());
+    auto next = poses.begin();
+    for (const SampleRef& at : samples_) {
+        all.push_back(at);
+        for (; next != poses.end() && next->after == at.number; ++next)
+            all.push_back({own, at.received, next->time, at.position, at.number});
+    }
+    samples_ = std::move(all);
+    streams_.push_back(std::move(stream));
+    made_[own] = std::move(made);
+}
+
+void Reader::keepSamples(size_t stream, const std::function<bool(SampleRef&)>& keep) {
+    Stream& changed = streams_[stream];
+    std::vector<SampleRef> all = std::move(samples_);
+    samples_.clear();
+    changed.count = changed.set_backs = 0;
+    changed.set_back = changed.first = changed.last = {};
+    for (SampleRef& at : all)
+        if (at.stream != stream)
+            samples_.push_back(at);
+        else if (keep(at))
+            changed.note(at.time), samples_.push_back(at);
+}
+
+void Reader::readMade(const SampleRef& at, const MadePoses& made, types::Pose& pose) {
+    const MadePose& found = *std::ranges::lower_bound(made.poses, at.number, {}, &MadePose::after);
+    pose = {};
+    pose.time = found.time;
+    pose.source_frame = made.child;
+    pose.target_frame = made.parent;
+    pose.position = found.position;
+    pose.orientation = found.orientation;
+}
+
 void Reader::readInto(const SampleRef& at, types::SampleRoom room) try {
+    if (const auto made = made_.find(at.stream); made != made_.end())
+        return readMade(at, made->second, *std::get<types::Pose*>(room));
     decode(at, room);
     restoreBins(streams_[at.stream].metadata, room);
 } catch (const types::ConfigError&) {
@@ -68,19 +112,12 @@ void Reader::verify(const SampleRef& at) {
 }
 
 void Reader::addSample(size_t number, types::Time received, types::Time time, uint64_t position) {
-    Stream& stream = streams_[number];
-    if (stream.count++ == 0) stream.first = stream.last = time;
-    if (stream.last - time > types::max_lateness) {
-        ++stream.set_backs;
-        stream.set_back = stream.set_back + (stream.last - time);
-    }
-    stream.last = time;
+    streams_[number].note(time);
     samples_.push_back({number, received, time, position, samples_.size()});
 }
 
 void Reader::failSample(const SampleRef& at, const std::string& what) const {
-    throw types::ConfigError(path_, streams_[at.stream].name,
-                             "the sample at byte " + std::to_string(at.position) + " " + what);
+    throw types::ConfigError(path_, streams_[at.stream].name, "the sample " + placeOf(at) + " " + what);
 }
 
 void Reader::failType(const SampleRef& at, size_t wanted) const {
@@ -106,21 +143,63 @@ const char* diagnosticOf(types::SampleView sample) {
 
 namespace {
 
-constexpr LogFormat all_formats[] = {{".log"}, {".mcap", true}};
+constexpr LogFormat all_formats[] = {{".log", Storage::Pocolog}, {".mcap", Storage::Mcap}, {".db3", Storage::Db3}};
+
+const LogFormat* formatOf(const std::filesystem::path& path) { return types::findFormat(all_formats, path); }
+
+/** Returns the file of a bag in this folder, or the path itself. Throws ConfigError for a folder without exactly one
+ *  file of a bag. */
+std::filesystem::path fileIn(const std::filesystem::path& path) {
+    std::error_code none;
+    if (!std::filesystem::is_directory(path, none)) return path;
+    std::vector<std::filesystem::path> files;
+    std::string packed;
+    for (const auto& entry : std::filesystem::directory_iterator(path, none)) {
+        const LogFormat* const format = formatOf(entry.path());
+        if (format && format->storage != Storage::Pocolog) files.push_back(entry.path());
+        if (entry.path().extension() == ".zstd") packed = entry.path().filename().string();
+    }
+    if (files.size() == 1) return files.front();
+    std::ranges::sort(files);
+    std::string names;
+    for (const auto& file : files) names += (names.empty() ? "" : ", ") + file.filename().string();
+    if (!names.empty())
+        throw types::ConfigError(path, "",
+                                 "is a folder of " + std::to_string(files.size()) + " files; give one of " + names);
+    throw types::ConfigError(
+        path, "",
+        packed.empty() ? "is a folder; give a log in it: a " + types::alternativeEndings(all_formats) + " file"
+                       : "is a folder whose bag is compressed; unpack it: zstd -d " + packed);
+}
 
 }  // namespace
 
-const LogFormat* findLogFormat(const std::filesystem::path& path) { return types::findFormat(all_formats, path); }
-
-std::string logEndings() { return types::alternativeEndings(all_formats); }
-
-bool isMcap(const std::filesystem::path& path) {
-    const LogFormat* const format = findLogFormat(path);
-    return format && format->is_mcap;
+const LogFormat* findLogFormat(const std::filesystem::path& path) {
+    const LogFormat* const format = formatOf(path);
+    return format && format->isWritten() ? format : nullptr;
 }
 
-std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage) {
-    if (isMcap(path)) return std::make_unique<mcap::Reader>(path, at_damage);
+std::string logEndings() {
+    return types::alternativeEndings(all_formats, [](const LogFormat& format) { return format.isWritten(); });
+}
+
+Storage storageOf(const std::filesystem::path& path) {
+    const LogFormat* const format = formatOf(path);
+    return format ? format->storage : Storage::Pocolog;
+}
+
+std::unique_ptr<Reader> openLog(const std::filesystem::path& given, AtDamage at_damage, types::WorldFrame foreign) {
+    const std::filesystem::path path = fileIn(given);
+    const Storage storage = storageOf(path);
+    if (storage == Storage::Mcap) return std::make_unique<mcap::Reader>(path, at_damage, foreign);
+    if (storage == Storage::Db3)
+#ifdef INSONIFY_SQLITE
+        return std::make_unique<db3::Reader>(path, foreign);
+#else
+        throw types::ConfigError(path, "",
+                                 "cannot be read: this build has no SQLite; install libsqlite3-dev and build again, or "
+                                 "convert it to MCAP with `ros2 bag convert`");
+#endif
     return std::make_unique<pocolog::Reader>(path, at_damage);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "components/framework/Activity.hpp"
 #include "components/log/Reader.hpp"
@@ -37,6 +38,7 @@ void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::
     if constexpr (std::is_same_v<T, typename Output::Carried>) {
         T& sample = output.kept.sample;
         log.read(at, sample);
+        if constexpr (std::is_same_v<T, types::Pose>) sample.time = types::sampleTime(sample, at.time);
         moveStamps(sample, shift);
         output.port.write(sample);
     } else {
@@ -52,9 +54,18 @@ void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::
 
 }  // namespace
 
+std::pair<std::unique_ptr<log::Reader>, types::Notices> ReplayTask::opened() const {
+    auto log = log::openLog(inputPath(config->file), log::AtDamage::Stop, config->world_frame);
+    types::Notices notices;
+    for (const log::PoseSource& source : config->poses)
+        for (types::Notice& notice : log::addPoses(*log, source, config->world_frame))
+            notices.push_back(std::move(notice));
+    return {std::move(log), std::move(notices)};
+}
+
 void ReplayTask::open() {
     if (log_) return;
-    log_ = log::openLog(inputPath(config->file));
+    std::tie(log_, pose_notices_) = opened();
     by_stream_.resize(log_->streams().size());
     clock_ = log::LoggerClock(log_->samples());
     span_s_ = clock_.span(log_->samples()).seconds();
@@ -84,7 +95,7 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
 
 void ReplayTask::check(types::Diagnostics& diagnostics) const {
     try {
-        const auto log = log::openLog(inputPath(config->file));
+        const auto log = opened().first;
         const double span = log::LoggerClock(log->samples()).span(log->samples()).seconds();
         if (config->from > span)
             diagnostics.push_back(
@@ -97,13 +108,14 @@ void ReplayTask::check(types::Diagnostics& diagnostics) const {
 
 types::Notices ReplayTask::notices() const {
     if (!log_) return {};
-    types::Notices notices;
+    types::Notices notices = pose_notices_;
     if (!gap_text_.empty()) notices.push_back(types::warning(gap_text_));
     if (!log_->complete())
         notices.push_back(log_->path().string() + ": " + log_->diagnostic() + "; played up to there");
     for (size_t i = 0; i < by_stream_.size(); ++i) {
         const log::Stream& stream = log_->streams()[i];
-        if (!by_stream_[i]) notices.push_back("stream " + stream.name + " (" + stream.type + ") is not replayed");
+        if (!by_stream_[i] && stream.count > 0)
+            notices.push_back("stream " + stream.name + " (" + stream.type + ") is not replayed");
     }
     return notices;
 }
