@@ -209,7 +209,7 @@ public:
         if (!current_ || !moves_) return;
         const auto [placed, diagnostic] = tree_.newest(made_.parent, made_.child, now_);
         if (!diagnostic.empty()) diagnostic_ = diagnostic;
-        if (!placed) return;
+        if (!placed || !std::isfinite(glm::length(placed->position))) return;
         is_fixed_ = placed->time.isNull();
         const bool is_old = !made_.poses.empty() && placed->time <= made_.poses.back().time && life_ == tree_.lives();
         if (is_fixed_ || is_old || (!made_.poses.empty() && placed->time == made_.poses.back().time)) return;
@@ -270,7 +270,7 @@ types::Datum placeOf(const ros::NavSatFix& fix, double otherwise_m) {
 
 bool isUsable(const ros::NavSatFix& fix) {
     return fix.status.status > ros::NavSatStatus::no_fix && std::abs(fix.latitude) <= 90 &&
-           std::abs(fix.longitude) <= 360 && !std::isinf(fix.altitude);
+           std::abs(fix.longitude) <= 360 && !(std::abs(fix.altitude) > 1e7);
 }
 
 /** Returns what there is to say of fixes that became poses. */
