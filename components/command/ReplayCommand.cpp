@@ -166,7 +166,8 @@ types::ConfigError namingLog(types::Diagnostics diagnostics, const std::string& 
 /** Refuses a folder of results that would replace the log, its properties and its pictures. */
 void refuseFolderOf(const std::string& log, const std::string& out) {
     std::error_code none;
-    const std::filesystem::path folder = std::filesystem::absolute(log).parent_path();
+    const std::filesystem::path path = std::filesystem::absolute(log),
+                                folder = std::filesystem::is_directory(path, none) ? path : path.parent_path();
     if (!out.empty() && std::filesystem::equivalent(folder, out, none))
         throw types::ConfigError(out, "--out", "is the folder of the log, whose files would be replaced; give another");
 }
@@ -217,10 +218,12 @@ log::PoseSource poseSource(const Asked& options, const std::string& given, const
     return source;
 }
 
-/** Returns the only source of poses in a log that has no stream of a task of the deployment; empty: it has one. Throws
- *  ConfigError where there are several, or none. */
+/** Returns the only source of poses in a log of another program that has no stream of a task of the deployment; empty:
+ *  it has one, or no source. Throws ConfigError where there are several. */
 std::string onlySource(const framework::DeploymentSpec& spec, log::Reader& log, const Asked& options) {
-    if (hasStreamOf(spec, log)) return {};
+    const bool is_own =
+        !log.metadatum("insonify_deployment").empty();  // of another deployment, which has pings as well
+    if (is_own || hasStreamOf(spec, log)) return {};
     std::vector<log::FoundPoses> found = log::findPoses(log);
     if (found.size() > 1 && options.datum.empty())
         std::erase_if(found, [](const log::FoundPoses& each) { return each.has_fixes; });

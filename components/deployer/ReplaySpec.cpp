@@ -39,9 +39,9 @@ std::set<std::string> replacedTasks(const log::Reader& log, const DeploymentSpec
         for (const std::string& task : pingTasks(spec, registry)) names.erase(task);
     }
     if (names.empty())
-        throw types::ConfigError(
-            log.path(), "",
-            std::string("none of its streams is of a task of ") + spec.file + (rerender ? " before its sonars" : ""));
+        throw types::ConfigError(log.path(), "",
+                                 std::string("none of its streams is of a task of ") + spec.file +
+                                     (rerender ? " before its sonars" : "") + "; --pose takes only its poses");
     return names;
 }
 

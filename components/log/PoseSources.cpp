@@ -308,7 +308,8 @@ types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream) {
                 log, asked,
                 fmt::format(
                     "has latitudes and longitudes, and needs a datum, the origin of the world; that of its first fix "
-                    "is datum: {{latitude_deg: {:.9g}, longitude_deg: {:.9g}, height_m: {:.6g}}}",
+                    "is datum: {{latitude_deg: {0:.9g}, longitude_deg: {1:.9g}, height_m: {2:.6g}}}, or --datum "
+                    "{0:.9g},{1:.9g},{2:.6g}",
                     fix.latitude, fix.longitude, placeOf(fix, 0).height_m));
         made.child = fix.header.frame_id;
         const types::Time time = stampOf(fix.header.stamp, at.time);

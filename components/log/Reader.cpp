@@ -1,5 +1,7 @@
 #include "components/log/Reader.hpp"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 
 #include "components/log/Stream.hpp"
@@ -147,29 +149,108 @@ constexpr LogFormat all_formats[] = {{".log", Storage::Pocolog}, {".mcap", Stora
 
 const LogFormat* formatOf(const std::filesystem::path& path) { return types::findFormat(all_formats, path); }
 
-/** Returns the file of a bag in this folder, or the path itself. Throws ConfigError for a folder without exactly one
- *  file of a bag. */
-std::filesystem::path fileIn(const std::filesystem::path& path) {
-    std::error_code none;
-    if (!std::filesystem::is_directory(path, none)) return path;
+/** Returns the files of the bag in a folder: those of its metadata.yaml, else the only one. Throws ConfigError for a
+ *  folder with none, or with several and no metadata. */
+std::vector<std::filesystem::path> filesOfBag(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
-    std::string packed;
-    for (const auto& entry : std::filesystem::directory_iterator(path, none)) {
-        const LogFormat* const format = formatOf(entry.path());
-        if (format && format->storage != Storage::Pocolog) files.push_back(entry.path());
-        if (entry.path().extension() == ".zstd") packed = entry.path().filename().string();
+    try {
+        for (const YAML::Node& name :
+             YAML::LoadFile(folder / "metadata.yaml")["rosbag2_bagfile_information"]["relative_file_paths"])
+            files.push_back(folder / name.as<std::string>());
+    } catch (const YAML::Exception&) {  // the files are looked for
     }
-    if (files.size() == 1) return files.front();
-    std::ranges::sort(files);
+    std::error_code none;
     std::string names;
-    for (const auto& file : files) names += (names.empty() ? "" : ", ") + file.filename().string();
-    if (!names.empty())
+    if (files.empty())
+        for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+            if (const LogFormat* const format = formatOf(entry.path()); format && format->storage != Storage::Pocolog) {
+                files.push_back(entry.path());
+                names += (names.empty() ? "" : ", ") + entry.path().filename().string();
+            }
+    const auto packed = std::ranges::find(files, ".zstd", [](const auto& file) { return file.extension().string(); });
+    if (packed != files.end())
+        throw types::ConfigError(folder, "", "is a bag that is compressed; unpack it: zstd -d " + packed->string());
+    if (names.empty() ? files.empty() : files.size() > 1)
+        throw types::ConfigError(
+            folder, "",
+            names.empty() ? "is a folder; give a log in it: a " + types::alternativeEndings(all_formats) + " file"
+                          : "is a folder without metadata.yaml; give one of its files: " + names);
+    return files;
+}
+
+/** The files of one bag as one log, in the order of their times. Streams of one name are one stream. */
+class JoinedLog final : public Reader {
+public:
+    JoinedLog(const std::filesystem::path& folder, std::vector<std::unique_ptr<Reader>> parts)
+        : Reader(folder), parts_(std::move(parts)) {
+        std::ranges::stable_sort(parts_, {}, [](const auto& part) {
+            return part->samples().empty() ? types::Time{} : part->samples().front().received;
+        });
+        for (const auto& part : parts_) add(*part);
+    }
+
+    uint64_t bytes() const override {
+        uint64_t sum = 0;
+        for (const auto& part : parts_) sum += part->bytes();
+        return sum;
+    }
+    const std::string& layout(size_t stream) const override { return layouts_[stream]; }
+    std::span<const char> bytesOf(const SampleRef& at) override {
+        const auto& [part, place] = places_[at.number];
+        return part->bytesOf(place);
+    }
+
+private:
+    void add(Reader& part) {
+        std::vector<size_t> numbers;
+        for (size_t i = 0; i < part.streams().size(); ++i) numbers.push_back(numberOf(part, i));
+        for (const SampleRef& at : part.samples()) {
+            places_.emplace_back(&part, at);
+            addSample(numbers[at.stream], at.received, at.time, at.position);
+        }
+        for (Gap gap : part.gaps()) {
+            gap.what = part.path().filename().string() + ": " + gap.what;
+            gaps_.push_back(std::move(gap));
+        }
+    }
+    size_t numberOf(const Reader& part, size_t index) {
+        const Stream& stream = part.streams()[index];
+        const auto same = std::ranges::find(streams_, stream.name, &Stream::name);
+        if (same != streams_.end() && same->type != stream.type)
+            throw types::ConfigError(part.path(), stream.name,
+                                     "is " + stream.type + "; in another file of the bag it is " + same->type);
+        if (same != streams_.end()) return static_cast<size_t>(same - streams_.begin());
+        Stream empty = stream;
+        empty.count = empty.set_backs = 0;
+        empty.first = empty.last = empty.set_back = {};
+        for (const char* of_samples : {bin_width_key, speed_of_sound_key})
+            empty.metadata.erase(of_samples);  // restored
+        streams_.push_back(std::move(empty));
+        layouts_.push_back(part.layout(index));
+        return streams_.size() - 1;
+    }
+    void decode(const SampleRef& at, types::SampleRoom room) override {
+        const auto& [part, place] = places_[at.number];
+        std::visit([&, part = part, place = place](auto* sample) { part->read(place, *sample); }, room);
+    }
+
+    std::vector<std::unique_ptr<Reader>> parts_;
+    std::vector<std::pair<Reader*, SampleRef>> places_;  ///< Of each sample, by its number.
+    std::vector<std::string> layouts_;                   ///< Of each stream.
+};
+
+std::unique_ptr<Reader> openFile(const std::filesystem::path& path, AtDamage at_damage, types::WorldFrame foreign) {
+    const Storage storage = storageOf(path);
+    if (storage == Storage::Mcap) return std::make_unique<mcap::Reader>(path, at_damage, foreign);
+    if (storage == Storage::Db3)
+#ifdef INSONIFY_SQLITE
+        return std::make_unique<db3::Reader>(path, foreign);
+#else
         throw types::ConfigError(path, "",
-                                 "is a folder of " + std::to_string(files.size()) + " files; give one of " + names);
-    throw types::ConfigError(
-        path, "",
-        packed.empty() ? "is a folder; give a log in it: a " + types::alternativeEndings(all_formats) + " file"
-                       : "is a folder whose bag is compressed; unpack it: zstd -d " + packed);
+                                 "cannot be read: this build has no SQLite; install libsqlite3-dev and build again, or "
+                                 "convert it to MCAP with `ros2 bag convert`");
+#endif
+    return std::make_unique<pocolog::Reader>(path, at_damage);
 }
 
 }  // namespace
@@ -188,19 +269,12 @@ Storage storageOf(const std::filesystem::path& path) {
     return format ? format->storage : Storage::Pocolog;
 }
 
-std::unique_ptr<Reader> openLog(const std::filesystem::path& given, AtDamage at_damage, types::WorldFrame foreign) {
-    const std::filesystem::path path = fileIn(given);
-    const Storage storage = storageOf(path);
-    if (storage == Storage::Mcap) return std::make_unique<mcap::Reader>(path, at_damage, foreign);
-    if (storage == Storage::Db3)
-#ifdef INSONIFY_SQLITE
-        return std::make_unique<db3::Reader>(path, foreign);
-#else
-        throw types::ConfigError(path, "",
-                                 "cannot be read: this build has no SQLite; install libsqlite3-dev and build again, or "
-                                 "convert it to MCAP with `ros2 bag convert`");
-#endif
-    return std::make_unique<pocolog::Reader>(path, at_damage);
+std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage, types::WorldFrame foreign) {
+    std::error_code none;
+    if (!std::filesystem::is_directory(path, none)) return openFile(path, at_damage, foreign);
+    std::vector<std::unique_ptr<Reader>> parts;
+    for (const std::filesystem::path& file : filesOfBag(path)) parts.push_back(openFile(file, at_damage, foreign));
+    return parts.size() == 1 ? std::move(parts.front()) : std::make_unique<JoinedLog>(path, std::move(parts));
 }
 
 std::optional<std::filesystem::path> propertyLog(const Reader& log) {

@@ -138,9 +138,9 @@ std::string logEndings();
 Storage storageOf(const std::filesystem::path& path);
 inline bool isMcap(const std::filesystem::path& path) { return storageOf(path) == Storage::Mcap; }
 
-/** Opens a log of any format, see pocolog::Reader, mcap::Reader and db3::Reader, or the folder of a bag; a file with
- *  another ending is read as pocolog. Throws ConfigError for other files. @param foreign axes of poses in messages of
- * other programs */
+/** Opens a log of any format, see pocolog::Reader, mcap::Reader and db3::Reader, or the folder of a bag with all of its
+ * files; a file with another ending is read as pocolog. Throws ConfigError for other files. @param foreign axes of
+ * poses in messages of other programs */
 std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop,
                                 types::WorldFrame foreign = types::WorldFrame::Enu);
 

@@ -86,19 +86,64 @@ TEST_F(Db3Test, ABagIsConvertedToLogsOfEitherFormat) {
     }
 }
 
-TEST_F(Db3Test, TheFolderOfABagIsAcceptedAndManyFilesAreNamed) {
+TEST_F(Db3Test, TheFolderOfABagIsAcceptedInPlaceOfItsFile) {
     std::filesystem::create_directory(folder / "bag");
     std::filesystem::copy(path, folder / "bag/bag_0.db3");
-    std::ofstream(folder / "bag/metadata.yaml") << "rosbag2_bagfile_information: {}\n";
     EXPECT_EQ(openLog(folder / "bag")->samples().size(), 100u);
     EXPECT_EQ(check(folder / "bag").samples, 100u);
     std::filesystem::copy(path, folder / "bag/bag_1.db3");
-    EXPECT_THAT(refusalOf(folder / "bag"), HasSubstr("is a folder of 2 files; give one of bag_0.db3, bag_1.db3"));
-    std::filesystem::create_directory(folder / "packed");
-    std::ofstream(folder / "packed/bag_0.db3.zstd") << "x";
-    EXPECT_THAT(refusalOf(folder / "packed"), HasSubstr("unpack it: zstd -d bag_0.db3.zstd"));
+    EXPECT_THAT(refusalOf(folder / "bag"), HasSubstr("is a folder without metadata.yaml; give one of its files: "));
+    const auto describe = [&](const std::string& files) {
+        std::ofstream(folder / "bag/metadata.yaml")
+            << "rosbag2_bagfile_information: {relative_file_paths: [" << files << "]}\n";
+    };
+    describe("bag_1.db3");
+    EXPECT_EQ(openLog(folder / "bag")->samples().size(), 100u);
+    describe("bag_1.db3, bag_7.db3");
+    EXPECT_THAT(refusalOf(folder / "bag"), HasSubstr("bag_7.db3: cannot be read"));
+    describe("bag_0.db3.zstd");
+    EXPECT_THAT(refusalOf(folder / "bag"), AllOf(HasSubstr("unpack it: zstd -d "), HasSubstr("bag_0.db3.zstd")));
     std::filesystem::create_directory(folder / "none");
     EXPECT_THAT(refusalOf(folder / "none"), HasSubstr("is a folder; give a log in it: a .log, .mcap or .db3 file"));
+}
+
+TEST_F(Db3Test, TheFilesOfASplitBagAreOneLogWhateverTheirOrderAndStorage) {
+    std::mt19937 random(3);
+    for (int round = 0; round < 6; ++round) {
+        const Folder split;
+        std::vector<std::string> names;
+        int next = 0;
+        for (int file = 0; next < 60; ++file) {
+            test::Bag part;
+            for (const int end = std::min(60, next + std::uniform_int_distribution<int>(1, 25)(random)); next < end;
+                 ++next) {
+                ros::TransformStamped transform{
+                    {{1'700'000'000 + next, 0}, next % 2 ? "odom" : "map"}, next % 2 ? "base" : "odom", {}};
+                transform.transform.translation.x = next;
+                part.add("/tf", {(1'700'000'000 + next) * int64_t{1'000'000}}, ros::TFMessage{{transform}});
+            }
+            names.push_back("bag_" + std::to_string(file) + (round % 2 ? ".db3" : ".mcap"));
+            if (round % 2)
+                ASSERT_EQ(part.writeDb3(split / names.back()), "");
+            else
+                part.writeMcap(split / names.back());
+        }
+        std::ranges::shuffle(names, random);
+        std::string list;
+        for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+        std::ofstream(split / "metadata.yaml")
+            << "rosbag2_bagfile_information: {relative_file_paths: [" << list << "]}\n";
+        const auto log = openLog(split.path());
+        ASSERT_EQ(log->streams().size(), 1u);
+        EXPECT_EQ(log->streams()[0].count, 60u);
+        addPoses(*log, {"map->base", "p"}, types::WorldFrame::AsIs);
+        std::vector<double> places;
+        log->forEach<types::Pose>(
+            "p", [&](const types::Pose& pose, const SampleRef&) { places.push_back(pose.position.x); });
+        // At each second from 1 to 58 both transforms are known, one of them by interpolation: both are the second.
+        ASSERT_EQ(places.size(), 58u) << "across the borders of the files";
+        for (size_t second = 1; second <= 58; ++second) EXPECT_NEAR(places[second - 1], 2.0 * second, 1e-9);
+    }
 }
 
 TEST_F(Db3Test, AReadOnlyBagThatWasLoggedAheadIsReadAndNoFileIsMadeNextToIt) {

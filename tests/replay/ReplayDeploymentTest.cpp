@@ -165,6 +165,25 @@ TEST(ReplayDeploymentTest, PosesOfAnotherProgramsBagAreAStreamOfTheDeployment) {
     }
 }
 
+TEST(ReplayDeploymentTest, PosesOfASimulatorsClockRunOnThatClock) {
+    test::Bag bag;
+    for (int i = 0; i < 10; ++i) {
+        const types::Time wall = types::Time::fromSeconds(1'700'000'000 + 0.1 * i);
+        ros::Odometry odometry;
+        odometry.header.stamp = {3 + i, 0};
+        bag.add("/odom", wall, odometry);
+        bag.add("/log", wall, ros::String{"ten times as fast"});
+    }
+    const Folder folder;
+    bag.writeMcap(folder / "bag.mcap");
+    const framework::RunResult result = runIn(folder, posesFrom("/odom"));
+    EXPECT_NEAR(result.elapsed_s, 9, 1e-9);
+    EXPECT_TRUE(result.warnings.empty());
+    log::pocolog::Reader logged(folder / "b.0.log");
+    EXPECT_EQ(logged.streams()[0].first, types::Time::fromSeconds(3));
+    EXPECT_EQ(logged.streams()[0].last, types::Time::fromSeconds(12));
+}
+
 TEST(ReplayDeploymentTest, ASourceOfPosesThatCannotBeUsedIsReportedByCheck) {
     const Folder folder;
     eastwards().writeMcap(folder / "bag.mcap");
