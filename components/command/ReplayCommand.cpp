@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -211,9 +212,15 @@ log::PoseSource poseSource(const Asked& options, const std::string& given, const
                                      ? "has no effect: no connection leads to the pose of a scene"
                                      : fmt::format("is {}; the deployment takes poses from {}: give --pose SOURCE={}",
                                                    given, fmt::join(ports, ", "), ports.front()));
-    if (!options.datum.empty())
+    if (!options.datum.empty()) {
         source.datum =
             types::Datum{options.datum[0], options.datum[1], options.datum.size() > 2 ? options.datum[2] : 0};
+        if (!(std::abs(source.datum->latitude_deg) <= 90))
+            throw types::ConfigError(
+                "", "--datum",
+                fmt::format("has a latitude of {:g}; may be -90 to 90, and comes before the longitude",
+                            options.datum[0]));
+    }
     source.orientation = options.orientation;
     return source;
 }
