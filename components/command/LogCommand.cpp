@@ -442,7 +442,7 @@ void addLogCommand(CLI::App& app, Action& action) {
     addMcapOptions(*out, *options);
 
     CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);
-    cut->add_option("FILE", options->files, "a pocolog or MCAP file, or those of a log in order")->required();
+    cut->add_option("FILE", options->files, "a pocolog, MCAP or .db3 file, or those of a log in order")->required();
     cut->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
     cut->add_option("--from", options->from,
                     "earliest time: seconds after the log's first stamp, or a date, as in 2026-11-22T12:55:44Z");
@@ -470,7 +470,7 @@ void addLogCommand(CLI::App& app, Action& action) {
     check->add_flag("--json", options->json, "for machines");
 
     for (CLI::App* command : {info, out, repair, check})
-        command->add_option("FILE", options->file, "a pocolog or MCAP file")->required();
+        command->add_option("FILE", options->file, "a pocolog, MCAP or .db3 file, or the folder of a bag")->required();
 }
 
 }  // namespace insonify::command

@@ -72,7 +72,8 @@ Stream streamOf(const DeclaredTopic& topic) {
     Stream stream;
     stream.name = valueOr(*topic.texts, "insonify_stream", name);
     stream.topic = topic.name;
-    stream.type = stream.message = topic.type.empty() ? topic.encoding : topic.type;
+    stream.type = topic.type.empty() ? topic.encoding : topic.type;
+    if (topic.encoding == "cdr") stream.message = topic.type;
     withSampleOf(topic, [&]<class T, class Message>(std::type_identity<T>, std::type_identity<Message>) {
         stream.type = typelibName<T>();
         stream.sample = types::sampleIndex<T>();

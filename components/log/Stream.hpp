@@ -26,7 +26,7 @@ struct Stream {
     types::Time set_back{};       ///< By how much its times went back, in all steps of more than types::max_lateness.
     size_t set_backs = 0;         ///< Number of these steps: the clock was set back [1].
     std::string topic{};          ///< Topic of its messages, "/auv/sonar"; empty in logs without topics.
-    std::string message{};        ///< Type of its messages, "nav_msgs/msg/Odometry"; empty in logs without topics.
+    std::string message{};        ///< Type of its messages in CDR, "nav_msgs/msg/Odometry"; empty: it has no such.
 
     /** Whether its samples have type T. */
     template <class T>

@@ -78,11 +78,22 @@ TEST_F(Db3Test, ABagIsConvertedToLogsOfEitherFormat) {
     for (const char* name : {"copy.0.log", "copy.mcap"}) {
         const Folder to;
         const Copied copied = copyLog({path}, to / name, {});
-        EXPECT_EQ(copied.samples, 50u);
         const auto log = openLog(to / name);
-        types::Pose pose;
-        log->read(log->samples().back(), pose);
-        EXPECT_LT(glm::distance(pose.position, {2, -49, 3}), 1e-12);
+        EXPECT_EQ(copied.samples, isMcap(name) ? 100u : 50u) << "pocolog cannot hold other messages";
+        EXPECT_EQ(copied.lost.size(), isMcap(name) ? 0u : 1u);
+        std::vector<types::Pose> poses;
+        log->forEach<types::Pose>("odom", [&](const types::Pose& pose, const SampleRef&) { poses.push_back(pose); });
+        ASSERT_EQ(poses.size(), 50u);
+        EXPECT_LT(glm::distance(poses.back().position, {2, -49, 3}), 1e-12);
+        EXPECT_FALSE(check(to / name).diagnostic);
+        if (!isMcap(name)) continue;
+        const size_t other = log->indexOf("other");
+        EXPECT_EQ(log->layout(other), ros::schemaOf<ros::Header>()) << "Humble's databases have no definitions";
+        const auto first = std::ranges::find(log->samples(), other, &SampleRef::stream);
+        ros::Header header;
+        ros::decode(log->bytesOf(*first), header);
+        EXPECT_EQ(header.frame_id, "x");
+        EXPECT_EQ(first->time, (types::Time{1'700'000'000'000'600}));
     }
 }
 

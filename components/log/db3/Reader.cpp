@@ -110,7 +110,8 @@ void Reader::readTopics(types::WorldFrame foreign) {
     std::map<std::string, std::string> definitions;
     const Statement has = prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'message_definitions'");
     if (step(has.get())) {  // since ROS 2 Iron
-        const Statement row = prepare("SELECT topic_type, encoded_message_definition FROM message_definitions");
+        const Statement row = prepare(
+            "SELECT topic_type, encoded_message_definition FROM message_definitions WHERE encoding = 'ros2msg'");
         while (step(row.get())) definitions[textAt(row.get(), 0)] = textAt(row.get(), 1);
     }
     const Statement row = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
