@@ -381,8 +381,12 @@ types::Notices addPoses(Reader& log, const PoseSource& asked, types::WorldFrame 
     const size_t index = stream ? static_cast<size_t>(stream - log.streams().data()) : 0;
     if (const Stream* const same = log.find(asked.stream); same && same != stream)
         log.rename(static_cast<size_t>(same - log.streams().data()), same->name + "_recorded");
-    if (is_pair) return followFrames(log, asked, foreign);
-    return hasFixes(log.streams()[index]) ? placeFixes(log, asked, index) : renamePoses(log, asked, index);
+    if (!is_pair && hasFixes(log.streams()[index])) return placeFixes(log, asked, index);
+    types::Notices notices = is_pair ? followFrames(log, asked, foreign) : renamePoses(log, asked, index);
+    if (asked.datum || !asked.orientation.empty())
+        notices.push_back(types::warning(
+            fmt::format("datum and orientation are without effect on {}, which has whole poses", asked.source)));
+    return notices;
 }
 
 }  // namespace insonify::log

@@ -301,6 +301,8 @@ TEST(PoseSourcesTest, PosesThatAreNotUsableAreOmittedWithAWarning) {
         ASSERT_EQ(notices.size(), 1u);
         EXPECT_THAT(notices[0].text, HasSubstr("2 of 6 poses of /p are omitted"));
         EXPECT_EQ(posesOf(log, "vehicle.pose").size(), 4u);
+        EXPECT_THAT(addPoses(log, {"/p", "p", types::Datum{}}, types::WorldFrame::Enu)[0].text,
+                    HasSubstr("datum and orientation are without effect on /p, which has whole poses"));
     });
 }
 
