@@ -40,11 +40,12 @@ std::string wantedOf(const CsvColumn& column) {
 /** Reads line by line and collects all errors. */
 class Reader {
 public:
-    Reader(std::string file, const std::vector<CsvColumn>& columns, const CsvValidator& validate)
-        : file_(std::move(file)), columns_(columns), validate_(validate) {}
+    Reader(std::string file, const TableForm& form, const CsvValidator& validate)
+        : file_(std::move(file)), form_(form), columns_(form.columns), validate_(validate) {
+        has_header_ = form.header == TableForm::Header::None;
+    }
 
     std::vector<std::vector<double>> read(std::string_view text, size_t minimum) {
-        if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
         while (!text.empty() && diagnostics_.size() < max_diagnostics) {
             const size_t end = std::min(text.find('\n'), text.size());
             ++line_number_;
@@ -55,8 +56,9 @@ public:
             report(1, "", "is empty; it must start with the header " + headerOf(columns_));
         else if (rows_.size() < minimum && diagnostics_.empty())
             report(1, "",
-                   "has " + std::to_string(rows_.size()) + " lines after its header; it needs at least " +
-                       std::to_string(minimum));
+                   "has " + std::to_string(rows_.size()) +
+                       (form_.header == TableForm::Header::None ? " lines of numbers" : " lines after its header") +
+                       "; it needs at least " + std::to_string(minimum));
         if (!diagnostics_.empty()) throw ConfigError(std::move(diagnostics_));
         return std::move(rows_);
     }
@@ -64,11 +66,15 @@ public:
 private:
     void readLine(std::string_view line) {
         if (trimmed(line).empty()) return;
+        const bool is_commented = form_.header != TableForm::Header::Line;
+        if (has_header_ && is_commented && trimmed(line).front() == '#') return;
         if (has_header_) return readRow(line);
         has_header_ = true;
-        if (trimmed(line) == headerOf(columns_)) return;
+        const std::string wanted = headerOf(columns_);
+        if (is_commented ? namesIn(line).starts_with("#" + wanted) : trimmed(line) == wanted) return;
         report(1, "",
-               "is '" + std::string(trimmed(line).substr(0, 80)) + "'; the header must be " + headerOf(columns_));
+               "is '" + std::string(trimmed(line).substr(0, 80)) + "'; the header must " +
+                   (is_commented ? "begin with #" : "be ") + wanted);
         throw ConfigError(std::move(diagnostics_));  // the lines have other columns: their errors would be consequences
     }
 
@@ -87,17 +93,41 @@ private:
         const std::string count = "a line has " + std::to_string(columns_.size());
         size_t begin = 0;
         for (size_t i = 0; i < columns_.size(); ++i) {
+            begin = skipped(line, begin);
             if (begin > line.size()) {
                 report(static_cast<int>(line.size()) + 1, columns_[i].name, "is missing; " + count + " fields");
                 return false;
             }
-            const size_t end = std::min(line.find(',', begin), line.size());
+            const size_t end = std::min(line.find_first_of(separators(), begin), line.size());
             places[i] = static_cast<int>(begin) + 1;
             readNumber(line.substr(begin, end - begin), places[i], columns_[i], values[i]);
             begin = end + 1;
         }
-        if (begin <= line.size()) report(static_cast<int>(begin) + 1, "", "has too many fields; " + count);
+        begin = skipped(line, begin);
+        if (begin <= line.size() && form_.header != TableForm::Header::Comment)
+            report(static_cast<int>(begin) + 1, "", "has too many fields; " + count);
         return diagnostics_.size() == before;
+    }
+
+    const char* separators() const { return form_.separator == ' ' ? " \t\r" : ","; }
+
+    /** Returns where the next field begins; behind the line: there is none. */
+    size_t skipped(std::string_view line, size_t begin) const {
+        if (form_.separator != ' ' || begin > line.size()) return begin;
+        const size_t next = line.find_first_not_of(separators(), begin);
+        return next == line.npos ? line.size() + 1 : next;
+    }
+
+    /** Returns a header without spaces, and without the units in brackets. */
+    static std::string namesIn(std::string_view line) {
+        std::string names;
+        bool is_unit = false;
+        for (const char c : line) {
+            is_unit |= c == '[';
+            if (!is_unit && c != ' ' && c != '\t' && c != '\r') names += c;
+            is_unit &= c != ']';
+        }
+        return names;
     }
 
     void readNumber(std::string_view field, int place, const CsvColumn& column, double& value) {
@@ -113,6 +143,7 @@ private:
     }
 
     std::string file_;
+    const TableForm& form_;
     const std::vector<CsvColumn>& columns_;
     const CsvValidator& validate_;
     std::vector<std::vector<double>> rows_;  ///< Rows of valid numbers, with or without errors from `validate_`.
@@ -134,19 +165,26 @@ std::vector<std::string> csvFilesNextTo(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,
-                                         size_t minimum, const CsvValidator& validate) {
+std::vector<std::vector<double>> readTable(const std::filesystem::path& file,
+                                           const std::function<TableForm(std::string_view)>& form, size_t minimum,
+                                           const CsvValidator& validate) {
+    const auto wanted = [&] { return "must be a CSV file with header " + headerOf(form("").columns); };
     std::ifstream stream(file, std::ios::binary);
     if (std::error_code error; !stream && !std::filesystem::exists(file, error))
         throw ConfigError(file.string(), "",
-                          "does not exist; " + didYouMean(file.filename().string(), csvFilesNextTo(file)) +
-                              "must be a CSV file with header " + headerOf(columns));
+                          "does not exist; " + didYouMean(file.filename().string(), csvFilesNextTo(file)) + wanted());
     if (!stream || std::filesystem::is_directory(file))
-        throw ConfigError(
-            file.string(), "",
-            "cannot be read" + permissionReason(errno) + "; it must be a CSV file with header " + headerOf(columns));
+        throw ConfigError(file.string(), "", "cannot be read" + permissionReason(errno) + "; it " + wanted());
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    return Reader(file.string(), columns, validate).read(text, minimum);
+    const std::string_view content = std::string_view(text).substr(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+    const TableForm written = form(content);
+    return Reader(file.string(), written, validate).read(content, minimum);
+}
+
+std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,
+                                         size_t minimum, const CsvValidator& validate) {
+    return readTable(
+        file, [&](std::string_view) { return TableForm{columns}; }, minimum, validate);
 }
 
 }  // namespace insonify::types

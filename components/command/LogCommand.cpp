@@ -20,6 +20,7 @@
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/Export.hpp"
+#include "components/log/PoseSources.hpp"
 #include "components/recordings/RecordingReader.hpp"
 #include "types/DidYouMean.hpp"
 
@@ -74,6 +75,26 @@ std::unique_ptr<log::Reader> opened(const std::string& file) {
     return log;
 }
 
+/** Returns what could be poses in a log of another program; empty for a log of Insonify, whose streams have the names
+ * of its deployment. */
+std::vector<log::FoundPoses> foreignPoses(log::Reader& log) {
+    return log.metadatum("insonify_deployment").empty() ? log::findPoses(log) : std::vector<log::FoundPoses>{};
+}
+
+Json posesJson(const std::vector<log::FoundPoses>& found) {
+    Json poses = Json::array();
+    for (const log::FoundPoses& each : found)
+        poses.push_back({{"source", each.source},
+                         {"type", each.type},
+                         {"parent", each.parent},
+                         {"child", each.child},
+                         {"count", each.count},
+                         {"first_s", each.first.seconds()},
+                         {"last_s", each.last.seconds()},
+                         {"needs_datum", each.has_fixes}});
+    return poses;
+}
+
 /** Returns the metadata of each stream: the deployment, the seed and the plan, which the streams of a run share, and
  *  the meaning of the stream's numbers. */
 Json metadataJson(const log::Reader& log) {
@@ -95,12 +116,16 @@ void printMetadata(const log::Reader& log) {
 
 int logInfo(const std::string& file, bool json, bool metadata) {
     const auto log = opened(file);
+    const std::vector<log::FoundPoses> poses = foreignPoses(*log);
     if (!json) {
         printTable(*log);
+        if (!poses.empty())
+            console::printResult("\ncould be the poses of a body in `insonify replay`:\n{}", log::tableOf(poses));
         if (metadata) printMetadata(*log);
         return 0;
     }
     Json all = infoJson(*log);
+    all["poses"] = posesJson(poses);
     if (metadata) all["metadata"] = metadataJson(*log);
     print(all);
     return 0;
@@ -417,7 +442,7 @@ void addLogCommand(CLI::App& app, Action& action) {
     addMcapOptions(*out, *options);
 
     CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);
-    cut->add_option("FILE", options->files, "a pocolog or MCAP file, or those of a log in order")->required();
+    cut->add_option("FILE", options->files, "a pocolog, MCAP or .db3 file, or those of a log in order")->required();
     cut->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
     cut->add_option("--from", options->from,
                     "earliest time: seconds after the log's first stamp, or a date, as in 2026-11-22T12:55:44Z");
@@ -445,7 +470,7 @@ void addLogCommand(CLI::App& app, Action& action) {
     check->add_flag("--json", options->json, "for machines");
 
     for (CLI::App* command : {info, out, repair, check})
-        command->add_option("FILE", options->file, "a pocolog or MCAP file")->required();
+        command->add_option("FILE", options->file, "a pocolog, MCAP or .db3 file, or the folder of a bag")->required();
 }
 
 }  // namespace insonify::command

@@ -1,9 +1,10 @@
 // insonify replay LOG DEPLOYMENT [--rerender [--score]]
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "components/deployer/Score.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/log/LoggerClock.hpp"
+#include "components/log/PoseSources.hpp"
 #include "components/log/Reader.hpp"
 #include "components/recordings/RecordingReader.hpp"
 #include "types/ConfigError.hpp"
@@ -31,7 +33,9 @@ constexpr const char* rerendered_file = "rerendered.0.log";
 
 struct Asked : RunOptions {
     ReplayOptions replay;
-    std::string from;
+    std::string from, orientation;
+    std::vector<std::string> poses;  ///< "SOURCE" or "SOURCE=TASK.PORT"
+    std::vector<double> datum;       ///< Latitude and longitude [deg], height [m].
     bool score = false, step = false;
     size_t worst = 10;
 };
@@ -163,7 +167,8 @@ types::ConfigError namingLog(types::Diagnostics diagnostics, const std::string& 
 /** Refuses a folder of results that would replace the log, its properties and its pictures. */
 void refuseFolderOf(const std::string& log, const std::string& out) {
     std::error_code none;
-    const std::filesystem::path folder = std::filesystem::absolute(log).parent_path();
+    const std::filesystem::path path = std::filesystem::absolute(log),
+                                folder = std::filesystem::is_directory(path, none) ? path : path.parent_path();
     if (!out.empty() && std::filesystem::equivalent(folder, out, none))
         throw types::ConfigError(out, "--out", "is the folder of the log, whose files would be replaced; give another");
 }
@@ -184,11 +189,83 @@ double startIn(const log::Reader& log, const std::string& from) {
     return (given - first + clock.evenTime(*at) - at->time).seconds();
 }
 
+/** Prints what could be poses in a log, and how it is chosen. */
+int listPoses(log::Reader& log) {
+    const std::vector<log::FoundPoses> found = log::findPoses(log);
+    if (found.empty())
+        throw types::ConfigError(log.path(), "",
+                                 "has no stream that could be poses; `insonify log info` lists its streams");
+    console::printResult("{}: could be the poses of a body:\n{}choose: insonify replay {} DEPLOYMENT --pose '{}'\n",
+                         log.path().string(), log::tableOf(found), log.path().string(), found.front().source);
+    return 0;
+}
+
+/** Returns the source of poses of one `--pose`, for a body of the deployment. */
+log::PoseSource poseSource(const Asked& options, const std::string& given, const std::vector<std::string>& ports,
+                           const std::string& deployment) {
+    const size_t equals = given.rfind('=');
+    log::PoseSource source{given.substr(0, equals), equals == given.npos ? "" : given.substr(equals + 1)};
+    if (source.stream.empty() && ports.size() == 1) source.stream = ports.front();
+    if (ports.empty() || std::ranges::find(ports, source.stream) == ports.end())
+        throw types::ConfigError(deployment, "--pose",
+                                 ports.empty()
+                                     ? "has no effect: no connection leads to the pose of a scene"
+                                     : fmt::format("is {}; the deployment takes poses from {}: give --pose SOURCE={}",
+                                                   given, fmt::join(ports, ", "), ports.front()));
+    if (!options.datum.empty()) {
+        source.datum =
+            types::Datum{options.datum[0], options.datum[1], options.datum.size() > 2 ? options.datum[2] : 0};
+        if (!(std::abs(source.datum->latitude_deg) <= 90))
+            throw types::ConfigError(
+                "", "--datum",
+                fmt::format("has a latitude of {:g}; may be -90 to 90, and comes before the longitude",
+                            options.datum[0]));
+    }
+    source.orientation = options.orientation;
+    return source;
+}
+
+/** Returns the only source of poses in a log of another program that has no stream of a task of the deployment; empty:
+ *  it has one, or no source. Throws ConfigError where there are several. */
+std::string onlySource(const framework::DeploymentSpec& spec, log::Reader& log, const Asked& options) {
+    const bool is_own =
+        !log.metadatum("insonify_deployment").empty();  // of another deployment, which has pings as well
+    if (is_own || hasStreamOf(spec, log)) return {};
+    std::vector<log::FoundPoses> found = log::findPoses(log);
+    if (found.size() > 1 && options.datum.empty())
+        std::erase_if(found, [](const log::FoundPoses& each) { return each.has_fixes; });
+    if (found.empty()) return {};  // reported as a log of another deployment
+    if (found.size() == 1) {
+        notice(options, fmt::format("the poses are those of {} {}", found.front().source, found.front().text()));
+        return found.front().source;
+    }
+    std::string choices;
+    for (const log::FoundPoses& each : found) choices += "\n  --pose '" + each.source + "' " + each.text();
+    throw types::ConfigError(
+        log.path(), "--pose",
+        "is missing: the log has no stream of a task of " + spec.file + ", and several could be its poses:" + choices);
+}
+
+/** Adds the streams of poses that are asked for, or the only one that there is. */
+void choosePoses(log::Reader& log, Asked& options) {
+    const framework::DeploymentSpec spec = loadSpec(options);
+    std::vector<std::string> given = options.poses;
+    if (given.empty())
+        if (const std::string only = onlySource(spec, log, options); !only.empty()) given = {only};
+    for (const std::string& each : given) {
+        const log::PoseSource source = poseSource(options, each, bodyPorts(spec), spec.file);
+        log::addPoses(log, source, options.replay.world_frame);  // the task reports the notices
+        options.replay.poses.push_back(source);
+    }
+}
+
 int replay(Asked options) {
     recordings::refuseRecording(options.replay.log);
-    const auto opened = log::openLog(options.replay.log);
-    refuseFolderOf(options.replay.log, options.out);
+    const auto opened = log::openLog(options.replay.log, log::AtDamage::Stop, options.replay.world_frame);
     log::Reader& log = *opened;
+    if (options.deployment.empty()) return listPoses(log);
+    refuseFolderOf(options.replay.log, options.out);
+    choosePoses(log, options);
     if (!options.from.empty() && !log.samples().empty()) options.replay.from = startIn(log, options.from);
     std::vector<RecordedProperty> changed;
     if (options.replay.rerender) changed = readSettings(log, options);
@@ -199,14 +276,40 @@ int replay(Asked options) {
     }
 }
 
+/** Adds the options that choose poses. */
+void addPoseOptions(CLI::App& command, Asked& options) {
+    auto* pose = command.add_option("--pose", options.poses,
+                                    "poses of the deployment's body: a topic or stream, or frames of tf as "
+                                    "map->base_link; =TASK.PORT behind it chooses one of several bodies");
+    pose->type_name("SOURCE")->take_all();
+    command.add_option("--datum", options.datum, "origin of the world for fixes [deg, deg, m above the ellipsoid]")
+        ->type_name("LATITUDE,LONGITUDE[,HEIGHT]")
+        ->delimiter(',')
+        ->expected(2, 3);
+    command.add_option("--orientation", options.orientation, "topic or stream that turns a body whose poses are fixes")
+        ->type_name("SOURCE");
+    const auto frame = [&options](const std::string& given) {
+        const auto& names = types::EnumNames<types::WorldFrame>::names;
+        const auto* const found = std::ranges::find(names, given);
+        if (found == std::end(names))
+            throw types::ConfigError("", "--world-frame",
+                                     fmt::format("is {}; may be {}", given, fmt::join(names, ", ")));
+        options.replay.world_frame = static_cast<types::WorldFrame>(found - std::begin(names));
+    };
+    command.add_option_function<std::string>("--world-frame", frame, "axes of poses of other programs (default: enu)")
+        ->type_name("{as_is,enu,ned}");
+}
+
 }  // namespace
 
 void addReplayCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<Asked>();
     CLI::App* command =
         app.add_subcommand("replay", "Runs a deployment on a log's time, with its streams in the place of tasks");
-    command->add_option("LOG", options->replay.log, "a pocolog or MCAP file")->required();
-    command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
+    command->add_option("LOG", options->replay.log, "a pocolog, MCAP or .db3 file, or the folder of a bag")->required();
+    command->add_option("DEPLOYMENT", options->deployment,
+                        "a YAML file; without it, what could be poses in the log is listed");
+    addPoseOptions(*command, *options);
     auto* pace = command->add_option("--pace", options->limits.pace,
                                      "log seconds per second of the wall clock (default: as fast as possible)");
     pace->type_name("P")->check(console::refuseUnlessPositive);

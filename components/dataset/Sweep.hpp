@@ -72,7 +72,8 @@ struct TrajectoryPoses {
     int line = 0, column = 0;  ///< Its place in the sweep.
 
     static void describe(auto& self, auto& visit) {
-        visit({"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz, relative to the sweep"}, self.file);
+        visit({"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz, or of TUM or EuRoC; relative to the sweep"},
+              self.file);
         pose::TrajectoryTimes::describe(self.times, visit);
         visit({"count", "1", "poses, evenly from `from` to `to`", 1, 1e6}, self.count);
         visit({"period", "s", "instead: time between two poses", 1e-3, 1e6}, self.period);

@@ -22,9 +22,18 @@ constexpr size_t maximum = 64 << 10;  ///< A message's 712 bytes and two names, 
 constexpr types::Time max_ahead{1'000'000};    ///< Max stamp ahead of the clock; a sonar refuses later snapshots too.
 constexpr types::Time max_silence{1'000'000};  ///< After it, a sender's clock may have been set back.
 
-const char* typeOf(PoseType type) {
-    return type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
+struct PoseMessage {
+    const char *type, *hash;
+};
+
+PoseMessage messageOf(PoseType type) {
+    const auto of = []<class T>(std::type_identity<T>) { return PoseMessage{T::type_name, T::type_hash}; };
+    if (type == PoseType::Odometry) return of(std::type_identity<ros::Odometry>{});
+    if (type == PoseType::PoseStamped) return of(std::type_identity<ros::PoseStamped>{});
+    return of(std::type_identity<ros::PoseWithCovarianceStamped>{});
 }
+
+const char* typeOf(PoseType type) { return messageOf(type).type; }
 
 /** Returns "odometry" for "rt/auv/odometry". */
 std::string_view lastWord(std::string_view topic) { return topic.substr(topic.rfind('/') + 1); }
@@ -46,9 +55,9 @@ std::string similarTopics(const std::vector<Published>& all, const std::string& 
 }
 
 Reader reader(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
-    const char* hash = topic.type == PoseType::Odometry ? ros::Odometry::type_hash : ros::PoseStamped::type_hash;
+    const PoseMessage message = messageOf(topic.type);
     const Quality quality{.reliability = config.reliability, .depth = std::max(config.depth, min_depth)};
-    return {node, ddsTopic(topic.topic), typeOf(topic.type), hash, quality, std::move(arrived), maximum};
+    return {node, ddsTopic(topic.topic), message.type, message.hash, quality, std::move(arrived), maximum};
 }
 
 }  // namespace
@@ -67,16 +76,20 @@ Subscription::Subscription(Node& node, const SubscriberConfig& config, const Top
     node.addReader(reader_.handle());
 }
 
+template <class Message>
+void Subscription::decodeAs(Message& message, types::Pose& pose) {
+    ros::decode(std::span<const char>(bytes_), message);
+    ros::convert(message, world_frame_, pose);
+    stamp_ = message.header.stamp;
+}
+
 void Subscription::decode(types::Pose& pose) {
-    if (type_ == PoseType::Odometry) {
-        ros::decode(std::span<const char>(bytes_), odometry_);
-        ros::convert(odometry_, world_frame_, pose);
-        stamp_ = odometry_.header.stamp;
-    } else {
-        ros::decode(std::span<const char>(bytes_), stamped_);
-        ros::convert(stamped_, world_frame_, pose);
-        stamp_ = stamped_.header.stamp;
-    }
+    if (type_ == PoseType::Odometry)
+        decodeAs(std::get<ros::Odometry>(messages_), pose);
+    else if (type_ == PoseType::PoseStamped)
+        decodeAs(std::get<ros::PoseStamped>(messages_), pose);
+    else
+        decodeAs(std::get<ros::PoseWithCovarianceStamped>(messages_), pose);
 }
 
 std::string Subscription::diagnosticOf(types::Time now, const types::Pose& pose) {

@@ -3,6 +3,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "components/dds/Endpoints.hpp"
@@ -14,7 +15,7 @@
 namespace insonify::dds {
 
 /** The message type of the poses. */
-enum class PoseType { Odometry, PoseStamped };
+enum class PoseType { Odometry, PoseStamped, PoseWithCovarianceStamped };
 
 /** The source of a pose's time. */
 enum class StampFrom { Message, Arrival };
@@ -98,6 +99,8 @@ public:
 
 private:
     void decode(types::Pose& pose);
+    template <class Message>
+    void decodeAs(Message& message, types::Pose& pose);
     /** Returns an empty text for a valid pose. */
     std::string diagnosticOf(types::Time now, const types::Pose& pose);
 
@@ -108,8 +111,7 @@ private:
     ros::WorldFrame world_frame_;
     Bytes bytes_;
     types::Pose read_;
-    ros::Odometry odometry_;
-    ros::PoseStamped stamped_;
+    std::tuple<ros::Odometry, ros::PoseStamped, ros::PoseWithCovarianceStamped> messages_;  ///< As in PoseType.
     ros::Time stamp_;  ///< Stamp of the last message, with its nanoseconds.
     uint64_t sender_ = 0, newest_sender_ = 0;
     types::Time newest_, newest_came_;
@@ -122,7 +124,8 @@ private:
 
 template <>
 struct insonify::types::EnumNames<insonify::dds::PoseType> {
-    static constexpr std::string_view names[] = {"nav_msgs/Odometry", "geometry_msgs/PoseStamped"};
+    static constexpr std::string_view names[] = {"nav_msgs/Odometry", "geometry_msgs/PoseStamped",
+                                                 "geometry_msgs/PoseWithCovarianceStamped"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::dds::StampFrom> {

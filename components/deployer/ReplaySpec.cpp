@@ -39,9 +39,9 @@ std::set<std::string> replacedTasks(const log::Reader& log, const DeploymentSpec
         for (const std::string& task : pingTasks(spec, registry)) names.erase(task);
     }
     if (names.empty())
-        throw types::ConfigError(
-            log.path(), "",
-            std::string("none of its streams is of a task of ") + spec.file + (rerender ? " before its sonars" : ""));
+        throw types::ConfigError(log.path(), "",
+                                 std::string("none of its streams is of a task of ") + spec.file +
+                                     (rerender ? " before its sonars" : "") + "; --pose takes only its poses");
     return names;
 }
 
@@ -65,6 +65,10 @@ std::string freeName(const DeploymentSpec& spec, std::string name) {
     return name;
 }
 
+std::string_view nameOf(types::WorldFrame frame) {
+    return types::EnumNames<types::WorldFrame>::names[static_cast<size_t>(frame)];
+}
+
 TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
     TaskSpec task;
     task.name = name;
@@ -73,6 +77,19 @@ TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
     task.properties["file"] = std::filesystem::absolute(options.log).string();
     task.properties["from"] = options.from;
     task.properties["loop"] = options.loop;
+    task.properties["world_frame"] = std::string(nameOf(options.world_frame));
+    for (const log::PoseSource& source : options.poses) {
+        YAML::Node node;
+        node["source"] = source.source;
+        node["stream"] = source.stream;
+        node["orientation"] = source.orientation;
+        if (source.datum) {
+            node["datum"]["latitude_deg"] = source.datum->latitude_deg;
+            node["datum"]["longitude_deg"] = source.datum->longitude_deg;
+            node["datum"]["height_m"] = source.datum->height_m;
+        }
+        task.properties["poses"].push_back(node);
+    }
     return task;
 }
 
@@ -165,11 +182,26 @@ DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const Repl
     std::vector<ConnectionSpec> connections = reconnected(spec, log, replaced, name);
     spec.tasks.swap(tasks);
     spec.connections.swap(connections);
-    if (options.rerender) drivePings(spec, log, name);
+    if (options.rerender && options.poses.empty()) drivePings(spec, log, name);
     connectAltitudes(spec, log, name);
     spec.lockstep = true;
     return spec;
 }
+
+std::vector<std::string> bodyPorts(const DeploymentSpec& spec) {
+    std::vector<std::string> ports;
+    for (const ConnectionSpec& connection : spec.connections) {
+        const auto [task, port] = splitPort(connection.to);
+        const TaskSpec* const scene = spec.task(task);
+        if (!scene || port != "pose" || scene->type != "scene::SceneTask") continue;
+        const std::string alias = spec.aliasOf(connection.from);
+        const std::string& name = alias.empty() ? connection.from : alias;
+        if (std::ranges::find(ports, name) == ports.end()) ports.push_back(name);
+    }
+    return ports;
+}
+
+bool hasStreamOf(const DeploymentSpec& spec, const log::Reader& log) { return !loggedTasks(log, spec).empty(); }
 
 std::set<std::string> outsideTasks(const DeploymentSpec& spec) {
     framework::Registry registry = coreTasks();

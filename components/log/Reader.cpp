@@ -1,14 +1,16 @@
 #include "components/log/Reader.hpp"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 
 #include "components/log/Stream.hpp"
 #include "components/log/TypeNames.hpp"
+#include "components/log/db3/Reader.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "types/Check.hpp"
 #include "types/DidYouMean.hpp"
-#include "types/Elapsed.hpp"
 
 namespace insonify::log {
 
@@ -40,7 +42,51 @@ std::string Reader::metadatum(const std::string& key) const {
     return found == streams_.end() ? "" : found->metadatum(key);
 }
 
+void Reader::addPoses(Stream stream, MadePoses made) {
+    const auto& poses = made.poses;
+    const size_t own = streams_.size();
+    stream.sample = types::sampleIndex<types::Pose>();
+    stream.type = typelibName<types::Pose>();
+    for (const MadePose& pose : poses) stream.note(pose.time);
+    std::vector<SampleRef> all;
+    all.reserve(samples_.size() + poses.size());
+    auto next = poses.begin();
+    for (const SampleRef& at : samples_) {
+        all.push_back(at);
+        for (; next != poses.end() && next->after == at.number; ++next)
+            all.push_back({own, at.received, next->time, at.position, at.number});
+    }
+    samples_ = std::move(all);
+    streams_.push_back(std::move(stream));
+    made_[own] = std::move(made);
+}
+
+void Reader::keepSamples(size_t stream, const std::function<bool(SampleRef&)>& keep) {
+    Stream& changed = streams_[stream];
+    std::vector<SampleRef> all = std::move(samples_);
+    samples_.clear();
+    changed.count = changed.set_backs = 0;
+    changed.set_back = changed.first = changed.last = {};
+    for (SampleRef& at : all)
+        if (at.stream != stream)
+            samples_.push_back(at);
+        else if (keep(at))
+            changed.note(at.time), samples_.push_back(at);
+}
+
+void Reader::readMade(const SampleRef& at, const MadePoses& made, types::Pose& pose) {
+    const MadePose& found = *std::ranges::lower_bound(made.poses, at.number, {}, &MadePose::after);
+    pose = {};
+    pose.time = found.time;
+    pose.source_frame = made.child;
+    pose.target_frame = made.parent;
+    pose.position = found.position;
+    pose.orientation = found.orientation;
+}
+
 void Reader::readInto(const SampleRef& at, types::SampleRoom room) try {
+    if (const auto made = made_.find(at.stream); made != made_.end())
+        return readMade(at, made->second, *std::get<types::Pose*>(room));
     decode(at, room);
     restoreBins(streams_[at.stream].metadata, room);
 } catch (const types::ConfigError&) {
@@ -68,19 +114,12 @@ void Reader::verify(const SampleRef& at) {
 }
 
 void Reader::addSample(size_t number, types::Time received, types::Time time, uint64_t position) {
-    Stream& stream = streams_[number];
-    if (stream.count++ == 0) stream.first = stream.last = time;
-    if (stream.last - time > types::max_lateness) {
-        ++stream.set_backs;
-        stream.set_back = stream.set_back + (stream.last - time);
-    }
-    stream.last = time;
+    streams_[number].note(time);
     samples_.push_back({number, received, time, position, samples_.size()});
 }
 
 void Reader::failSample(const SampleRef& at, const std::string& what) const {
-    throw types::ConfigError(path_, streams_[at.stream].name,
-                             "the sample at byte " + std::to_string(at.position) + " " + what);
+    throw types::ConfigError(path_, streams_[at.stream].name, "the sample " + placeOf(at) + " " + what);
 }
 
 void Reader::failType(const SampleRef& at, size_t wanted) const {
@@ -106,22 +145,136 @@ const char* diagnosticOf(types::SampleView sample) {
 
 namespace {
 
-constexpr LogFormat all_formats[] = {{".log"}, {".mcap", true}};
+constexpr LogFormat all_formats[] = {{".log", Storage::Pocolog}, {".mcap", Storage::Mcap}, {".db3", Storage::Db3}};
+
+const LogFormat* formatOf(const std::filesystem::path& path) { return types::findFormat(all_formats, path); }
+
+/** Returns the files of the bag in a folder: those of its metadata.yaml, else the only one. Throws ConfigError for a
+ *  folder with none, or with several and no metadata. */
+std::vector<std::filesystem::path> filesOfBag(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    try {
+        for (const YAML::Node& name :
+             YAML::LoadFile(folder / "metadata.yaml")["rosbag2_bagfile_information"]["relative_file_paths"])
+            files.push_back(folder / name.as<std::string>());
+    } catch (const YAML::Exception&) {  // the files are looked for
+    }
+    std::error_code none;
+    std::string names;
+    if (files.empty())
+        for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+            if (const LogFormat* const format = formatOf(entry.path()); format && format->storage != Storage::Pocolog) {
+                files.push_back(entry.path());
+                names += (names.empty() ? "" : ", ") + entry.path().filename().string();
+            }
+    const auto packed = std::ranges::find(files, ".zstd", [](const auto& file) { return file.extension().string(); });
+    if (packed != files.end())
+        throw types::ConfigError(folder, "", "is a bag that is compressed; unpack it: zstd -d " + packed->string());
+    if (names.empty() ? files.empty() : files.size() > 1)
+        throw types::ConfigError(
+            folder, "",
+            names.empty() ? "is a folder; give a log in it: a " + types::alternativeEndings(all_formats) + " file"
+                          : "is a folder without metadata.yaml; give one of its files: " + names);
+    return files;
+}
+
+/** The files of one bag as one log, in the order of their times. Streams of one name are one stream. */
+class JoinedLog final : public Reader {
+public:
+    JoinedLog(const std::filesystem::path& folder, std::vector<std::unique_ptr<Reader>> parts)
+        : Reader(folder), parts_(std::move(parts)) {
+        std::ranges::stable_sort(parts_, {}, [](const auto& part) {
+            return part->samples().empty() ? types::Time{} : part->samples().front().received;
+        });
+        for (const auto& part : parts_) add(*part);
+    }
+
+    uint64_t bytes() const override {
+        uint64_t sum = 0;
+        for (const auto& part : parts_) sum += part->bytes();
+        return sum;
+    }
+    const std::string& layout(size_t stream) const override { return layouts_[stream]; }
+    std::span<const char> bytesOf(const SampleRef& at) override {
+        const auto& [part, place] = places_[at.number];
+        return part->bytesOf(place);
+    }
+
+private:
+    void add(Reader& part) {
+        std::vector<size_t> numbers;
+        for (size_t i = 0; i < part.streams().size(); ++i) numbers.push_back(numberOf(part, i));
+        for (const SampleRef& at : part.samples()) {
+            places_.emplace_back(&part, at);
+            addSample(numbers[at.stream], at.received, at.time, at.position);
+        }
+        for (Gap gap : part.gaps()) {
+            gap.what = part.path().filename().string() + ": " + gap.what;
+            gaps_.push_back(std::move(gap));
+        }
+    }
+    size_t numberOf(const Reader& part, size_t index) {
+        const Stream& stream = part.streams()[index];
+        const auto same = std::ranges::find(streams_, stream.name, &Stream::name);
+        if (same != streams_.end() && same->type != stream.type)
+            throw types::ConfigError(part.path(), stream.name,
+                                     "is " + stream.type + "; in another file of the bag it is " + same->type);
+        if (same != streams_.end()) return static_cast<size_t>(same - streams_.begin());
+        Stream empty = stream;
+        empty.count = empty.set_backs = 0;
+        empty.first = empty.last = empty.set_back = {};
+        for (const char* of_samples : {bin_width_key, speed_of_sound_key})
+            empty.metadata.erase(of_samples);  // restored
+        streams_.push_back(std::move(empty));
+        layouts_.push_back(part.layout(index));
+        return streams_.size() - 1;
+    }
+    void decode(const SampleRef& at, types::SampleRoom room) override {
+        const auto& [part, place] = places_[at.number];
+        std::visit([&, part = part, place = place](auto* sample) { part->read(place, *sample); }, room);
+    }
+
+    std::vector<std::unique_ptr<Reader>> parts_;
+    std::vector<std::pair<Reader*, SampleRef>> places_;  ///< Of each sample, by its number.
+    std::vector<std::string> layouts_;                   ///< Of each stream.
+};
+
+std::unique_ptr<Reader> openFile(const std::filesystem::path& path, AtDamage at_damage, types::WorldFrame foreign) {
+    const Storage storage = storageOf(path);
+    if (storage == Storage::Mcap) return std::make_unique<mcap::Reader>(path, at_damage, foreign);
+    if (storage == Storage::Db3)
+#ifdef INSONIFY_SQLITE
+        return std::make_unique<db3::Reader>(path, foreign);
+#else
+        throw types::ConfigError(path, "",
+                                 "cannot be read: this build has no SQLite; install libsqlite3-dev and build again, or "
+                                 "convert it to MCAP with `ros2 bag convert`");
+#endif
+    return std::make_unique<pocolog::Reader>(path, at_damage);
+}
 
 }  // namespace
 
-const LogFormat* findLogFormat(const std::filesystem::path& path) { return types::findFormat(all_formats, path); }
-
-std::string logEndings() { return types::alternativeEndings(all_formats); }
-
-bool isMcap(const std::filesystem::path& path) {
-    const LogFormat* const format = findLogFormat(path);
-    return format && format->is_mcap;
+const LogFormat* findLogFormat(const std::filesystem::path& path) {
+    const LogFormat* const format = formatOf(path);
+    return format && format->isWritten() ? format : nullptr;
 }
 
-std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage) {
-    if (isMcap(path)) return std::make_unique<mcap::Reader>(path, at_damage);
-    return std::make_unique<pocolog::Reader>(path, at_damage);
+std::string logEndings() {
+    return types::alternativeEndings(all_formats, [](const LogFormat& format) { return format.isWritten(); });
+}
+
+Storage storageOf(const std::filesystem::path& path) {
+    const LogFormat* const format = formatOf(path);
+    return format ? format->storage : Storage::Pocolog;
+}
+
+std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage, types::WorldFrame foreign) {
+    std::error_code none;
+    if (!std::filesystem::is_directory(path, none)) return openFile(path, at_damage, foreign);
+    std::vector<std::unique_ptr<Reader>> parts;
+    for (const std::filesystem::path& file : filesOfBag(path)) parts.push_back(openFile(file, at_damage, foreign));
+    return parts.size() == 1 ? std::move(parts.front()) : std::make_unique<JoinedLog>(path, std::move(parts));
 }
 
 std::optional<std::filesystem::path> propertyLog(const Reader& log) {

@@ -1,5 +1,7 @@
 #pragma once
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -8,6 +10,7 @@
 #include <vector>
 
 #include "components/log/Stream.hpp"
+#include "types/WorldFrame.hpp"
 
 namespace insonify::log {
 
@@ -37,6 +40,23 @@ public:
     size_t indexOf(const std::string& name) const;
     /** Returns the metadatum of the first stream that has this key; empty: there is none. */
     std::string metadatum(const std::string& key) const;
+
+    /** A pose that follows from messages of the log, and the sample after which it is known. */
+    struct MadePose {
+        size_t after = 0;  ///< SampleRef::number.
+        types::Time time{};
+        glm::dvec3 position{0};
+        glm::dquat orientation{1, 0, 0, 0};
+    };
+    struct MadePoses {
+        std::string parent, child;    ///< Names of the frames.
+        std::vector<MadePose> poses;  ///< At most one after a sample, in their order.
+    };
+    /** Adds a stream of poses that are not samples of the file. */
+    void addPoses(Stream stream, MadePoses made);
+    /** Keeps those samples of a stream for which `keep` returns true; it may change their times. */
+    void keepSamples(size_t stream, const std::function<bool(SampleRef&)>& keep);
+    void rename(size_t stream, const std::string& name) { streams_[stream].name = name; }
 
     /** Decodes one sample into `sample`, reusing its memory. Throws ConfigError for a sample of another type or one
      *  that cannot be decoded. */
@@ -75,6 +95,8 @@ protected:
     /** Decodes a sample of the stream's type. Throws std::exception for invalid bytes. */
     virtual void decode(const SampleRef& at, types::SampleRoom room) = 0;
     [[noreturn]] void failSample(const SampleRef& at, const std::string& what) const;
+    /** Returns the place of a sample for messages: "at byte 120". */
+    virtual std::string placeOf(const SampleRef& at) const { return "at byte " + std::to_string(at.position); }
 
     /** Adds a sample of a declared stream to the index. */
     void addSample(size_t stream, types::Time received, types::Time time, uint64_t position);
@@ -85,10 +107,12 @@ protected:
 
 private:
     void readInto(const SampleRef& at, types::SampleRoom room);
+    static void readMade(const SampleRef& at, const MadePoses& made, types::Pose& pose);
     [[noreturn]] void failType(const SampleRef& at, size_t wanted) const;
 
     std::filesystem::path path_;
     std::unique_ptr<types::SampleTypes> room_;  ///< Reused for decoding.
+    std::map<size_t, MadePoses> made_;          ///< By stream, for those that are not in the file.
 };
 
 /** Returns the element of `samples` for the type with this index in types::SampleTypes. */
@@ -97,21 +121,28 @@ types::SampleRoom roomFor(size_t sample, types::SampleTypes& samples);
 /** Returns how a sample contradicts itself, to follow "a sample"; null: it does not. */
 const char* diagnosticOf(types::SampleView sample);
 
+enum class Storage : uint8_t { Pocolog, Mcap, Db3 };
+
 /** A format of logs. Its files are recognised by their ending, in any case of letters. */
 struct LogFormat {
     std::string_view ending;  ///< In lower case: ".mcap".
-    bool is_mcap = false;     ///< Else pocolog.
+    Storage storage = Storage::Pocolog;
+    bool isWritten() const { return storage != Storage::Db3; }  ///< Others are only read.
 };
-/** Returns the format of a log by its name; null: it has no ending of a log. Does not look at the file. */
+/** Returns the format of a log that is written, by its name; null: it has no ending of one. Does not look at the
+ *  file. */
 const LogFormat* findLogFormat(const std::filesystem::path& path);
-/** Returns the endings of all formats for a message: ".log or .mcap". */
+/** Returns the endings of the formats that are written, for a message: ".log or .mcap". */
 std::string logEndings();
-/** Whether a file is in MCAP format, by its name. */
-bool isMcap(const std::filesystem::path& path);
+/** Returns the format of a file by its name; pocolog for other endings. */
+Storage storageOf(const std::filesystem::path& path);
+inline bool isMcap(const std::filesystem::path& path) { return storageOf(path) == Storage::Mcap; }
 
-/** Opens a log of either format, see pocolog::Reader and mcap::Reader; a file with another ending is read as pocolog.
- *  Throws ConfigError for other files. */
-std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop);
+/** Opens a log of any format, see pocolog::Reader, mcap::Reader and db3::Reader, or the folder of a bag with all of its
+ * files; a file with another ending is read as pocolog. Throws ConfigError for other files. @param foreign axes of
+ * poses in messages of other programs */
+std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop,
+                                types::WorldFrame foreign = types::WorldFrame::Enu);
 
 /** Returns the property log of a log: properties.0.log next to it, if it is from the same run; none: there is none. */
 std::optional<std::filesystem::path> propertyLog(const Reader& log);

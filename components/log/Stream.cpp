@@ -11,8 +11,10 @@
 #include <type_traits>
 
 #include "types/ConfigError.hpp"
+#include "types/Elapsed.hpp"
 
 namespace insonify::log {
+
 namespace {
 
 /** Returns a text in quotes, as in JSON. */
@@ -60,6 +62,15 @@ bool isDate(std::string text, types::Time& time) {
 }
 
 }  // namespace
+
+void Stream::note(types::Time time) {
+    if (count++ == 0) first = last = time;
+    if (last - time > types::max_lateness) {
+        ++set_backs;
+        set_back = set_back + (last - time);
+    }
+    last = time;
+}
 
 void addSampleMetadata(types::SampleView first, Metadata& metadata) {
     const auto add = [&]<class T>(const T* sample) {

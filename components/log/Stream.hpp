@@ -26,6 +26,7 @@ struct Stream {
     types::Time set_back{};       ///< By how much its times went back, in all steps of more than types::max_lateness.
     size_t set_backs = 0;         ///< Number of these steps: the clock was set back [1].
     std::string topic{};          ///< Topic of its messages, "/auv/sonar"; empty in logs without topics.
+    std::string message{};        ///< Type of its messages in CDR, "nav_msgs/msg/Odometry"; empty: it has no such.
 
     /** Whether its samples have type T. */
     template <class T>
@@ -38,6 +39,8 @@ struct Stream {
         const double span = (last - first + set_back).seconds();
         return span > 0 ? static_cast<double>(count - 1) / span : 0;
     }
+    /** Adds a sample of this world time to its count, span and steps. */
+    void note(types::Time time);
     /** Returns a metadatum of the stream; empty: there is none. */
     std::string metadatum(const std::string& key) const {
         const auto found = metadata.find(key);
@@ -64,7 +67,7 @@ struct SampleRef {
     types::Time received{};  ///< When it was logged.
     types::Time time{};      ///< When it was true in the world.
     uint64_t position = 0;   ///< Position of its bytes in the file, or of the compressed block around it [B].
-    size_t number = 0;       ///< Its index in Reader::samples() [1].
+    size_t number = 0;       ///< Its place among the samples of the file, from 0; a made pose has that of its message.
 };
 
 /** A part of a file that is not readable as a log. */

@@ -67,13 +67,48 @@ Spline splineThrough(const std::vector<Trajectory::Stamp>& stamps) {
 
 constexpr double shortest_quaternion = 1e-6;
 
-glm::dquat orientationOf(const std::vector<double>& row) { return {row[4], row[5], row[6], row[7]}; }
+/** The forms of files of trajectories. */
+enum class Form { Csv, Tum, Euroc };
+
+/** Returns the first line that is neither blank nor, where `comments` are skipped, begins with #; without spaces before
+ *  it. */
+std::string_view firstLine(std::string_view text, bool comments) {
+    while (!text.empty()) {
+        const size_t end = std::min(text.find('\n'), text.size());
+        const size_t begin = text.substr(0, end).find_first_not_of(" \t\r");
+        if (begin != text.npos && !(comments && text[begin] == '#')) return text.substr(begin, end - begin);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return {};
+}
+
+/** Returns the form of a file: one without a header, or with comments, is of TUM where no commas separate its
+ *  numbers. */
+Form formOf(std::string_view text) {
+    const std::string_view first = firstLine(text, false), row = firstLine(text, true);
+    const bool has_commas = row.find(',') != row.npos;
+    if (first.starts_with('#'))
+        return has_commas || (row.empty() && first.find(',') != first.npos) ? Form::Euroc : Form::Tum;
+    const bool is_number =
+        !first.empty() && std::string_view("+-.0123456789").find(first.front()) != std::string_view::npos;
+    return is_number && !has_commas ? Form::Tum : Form::Csv;
+}
+
+types::TableForm tableOf(Form form) {
+    using Header = types::TableForm::Header;
+    if (form == Form::Tum) return {{{"time"}, {"x"}, {"y"}, {"z"}, {"qx"}, {"qy"}, {"qz"}, {"qw"}}, Header::None, ' '};
+    if (form == Form::Euroc)
+        return {
+            {{"timestamp"}, {"p_RS_R_x"}, {"p_RS_R_y"}, {"p_RS_R_z"}, {"q_RS_w"}, {"q_RS_x"}, {"q_RS_y"}, {"q_RS_z"}},
+            Header::Comment};
+    return {{{"time"}, {"x"}, {"y"}, {"z"}, {"qw"}, {"qx"}, {"qy"}, {"qz"}}};
+}
 
 std::vector<types::CsvDiagnostic> evaluate(const std::vector<double>& row, const std::vector<double>* before) {
     std::vector<types::CsvDiagnostic> diagnostics;
     if (before && !(row[0] > before->front()))
         diagnostics.push_back({0, "is not after the line before; times must increase"});
-    const double length = glm::length(orientationOf(row));
+    const double length = glm::length(glm::dquat(row[4], row[5], row[6], row[7]));  // in any order
     if (!(length >= shortest_quaternion) || !std::isfinite(length))
         diagnostics.push_back({4, "starts a quaternion of no usable length; it must be about 1"});
     return diagnostics;
@@ -197,16 +232,21 @@ double Trajectory::inLoop(double time) const {
     return length > 0 && time > first ? first + std::fmod(time - first, length) : time;
 }
 
-Trajectory Trajectory::fromCsv(const std::filesystem::path& file, bool smooth, const TrajectoryTimes& times) {
-    static const std::vector<types::CsvColumn> columns{{"time"}, {"x"}, {"y"}, {"z"}, {"qw"}, {"qx"}, {"qy"}, {"qz"}};
+Trajectory Trajectory::fromFile(const std::filesystem::path& file, bool smooth, const TrajectoryTimes& times) {
+    Form form = Form::Csv;
+    const auto recognise = [&](std::string_view text) { return tableOf(form = formOf(text)); };
     std::vector<Stamp> stamps;
     size_t odd_lengths = 0;
-    for (const std::vector<double>& row : types::readCsv(file, columns, 1, evaluate)) {
-        const glm::dquat orientation = orientationOf(row);
+    for (const std::vector<double>& row : types::readTable(file, recognise, 1, evaluate)) {
+        const glm::dquat orientation =
+            form == Form::Tum ? glm::dquat(row[7], row[4], row[5], row[6]) : glm::dquat(row[4], row[5], row[6], row[7]);
         odd_lengths += types::isOddlyLong(orientation);
         stamps.push_back({row[0], {row[1], row[2], row[3]}, orientation / glm::length(orientation)});
     }
-    Trajectory trajectory(stamps, smooth, times);
+    TrajectoryTimes of_form = times;
+    if (form != Form::Csv && !times.time_unit)
+        of_form.time_unit = form == Form::Euroc ? TimeUnit::Nanoseconds : TimeUnit::Seconds;
+    Trajectory trajectory(stamps, smooth, of_form);
     trajectory.odd_lengths_ = odd_lengths;
     return trajectory;
 }

@@ -78,7 +78,9 @@ struct TrajectoryConfig {
     TrajectoryTimes times = {};
 
     static void describe(auto& self, auto& visit) {
-        visit({"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz in [s] or time_unit, [m], [1]"}, self.file);
+        visit({"file", "",
+               "CSV with header time,x,y,z,qw,qx,qy,qz in [s] or time_unit, [m], [1]; or a file of TUM or EuRoC"},
+              self.file);
         visit({"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
         TrajectoryTimes::describe(self.times, visit);
         visit({"loop", "", "whether the trajectory restarts at its first stamp after the last; else it ends there"},
@@ -136,11 +138,14 @@ public:
     Trajectory(const std::vector<Stamp>& stamps, bool smooth, const TrajectoryTimes& times);
     explicit Trajectory(const std::vector<Waypoint>& waypoints, bool smooth = false, const TrajectoryTimes& times = {});
 
-    /** Reads a CSV with header `time,x,y,z,qw,qx,qy,qz`. Normalises quaternions and skips blank lines.
+    /** Reads a file, in the form that its content shows: CSV with header `time,x,y,z,qw,qx,qy,qz`; TUM, without a
+     * header and separated by spaces: `time x y z qx qy qz qw`; EuRoC's ground truth, whose header begins with
+     * `#timestamp`: times in ns, places, quaternions with w first, and columns that are ignored. Lines of the last two
+     * that begin with # are comments. Normalises quaternions and skips blank lines.
      *  @throws types::ConfigError with line and column of every diagnostic: a field that is missing, superfluous or not
      *  a finite number, a time that does not increase, a quaternion shorter than 1e-6. */
-    static Trajectory fromCsv(const std::filesystem::path& file, bool smooth = false,
-                              const TrajectoryTimes& times = {});
+    static Trajectory fromFile(const std::filesystem::path& file, bool smooth = false,
+                               const TrajectoryTimes& times = {});
 
     /** Returns the pose of "body" in frame "world" at `time` [s] since the start of the run. It has a velocity in the
      *  world [m/s] and an angular velocity in the body [rad/s], both zero outside the stamps. Does not set

@@ -36,7 +36,7 @@ public:
      *  length, and how many poses after the last stamp were that of the last stamp. */
     types::Notices notices() const override;
     /** Returns the trajectory of the properties, configured or not. Throws types::ConfigError as
-     *  Trajectory::fromCsv. */
+     *  Trajectory::fromFile. */
     Trajectory trajectory() const;
     /** Returns the time of the last of several stamps [s]; infinite for a loop, 0 for a fixed pose and before the task
      * is configured. */

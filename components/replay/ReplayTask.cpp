@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "components/framework/Activity.hpp"
 #include "components/log/Reader.hpp"
@@ -10,21 +11,31 @@
 namespace insonify::replay {
 namespace {
 
-/** Returns a warning of the longest time without samples, if it is longer than an hour, as after stamps of another
- *  clock. */
-std::string gapText(const std::vector<log::SampleRef>& samples, const log::LoggerClock& clock) {
-    constexpr double long_gap = 3600;  // [s]
-    types::Time before, gap, after;    // since the first sample
+/** Returns a warning of the longest time without samples of the streams that are played, if it is longer than an hour,
+ *  as after stamps of another clock. */
+std::string gapText(const std::vector<log::SampleRef>& samples, const log::LoggerClock& clock, auto&& is_played) {
+    constexpr double long_gap = 3600;   // [s]
+    std::optional<types::Time> before;  // since the first sample
+    types::Time gap, after;
     for (const log::SampleRef& at : samples) {
+        if (!is_played(at.stream)) continue;
         const types::Time time = clock.sinceFirst(samples, at);
-        if (time - before > gap) gap = time - before, after = time;
-        before = std::max(before, time);
+        if (!before) before = time;
+        if (time - *before > gap) gap = time - *before, after = time;
+        before = std::max(*before, time);
     }
     if (!(gap.seconds() > long_gap)) return "";
     return fmt::format(
         "the log has no sample for {:.6g} s (its stamps may be of two clocks), which its replay waits for; from: "
         "{:.6f} begins behind it, and pace: 0 does not wait",
         gap.seconds(), after.seconds());
+}
+
+/** Whether poses are made from this stream. */
+bool isSourceOf(const log::PoseSource& poses, const log::Stream& stream) {
+    const bool has_frames = stream.message == "tf2_msgs/msg/TFMessage";
+    return poses.source == stream.name || poses.source == stream.topic ||
+           (has_frames && poses.source.find("->") != std::string::npos);
 }
 
 /** Whether a stream has Rock's beams or scans, which are also pings. */
@@ -37,6 +48,7 @@ void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::
     if constexpr (std::is_same_v<T, typename Output::Carried>) {
         T& sample = output.kept.sample;
         log.read(at, sample);
+        if constexpr (std::is_same_v<T, types::Pose>) sample.time = types::sampleTime(sample, at.time);
         moveStamps(sample, shift);
         output.port.write(sample);
     } else {
@@ -52,13 +64,21 @@ void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::
 
 }  // namespace
 
+std::pair<std::unique_ptr<log::Reader>, types::Notices> ReplayTask::opened() const {
+    auto log = log::openLog(inputPath(config->file), log::AtDamage::Stop, config->world_frame);
+    types::Notices notices;
+    for (const log::PoseSource& source : config->poses)
+        for (types::Notice& notice : log::addPoses(*log, source, config->world_frame))
+            notices.push_back(std::move(notice));
+    return {std::move(log), std::move(notices)};
+}
+
 void ReplayTask::open() {
     if (log_) return;
-    log_ = log::openLog(inputPath(config->file));
+    std::tie(log_, pose_notices_) = opened();
     by_stream_.resize(log_->streams().size());
     clock_ = log::LoggerClock(log_->samples());
     span_s_ = clock_.span(log_->samples()).seconds();
-    gap_text_ = gapText(log_->samples(), clock_);
 }
 
 std::optional<types::Playback> ReplayTask::playback() const {
@@ -84,7 +104,7 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
 
 void ReplayTask::check(types::Diagnostics& diagnostics) const {
     try {
-        const auto log = log::openLog(inputPath(config->file));
+        const auto log = opened().first;
         const double span = log::LoggerClock(log->samples()).span(log->samples()).seconds();
         if (config->from > span)
             diagnostics.push_back(
@@ -97,13 +117,15 @@ void ReplayTask::check(types::Diagnostics& diagnostics) const {
 
 types::Notices ReplayTask::notices() const {
     if (!log_) return {};
-    types::Notices notices;
+    types::Notices notices = pose_notices_;
     if (!gap_text_.empty()) notices.push_back(types::warning(gap_text_));
     if (!log_->complete())
         notices.push_back(log_->path().string() + ": " + log_->diagnostic() + "; played up to there");
     for (size_t i = 0; i < by_stream_.size(); ++i) {
         const log::Stream& stream = log_->streams()[i];
-        if (!by_stream_[i]) notices.push_back("stream " + stream.name + " (" + stream.type + ") is not replayed");
+        const auto is_source = [&](const log::PoseSource& poses) { return isSourceOf(poses, stream); };
+        if (!by_stream_[i] && stream.count > 0 && std::ranges::none_of(config->poses, is_source))
+            notices.push_back("stream " + stream.name + " (" + stream.type + ") is not replayed");
     }
     return notices;
 }
@@ -193,6 +215,7 @@ std::string ReplayTask::modelOf(const std::string& port) const {
 
 bool ReplayTask::configureHook() {
     open();
+    gap_text_ = gapText(log_->samples(), clock_, [&](size_t stream) { return by_stream_[stream] != nullptr; });
     // Lockstep calls nextTime(); the wall clock needs a period.
     if (!environment().lockstep && !activity().settings().periodic()) {
         framework::ActivitySettings settings = activity().settings();

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "components/framework/DynamicPorts.hpp"
@@ -15,6 +16,7 @@
 #include "components/framework/StreamNames.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/log/LoggerClock.hpp"
+#include "components/log/PoseSources.hpp"
 #include "components/log/Reader.hpp"
 #include "types/Describe.hpp"
 
@@ -25,9 +27,12 @@ struct ReplayConfig {
     double pace = 1;
     double from = 0;
     bool loop = false;
+    std::vector<log::PoseSource> poses = {};
+    types::WorldFrame world_frame = types::WorldFrame::Enu;
 
     static void describe(auto& self, auto& visit) {
-        visit({"file", "", "pocolog or MCAP file, relative to the deployment"}, self.file);
+        visit({"file", "", "pocolog, MCAP or .db3 file, or the folder of a bag, relative to the deployment"},
+              self.file);
         visit({"pace", "1",
                "recorded seconds per second of the wall clock; 0: one instant of the log each cycle; without "
                "effect in lockstep, where simulated time follows the log",
@@ -36,18 +41,21 @@ struct ReplayConfig {
         visit({"from", "s", "start of the replay, after the log's first stamp", 0, 1e10}, self.from);
         visit({"loop", "", "repeats the log from `from` on, with shifted stamps: time never runs backwards"},
               self.loop);
+        visit({"poses", "", "streams of poses that are made from others of the log: from topics, frames of tf, fixes"},
+              self.poses);
+        visit({"world_frame", "", "axes of poses in messages of other programs; ROS has ENU"}, self.world_frame);
     }
 };
 
 /** Publishes a log's streams, sample by sample in the order of the file: a source.
  *
  *  Ports: an output for each connection that names a stream of the log, as in `replay.sonar.ping`. Samples keep their
- *  recorded values and stamps; Rock's older beams and scans become pings. A logger keeps the streams' recorded names. A
- *  sample is due at its world time, or with its predecessor in the file if that is later. Where the logger's clock was
- *  set back, time continues: see log::LoggerClock. `from`, `seek` and the position in the log are of that time. In
- *  lockstep, simulated time starts at the first sample and advances from one sample to the next. In realtime the task
- *  keeps `pace`, checking every millisecond unless its activity has a period. All tasks of the deployment then read the
- *  log's time, at that pace, instead of the wall clock.
+ *  recorded values and stamps; Rock's older beams and scans become pings. `poses` adds streams, see log::addPoses. A
+ * logger keeps the streams' recorded names. A sample is due at its world time, or with its predecessor in the file if
+ * that is later. Where the logger's clock was set back, time continues: see log::LoggerClock. `from`, `seek` and the
+ * position in the log are of that time. In lockstep, simulated time starts at the first sample and advances from one
+ * sample to the next. In realtime the task keeps `pace`, checking every millisecond unless its activity has a period.
+ * All tasks of the deployment then read the log's time, at that pace, instead of the wall clock.
  *
  *  In realtime the log's time can be paused and stepped; in lockstep the deployment's time can.
  *
@@ -99,6 +107,8 @@ private:
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
+    /** Returns the log with the streams of `poses`, and what there is to say of these. Throws ConfigError. */
+    std::pair<std::unique_ptr<log::Reader>, types::Notices> opened() const;
     void open();
     void rewind();
     /** Jumps to this time after the log's first stamp [s]; throws outside of the log. */
@@ -118,6 +128,7 @@ private:
     types::Time due();
 
     std::unique_ptr<log::Reader> log_;
+    types::Notices pose_notices_;
     std::string gap_text_;  ///< Warning of a long gap between two samples; empty: there is none.
     log::LoggerClock clock_;
     Outputs outputs_{this};

@@ -130,6 +130,19 @@ struct PoseWithCovariance {
     }
 };
 
+struct PoseWithCovarianceStamped {
+    static constexpr const char* type_name = "geometry_msgs/msg/PoseWithCovarianceStamped";
+    static constexpr const char* type_hash = "RIHS01_26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e";
+    Header header;
+    PoseWithCovariance pose;
+
+    friend bool operator==(const PoseWithCovarianceStamped&, const PoseWithCovarianceStamped&) = default;
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"pose"}, self.pose);
+    }
+};
+
 struct Twist {
     static constexpr const char* type_name = "geometry_msgs/msg/Twist";
     static constexpr const char* type_hash = "RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a";
@@ -519,6 +532,49 @@ struct Imu {
         visit({"angular_velocity_covariance", "rad^2/s^2"}, self.angular_velocity_covariance);
         visit({"linear_acceleration", "m/s^2", "specific force, in the unit"}, self.linear_acceleration);
         visit({"linear_acceleration_covariance", "m^2/s^4"}, self.linear_acceleration_covariance);
+    }
+};
+
+struct NavSatStatus {
+    static constexpr const char* type_name = "sensor_msgs/msg/NavSatStatus";
+    static constexpr const char* type_hash = "RIHS01_d1ed3befa628e09571bd273b888ba1c1fd187c9a5e0006b385d7e5e9095a3204";
+    static constexpr const char* constants =
+        "int8 STATUS_UNKNOWN=-2\nint8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\n"
+        "int8 STATUS_GBAS_FIX=2\nuint16 SERVICE_UNKNOWN=0\nuint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\n"
+        "uint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\n";
+    static constexpr int8_t no_fix = -1, fix = 0;
+    int8_t status = fix;
+    uint16_t service = 0;
+
+    friend bool operator==(const NavSatStatus&, const NavSatStatus&) = default;
+    static void describe(auto& self, auto& visit) {
+        visit({"status", "1", "-1: no fix"}, self.status);
+        visit({"service", "1", "satellites used, as bits"}, self.service);
+    }
+};
+
+/** A place on the ellipsoid of WGS 84. */
+struct NavSatFix {
+    static constexpr const char* type_name = "sensor_msgs/msg/NavSatFix";
+    static constexpr const char* type_hash = "RIHS01_62223ab3fe210a15976021da7afddc9e200dc9ec75231c1b6a557fc598a65404";
+    static constexpr const char* constants =
+        "uint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
+        "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\n";
+    Header header;
+    NavSatStatus status;
+    double latitude = 0, longitude = 0, altitude = 0;
+    std::array<double, 9> position_covariance{};
+    uint8_t position_covariance_type = 0;
+
+    friend bool operator==(const NavSatFix&, const NavSatFix&) = default;
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"status"}, self.status);
+        visit({"latitude", "deg", "positive north"}, self.latitude);
+        visit({"longitude", "deg", "positive east"}, self.longitude);
+        visit({"altitude", "m", "above the ellipsoid; NaN: unknown"}, self.altitude);
+        visit({"position_covariance", "m^2", "east, north and up, by rows"}, self.position_covariance);
+        visit({"position_covariance_type", "1", "one of the constants"}, self.position_covariance_type);
     }
 };
 

@@ -109,6 +109,19 @@ void fillPose(const types::Pose& pose, Axes axes, Header& header, Pose& message)
     message.orientation = {q.x, q.y, q.z, q.w};
 }
 
+void fillCovariance(const types::Pose& pose, Axes axes, Covariance& all) {
+    const glm::dquat rock_from_body = glm::normalize(pose.orientation);
+    setBlock(0, true, both(pose.cov_position, [&](glm::dvec3 v) { return axes.worldFromRock(v); }), all);
+    setBlock(1, true, both(pose.cov_orientation, [&](glm::dvec3 v) { return axes.worldFromRock(rock_from_body * v); }),
+             all);
+}
+
+void readCovariance(const Covariance& all, Axes axes, types::Pose& pose) {
+    const glm::dquat body_from_rock = glm::inverse(glm::normalize(pose.orientation));
+    pose.cov_position = both(blockOf(0, all), [&](glm::dvec3 v) { return axes.rockFromWorld(v); });
+    pose.cov_orientation = both(blockOf(1, all), [&](glm::dvec3 v) { return body_from_rock * axes.rockFromWorld(v); });
+}
+
 void readPose(const Header& header, const Pose& message, Axes axes, types::Pose& pose) {
     pose.time = fromRos(header.stamp);
     pose.target_frame = header.frame_id;
@@ -220,6 +233,11 @@ void convert(const types::Pose& pose, WorldFrame frame, PoseStamped& message) {
     fillPose(pose, {frame}, message.header, message.pose);
 }
 
+void convert(const types::Pose& pose, WorldFrame frame, PoseWithCovarianceStamped& message) {
+    fillPose(pose, {frame}, message.header, message.pose.pose);
+    fillCovariance(pose, {frame}, message.pose.covariance);
+}
+
 void convert(const types::Pose& pose, WorldFrame frame, TFMessage& message) {
     message.transforms.resize(1);
     TransformStamped& stamped = message.transforms[0];
@@ -243,13 +261,10 @@ void convert(const types::Pose& pose, WorldFrame frame, Odometry& message) {
     const Axes axes{frame};
     fillPose(pose, axes, message.header, message.pose.pose);
     message.child_frame_id = pose.source_frame;
-    const glm::dquat rock_from_body = glm::normalize(pose.orientation), body_from_rock = glm::inverse(rock_from_body);
+    const glm::dquat body_from_rock = glm::inverse(glm::normalize(pose.orientation));
     const auto body = [&](glm::dvec3 v) { return axes.body(v); };
-    const auto world = [&](glm::dvec3 v) { return axes.worldFromRock(v); };
     const auto to_body = [&](glm::dvec3 v) { return axes.body(body_from_rock * v); };
-    const auto to_world = [&](glm::dvec3 v) { return axes.worldFromRock(rock_from_body * v); };
-    setBlock(0, true, both(pose.cov_position, world), message.pose.covariance);
-    setBlock(1, true, both(pose.cov_orientation, to_world), message.pose.covariance);
+    fillCovariance(pose, axes, message.pose.covariance);
     message.twist.twist.linear = known<Vector3>(to_body(pose.velocity));
     message.twist.twist.angular = known<Vector3>(body(pose.angular_velocity));
     setBlock(0, !isUnknown(pose.velocity), both(pose.cov_velocity, to_body), message.twist.covariance);
@@ -261,17 +276,21 @@ void convert(const PoseStamped& message, WorldFrame frame, types::Pose& pose) {
     readPose(message.header, message.pose, {frame}, pose);
 }
 
+void convert(const PoseWithCovarianceStamped& message, WorldFrame frame, types::Pose& pose) {
+    pose = {};
+    readPose(message.header, message.pose.pose, {frame}, pose);
+    readCovariance(message.pose.covariance, {frame}, pose);
+}
+
 void convert(const Odometry& message, WorldFrame frame, types::Pose& pose) {
     const Axes axes{frame};
     readPose(message.header, message.pose.pose, axes, pose);
     pose.source_frame = message.child_frame_id;
-    const glm::dquat rock_from_body = glm::normalize(pose.orientation), body_from_rock = glm::inverse(rock_from_body);
+    const glm::dquat rock_from_body = glm::normalize(pose.orientation);
     const auto body = [&](glm::dvec3 v) { return axes.body(v); };
     const auto from_body = [&](glm::dvec3 v) { return rock_from_body * axes.body(v); };
-    const auto from_world = [&](glm::dvec3 v) { return body_from_rock * axes.rockFromWorld(v); };
-    const Covariance &of_pose = message.pose.covariance, &of_twist = message.twist.covariance;
-    pose.cov_position = both(blockOf(0, of_pose), [&](glm::dvec3 v) { return axes.rockFromWorld(v); });
-    pose.cov_orientation = both(blockOf(1, of_pose), from_world);
+    const Covariance& of_twist = message.twist.covariance;
+    readCovariance(message.pose.covariance, axes, pose);
     pose.velocity = from_body(valueOf(0, message.twist.twist.linear, of_twist));
     pose.angular_velocity = body(valueOf(1, message.twist.twist.angular, of_twist));
     pose.cov_velocity = both(blockOf(0, of_twist), from_body);

@@ -49,6 +49,7 @@ glm::dvec3 rockFromWorld(WorldFrame frame, glm::dvec3 v);
  *  covariance, as in sensor_msgs/Imu; an unknown covariance becomes zeros. All throw std::out_of_range for a time that
  *  ROS cannot represent. */
 void convert(const types::Pose& pose, WorldFrame frame, PoseStamped& message);
+void convert(const types::Pose& pose, WorldFrame frame, PoseWithCovarianceStamped& message);
 void convert(const types::Pose& pose, WorldFrame frame, Odometry& message);
 /** Writes one transform: from the body to the world. */
 void convert(const types::Pose& pose, WorldFrame frame, TFMessage& message);
@@ -58,6 +59,7 @@ Transform toTransform(const types::Mount& mount, WorldFrame frame, SensorFrame a
 
 /** Converts back. Values that the message lacks are unknown. */
 void convert(const PoseStamped& message, WorldFrame frame, types::Pose& pose);
+void convert(const PoseWithCovarianceStamped& message, WorldFrame frame, types::Pose& pose);
 void convert(const Odometry& message, WorldFrame frame, types::Pose& pose);
 
 // Helpers for poses and readings: unknown values, and covariances in other axes.

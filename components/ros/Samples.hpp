@@ -75,10 +75,10 @@ struct String {
 
 using MessageTypes =
     std::tuple<Bool, Int32, Int64, Float32, Float64, String, Time, Header, Clock, Vector3, Point, Quaternion, Pose,
-               PoseStamped, PoseWithCovariance, Twist, TwistWithCovariance, Odometry, Transform, TransformStamped,
-               TFMessage, Image, LaserScan, PointField, PointCloud2, Range, PingInfo, SonarImageData,
-               ProjectedSonarImage, RawSonarImage, DetectionFlag, SonarRanges, SonarTruth, SonarReturns, SonarElements,
-               SonarSettings, Imu, FluidPressure, Dvl>;
+               PoseStamped, PoseWithCovariance, PoseWithCovarianceStamped, Twist, TwistWithCovariance, Odometry,
+               Transform, TransformStamped, TFMessage, Image, LaserScan, PointField, PointCloud2, Range, PingInfo,
+               SonarImageData, ProjectedSonarImage, RawSonarImage, DetectionFlag, SonarRanges, SonarTruth, SonarReturns,
+               SonarElements, SonarSettings, Imu, FluidPressure, NavSatStatus, NavSatFix, Dvl>;
 
 /** Calls `use(std::type_identity<T>{})` for each message. */
 void forEachMessage(auto&& use) {
@@ -113,7 +113,8 @@ struct MessagesOf<types::SonarElements> : Messages<types::SonarElements, SonarEl
 template <>
 struct MessagesOf<types::SonarSettings> : Messages<types::SonarSettings, SonarSettings, Clock> {};
 template <>
-struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, TFMessage, Clock> {};
+struct MessagesOf<types::Pose>
+    : Messages<types::Pose, Odometry, PoseStamped, PoseWithCovarianceStamped, TFMessage, Clock> {};
 template <>
 struct MessagesOf<types::Image> : Messages<types::Image, Image, Clock> {};
 template <>

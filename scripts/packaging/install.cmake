@@ -77,7 +77,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries of Insonify, to 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "insonify (= ${PROJECT_VERSION}), libfmt-dev, libglm-dev, libyaml-cpp-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
-  "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libprotobuf-dev, libsdformat-dev, libsnappy-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzmq3-dev, libzstd-dev, zlib1g-dev")
+  "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, libgeographiclib-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libprotobuf-dev, libsdformat-dev, libsnappy-dev, libsqlite3-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzmq3-dev, libzstd-dev, zlib1g-dev")
 # Contents of the packages.
 add_custom_target(insonify_packages DEPENDS insonify insonify_man ${installed} ${components})
 include(CPack)

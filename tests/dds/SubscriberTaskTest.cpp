@@ -34,11 +34,13 @@ void meet(Publishing<types::Pose>& publishing, Subscribing& subscribing, const t
 
 TEST_F(SubscriberTaskTest, APoseReturnsUnchangedInAnyFrame) {
     for (const auto frame : {ros::WorldFrame::AsIs, ros::WorldFrame::Enu, ros::WorldFrame::Ned})
-        for (const auto type : {PoseType::Odometry, PoseType::PoseStamped}) {
+        for (const auto& [type, message] :
+             {std::pair(PoseType::Odometry, message_type<ros::Odometry>),
+              std::pair(PoseType::PoseStamped, message_type<ros::PoseStamped>),
+              std::pair(PoseType::PoseWithCovarianceStamped, message_type<ros::PoseWithCovarianceStamped>)}) {
             const bool whole = type == PoseType::Odometry;
-            Publishing<types::Pose> publishing(
-                {topicOut("in", "/there", whole ? message_type<ros::Odometry> : message_type<ros::PoseStamped>)},
-                [&](PublisherConfig& config) { config.node.world_frame = frame; });
+            Publishing<types::Pose> publishing({topicOut("in", "/there", message)},
+                                               [&](PublisherConfig& config) { config.node.world_frame = frame; });
             Subscribing subscribing("/there", type, [&](SubscriberConfig& config) { config.node.world_frame = frame; });
             const types::Pose sent = somewhere(1);
             publishing.send(sent);

@@ -1,11 +1,44 @@
 #include <gmock/gmock.h>
 
+#include "components/ros/Stamps.hpp"
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Bag.hpp"
 
 using namespace insonify::deployer;
+using testing::AllOf;
 using testing::HasSubstr;
 
 namespace {
+
+/** Odometry, and transforms if wanted, of a body that comes 1 m nearer to the wall in each second, from 10 m. */
+insonify::test::Bag approach(bool with_transforms) {
+    insonify::test::Bag bag;
+    for (int i = 0; i < 5; ++i) {
+        const insonify::ros::Time stamp{1'700'000'000 + i, 0};
+        insonify::ros::Odometry odometry;
+        odometry.header = {stamp, "odom"};
+        odometry.child_frame_id = "base_link";
+        odometry.pose.pose.position.y = i;
+        odometry.pose.pose.orientation = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};  // bow to the north
+        const insonify::types::Time received = insonify::ros::fromRos(stamp) + insonify::types::Time{20'000};
+        bag.add("/odom", received, odometry);
+        if (!with_transforms) continue;
+        insonify::ros::TransformStamped transform{{stamp, "odom"}, "base_link", {}};
+        transform.transform.translation.y = i;
+        transform.transform.rotation = odometry.pose.pose.orientation;
+        bag.add("/tf", received, insonify::ros::TFMessage{{transform}});
+    }
+    return bag;
+}
+
+/** Returns the range of the strongest bin of the middle beam of each ping [m]. */
+std::string wallRanges(const TestFolder& folder, const std::string& log) {
+    callInsonify(folder, {"log", "export", log, "--stream", "sonar.ping", "--to", "pings.npz"});
+    return python(folder,
+                  "import numpy\na = numpy.load('pings.npz')\nprint([round(float(r)) for r in "
+                  "a['range_m'].ravel()[a['bins'][:, 8].argmax(1)]])")
+        .out;
+}
 
 json infoOf(const TestFolder& folder, const std::string& log) {
     return json::parse(callInsonify(folder, {"log", "info", log, "--json"}).out);
@@ -44,6 +77,58 @@ TEST(ReplayCommandTest, LoggedPosesGiveTheSamePings) {
                      "print(all((a[k] == b[k]).all() for k in a))")
                   .out,
               "True\n");
+}
+
+TEST(ReplayCommandTest, TheOnlyPosesOfAForeignBagDriveTheSonar) {
+    const WallFolder folder;
+    approach(false).writeMcap(folder / "bag.mcap");
+    ASSERT_EQ(approach(false).writeDb3(folder / "bag.db3"), "");
+    for (const std::string bag : {"bag.mcap", "bag.db3"}) {
+        const Outcome outcome = callInsonify(folder, {"replay", bag, "wall.yml", "--out", "again"});
+        ASSERT_THAT(outcome, succeeds());
+        EXPECT_THAT(
+            outcome.err,
+            HasSubstr("notice: the poses are those of /odom (nav_msgs/msg/Odometry, odom -> base_link, 5 in 4 s)"));
+        EXPECT_EQ(wallRanges(folder, "again/wall.0.log"), "[10, 9, 8, 7, 6]\n") << bag;
+    }
+}
+
+TEST(ReplayCommandTest, OneOfSeveralSourcesOfPosesIsChosen) {
+    const WallFolder folder;
+    approach(true).writeMcap(folder / "bag.mcap");
+    EXPECT_THAT(
+        callInsonify(folder, {"replay", "bag.mcap", "wall.yml", "--out", "again"}),
+        isRefused(AllOf(HasSubstr("bag.mcap: --pose: is missing"), HasSubstr("--pose '/odom' (nav_msgs/msg/Odometry"),
+                        HasSubstr("--pose 'odom->base_link' (tf2_msgs/msg/TFMessage, 5 in 4 s)"))));
+    for (const char* source : {"/odom", "odom->base_link", "odom=vehicle.pose"}) {
+        ASSERT_THAT(
+            callInsonify(folder, {"replay", "bag.mcap", "wall.yml", "--rerender", "--pose", source, "--out", "again"}),
+            succeeds());
+        EXPECT_EQ(wallRanges(folder, "again/wall.0.log"), "[10, 9, 8, 7, 6]\n") << source;
+    }
+    const auto refusal = [&](const std::string& pose) {
+        return callInsonify(folder, {"replay", "bag.mcap", "wall.yml", "--pose", pose, "--out", "again"});
+    };
+    EXPECT_THAT(refusal("/odm"), isRefused(HasSubstr("did you mean /odom? there are: /odom (")));
+    EXPECT_THAT(refusal("/odom=diver.pose"),
+                isRefused(HasSubstr("the deployment takes poses from vehicle.pose: give --pose SOURCE=vehicle.pose")));
+}
+
+TEST(ReplayCommandTest, WithoutADeploymentTheSourcesOfPosesAreListed) {
+    const WallFolder folder;
+    approach(true).writeMcap(folder / "bag.mcap");
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"replay", "bag.mcap"}, {"log", "info", "bag.mcap"}})
+        EXPECT_THAT(
+            callInsonify(folder, command),
+            prints(AllOf(testing::ContainsRegex("/odom +nav_msgs/msg/Odometry +odom -> base_link +5 "),
+                         testing::ContainsRegex("odom->base_link +tf2_msgs/msg/TFMessage +odom -> base_link +5 "))));
+    const json poses = infoOf(folder, "bag.mcap")["poses"];
+    ASSERT_EQ(poses.size(), 2u);
+    EXPECT_EQ(poses[1]["source"], "odom->base_link");
+    ASSERT_EQ(folder.run().code, 0);
+    EXPECT_THAT(callInsonify(folder, {"log", "info", "out/wall.0.log"}).out,
+                testing::Not(HasSubstr("could be the poses")));
 }
 
 TEST(ReplayCommandTest, StreamsThatMatchNothingAreListed) {

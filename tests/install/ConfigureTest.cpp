@@ -29,6 +29,7 @@ const std::vector<Package> packages = {
     {"CycloneDDS", "CycloneDDS 0.10 (cyclonedds-dev)", {"insonify_dds", "dds_test", "dds_bench"}},
     {"fastrtps", "", {"dds_fast_peer"}},
     {"GDAL", "GDAL (libgdal-dev)", {"insonify_survey", "survey_test"}},
+    {"geographiclib", "GeographicLib (libgeographiclib-dev)", {}},
     {"GTest", "GTest::gmock", {"acoustics_test", "framework_bench"}},
     {"ignition-msgs8", "ignition-msgs8", {}},
     {"ignition-transport11", "ignition-transport11", {}},
@@ -37,6 +38,7 @@ const std::vector<Package> packages = {
     {"Protobuf", "Protobuf (libprotobuf-dev)", {"insonify_gazebo", "gazebo_test"}},
     {"sdformat12", "sdformat12 (libsdformat-dev)", {"insonify_sdf", "sdf_test", "meshes_test"}},
     {"Snappy", "Snappy (libsnappy-dev)", {"insonify_device", "device_test", "fuzz_test", "mavlink_test", "nav_test"}},
+    {"sqlite3", "SQLite (libsqlite3-dev)", {}},
     {"tinyxml2", "tinyxml2 (libtinyxml2-dev)", {"insonify_sdf", "sdf_test"}},
     {"libzmq", "ZeroMQ (libzmq3-dev)", {"insonify_gazebo", "gazebo_test"}},
 };

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <random>
 
 #include "components/pose/Trajectory.hpp"
 #include "tests/support/Folder.hpp"
@@ -32,7 +33,7 @@ public:
 types::Diagnostics diagnosticsOf(const std::string& text) {
     const TextFile file(text);
     try {
-        Trajectory::fromCsv(file.path);
+        Trajectory::fromFile(file.path);
     } catch (const types::ConfigError& error) {
         return error.diagnostics();
     }
@@ -152,7 +153,7 @@ TEST(TrajectoryTest, RejectsStampsThatDoNotIncrease) {
 
 TEST(TrajectoryTest, AFileWithCarriageReturnsBlankLinesAndByteOrderMarkIsRead) {
     const TextFile file("\xEF\xBB\xBFtime,x,y,z,qw,qx,qy,qz\r\n0,1,2,3,1,0,0,0\r\n\r\n 1.5 ,4,5,6e0,0,0,0,-1");
-    const Trajectory path = Trajectory::fromCsv(file.path);
+    const Trajectory path = Trajectory::fromFile(file.path);
     ASSERT_EQ(path.stamps().size(), 2u);
     EXPECT_EQ(path.stamps()[1].time, 1.5);
     EXPECT_EQ(path.stamps()[1].position, glm::dvec3(4, 5, 6));
@@ -160,7 +161,7 @@ TEST(TrajectoryTest, AFileWithCarriageReturnsBlankLinesAndByteOrderMarkIsRead) {
 
 TEST(TrajectoryTest, AQuaternionThatIsNotQuiteUnitIsNormalised) {
     const TextFile file(header + "0,0,0,0,1.001,0,0,0\n1,0,0,0,0,0,0,2e-6\n");
-    const Trajectory path = Trajectory::fromCsv(file.path);
+    const Trajectory path = Trajectory::fromFile(file.path);
     EXPECT_NEAR(path.stamps()[0].orientation.w, 1, tiny);
     EXPECT_NEAR(path.stamps()[1].orientation.z, 1, tiny);
 }
@@ -195,9 +196,87 @@ TEST(TrajectoryTest, RejectsAFileWithoutHeaderStampsOrContent) {
         EXPECT_EQ(diagnosticsOf(text).size(), 1u) << text;
 }
 
+std::string lineOf(std::vector<double> values, const char* separator) {
+    std::string line;
+    char number[40];
+    for (const double value : values) {
+        std::snprintf(number, sizeof number, "%.17g", value);
+        line += (line.empty() ? "" : separator) + std::string(number);
+    }
+    return line;
+}
+
+TEST(TrajectoryTest, FilesOfTumAndEurocHaveThePosesOfTheCsv) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> any(-50, 50), step(0.01, 2);
+    for (int round = 0; round < 20; ++round) {
+        std::string csv = header, tum = "# ground truth\n# timestamp tx ty tz qx qy qz qw\n",
+                    euroc =
+                        "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+                        "q_RS_z [], v_RS_R_x [m s^-1], b_w_RS_S_x [rad s^-1]\r\n";
+        int64_t ns = 1'403'636'580'838'555'648;
+        for (int i = 0; i < 30; ++i) {
+            ns += std::llround(step(random) * 1e9);
+            const double s = static_cast<double>(ns) * 1e-9;
+            const glm::dvec3 p(any(random), any(random), any(random));
+            const glm::dquat q = glm::normalize(glm::dquat(any(random), any(random), any(random), any(random)));
+            csv += lineOf({s, p.x, p.y, p.z, q.w, q.x, q.y, q.z}, ",") + "\n";
+            tum += lineOf({s, p.x, p.y, p.z, q.x, q.y, q.z, q.w}, i % 2 ? " " : "  \t") + (i % 3 ? "\n" : " \r\n");
+            euroc += std::to_string(ns) + "," + lineOf({p.x, p.y, p.z, q.w, q.x, q.y, q.z, 9, 9}, ",") + "\r\n";
+            if (i == 10) tum += "\n# a gap\n", euroc += "#\n";
+        }
+        const TrajectoryTimes from_first{.start = TrajectoryStart::FirstPose};
+        const auto read = [&](const std::string& text) {
+            const TextFile file(text);
+            return Trajectory::fromFile(file.path, false, from_first);
+        };
+        const Trajectory wanted = read(csv);
+        EXPECT_EQ(read(euroc).timeUnit(), TimeUnit::Nanoseconds);
+        for (const Trajectory& other : {read(tum), read(euroc)}) {
+            ASSERT_EQ(other.stamps().size(), 30u);
+            for (size_t i = 0; i < 30; ++i) {
+                EXPECT_NEAR(other.stamps()[i].time, wanted.stamps()[i].time, 1e-6);
+                EXPECT_EQ(other.stamps()[i].position, wanted.stamps()[i].position);
+                EXPECT_GT(glm::dot(other.stamps()[i].orientation, wanted.stamps()[i].orientation), 1 - tiny);
+            }
+        }
+    }
+}
+
+TEST(TrajectoryTest, WrongFilesOfTumAndEurocAreRefusedWithLineAndColumn) {
+    struct Wrong {
+        std::string text;
+        int line, column;
+        const char* message;
+    };
+    const std::string euroc =
+        "#timestamp,p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
+    for (const auto& [text, line, column, message] :
+         std::vector<Wrong>{{"# t\n1 0 0 0 0 0 0\n", 2, 14, "is missing; a line has 8 fields"},
+                            {"# t\n1 0 0 0 0 0 0 1 5\n", 2, 17, "too many fields"},
+                            {"1 0 0 0 0 0 0 1\n2 0 0 x 0 0 0 1\n", 2, 7, "'x'"},
+                            {"1 0 0 0 0 0 0 1\n\n1 0 0 0 0 0 0 1\n", 3, 1, "times must increase"},
+                            {"1 0 0 0 0 0 0 0\n", 1, 9, "no usable length"},
+                            {"# nothing\n", 1, 0, "has 0 lines of numbers"},
+                            {euroc, 1, 0, "has 0 lines after its header"},
+                            {euroc + "1,0,0,0,1,0,0\n", 2, 14, "is missing"},
+                            {euroc + "1,0,0,inf,1,0,0,0\n", 2, 7, "'inf'"},
+                            {"#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1]\n1,2,3\n", 1, 1,
+                             "the header must begin with #timestamp,p_RS"},
+                            {"0,0,0,0,1,0,0,0\n", 1, 1, "the header must be time,"}}) {
+        const types::Diagnostics diagnostics = diagnosticsOf(text);
+        ASSERT_EQ(diagnostics.size(), 1u) << text;
+        EXPECT_EQ(diagnostics[0].line, line) << text;
+        if (column > 0) {
+            EXPECT_EQ(diagnostics[0].column, column) << text;
+        }
+        EXPECT_THAT(diagnostics[0].message, HasSubstr(message)) << text;
+    }
+}
+
 TEST(TrajectoryTest, RejectsAFolderAndAMissingFile) {
-    EXPECT_THROW(Trajectory::fromCsv(std::filesystem::temp_directory_path()), types::ConfigError);
-    EXPECT_THROW(Trajectory::fromCsv("no/such/file.csv"), types::ConfigError);
+    EXPECT_THROW(Trajectory::fromFile(std::filesystem::temp_directory_path()), types::ConfigError);
+    EXPECT_THROW(Trajectory::fromFile("no/such/file.csv"), types::ConfigError);
 }
 
 TEST(TrajectoryTest, AHundredDiagnosticsAreEnough) {

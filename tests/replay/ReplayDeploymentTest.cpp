@@ -6,6 +6,7 @@
 #include "components/log/pocolog/Writer.hpp"
 #include "components/logger/LoggerTask.hpp"
 #include "components/replay/ReplayTask.hpp"
+#include "tests/support/Bag.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Refused.hpp"
 
@@ -118,6 +119,77 @@ TEST(ReplayDeploymentTest, AMissingLogIsTheOnlyDiagnostic) {
     EXPECT_THAT(test::refused([&] { runIn(folder, again); }),
                 testing::ElementsAre(testing::HasSubstr("a.0.log: cannot be read")))
         << "its streams are ports, so that connections cannot be made either";
+}
+
+/** A bag of another program: odometry and transforms of a body that moves to the east, stamped 30 ms before they
+ *  arrived. */
+test::Bag eastwards() {
+    test::Bag bag;
+    for (int i = 0; i < 10; ++i) {
+        const ros::Time stamp{1'700'000'000 + i, 0};
+        const types::Time received = ros::fromRos(stamp) + types::Time{30'000};
+        ros::Odometry odometry;
+        odometry.header = {stamp, "odom"};
+        odometry.child_frame_id = "base_link";
+        odometry.pose.pose.position.x = i;
+        bag.add("/odom", received, odometry);
+        ros::TransformStamped transform{{stamp, "odom"}, "base_link", {}};
+        transform.transform.translation.x = 2 * i;
+        bag.add("/tf", received, ros::TFMessage{{transform}});
+    }
+    return bag;
+}
+
+std::string posesFrom(const std::string& source) {
+    return "tasks:\n  replay: {type: replay::ReplayTask, properties: {file: bag.mcap, poses: [{source: \"" + source +
+           "\", stream: vehicle.pose}]}}\n  log: {type: logger::LoggerTask, properties: {file: b.0.log}}\n"
+           "connections: [{from: replay.vehicle.pose, to: log.pose, policy: {type: buffer, size: 8}}]\n";
+}
+
+TEST(ReplayDeploymentTest, PosesOfAnotherProgramsBagAreAStreamOfTheDeployment) {
+    const Folder folder;
+    eastwards().writeMcap(folder / "bag.mcap");
+    for (const auto& [source, factor] : {std::pair("/odom", 1.0), std::pair("odom->base_link", 2.0)}) {
+        SCOPED_TRACE(source);
+        EXPECT_FALSE(runIn(folder, posesFrom(source)).failed());
+        log::pocolog::Reader logged(folder / "b.0.log");
+        int i = 0;
+        logged.forEach<types::Pose>("vehicle.pose", [&](const types::Pose& pose, const log::SampleRef& at) {
+            EXPECT_EQ(pose.time, types::Time::fromSeconds(1'700'000'000 + i)) << "the stamp, not the arrival";
+            EXPECT_EQ(at.time, pose.time);
+            EXPECT_EQ(pose.position, glm::dvec3(0, -factor * i, 0)) << "east";
+            EXPECT_EQ(pose.source_frame, "base_link");
+            ++i;
+        });
+        EXPECT_EQ(i, 10);
+    }
+}
+
+TEST(ReplayDeploymentTest, PosesOfASimulatorsClockRunOnThatClock) {
+    test::Bag bag;
+    for (int i = 0; i < 10; ++i) {
+        const types::Time wall = types::Time::fromSeconds(1'700'000'000 + 0.1 * i);
+        ros::Odometry odometry;
+        odometry.header.stamp = {3 + i, 0};
+        bag.add("/odom", wall, odometry);
+        bag.add("/log", wall, ros::String{"ten times as fast"});
+    }
+    const Folder folder;
+    bag.writeMcap(folder / "bag.mcap");
+    const framework::RunResult result = runIn(folder, posesFrom("/odom"));
+    EXPECT_NEAR(result.elapsed_s, 9, 1e-9);
+    EXPECT_TRUE(result.warnings.empty());
+    log::pocolog::Reader logged(folder / "b.0.log");
+    EXPECT_EQ(logged.streams()[0].first, types::Time::fromSeconds(3));
+    EXPECT_EQ(logged.streams()[0].last, types::Time::fromSeconds(12));
+}
+
+TEST(ReplayDeploymentTest, ASourceOfPosesThatCannotBeUsedIsReportedByCheck) {
+    const Folder folder;
+    eastwards().writeMcap(folder / "bag.mcap");
+    for (const char* source : {"/odm", "odom->arm", "map->base_link"})
+        EXPECT_THAT(test::errorOf<types::ConfigError>([&] { runIn(folder, posesFrom(source)); }),
+                    testing::HasSubstr("there are: /odom ("));
 }
 
 }  // namespace

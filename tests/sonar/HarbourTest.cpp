@@ -39,7 +39,7 @@ struct HarbourTest : testing::Test {
         const auto scene = propertiesOf<scene::SceneConfig>("scene");
         geometry = scene::loadScene(deploy / scene.file);
         const auto file = propertiesOf<pose::TrajectoryConfig>("vehicle").file;
-        const auto pass = pose::Trajectory::fromCsv(deploy / *file);
+        const auto pass = pose::Trajectory::fromFile(deploy / *file);
         for (double time = 0; time <= pass.stamps().back().time; time += 0.25) {
             poses.emplace_back();
             types::place(pass.at(time), scene.mount, poses.back());

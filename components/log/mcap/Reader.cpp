@@ -12,42 +12,11 @@
 #include <sstream>
 #include <system_error>
 
-#include "components/log/TypeNames.hpp"
 #include "components/log/mcap/Transforms.hpp"
-#include "components/ros/Cdr.hpp"
-#include "components/ros/Samples.hpp"
-#include "components/ros/Stamps.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::log::mcap {
 namespace {
-
-std::string valueOr(const Texts& texts, const char* key, const std::string& otherwise) {
-    const auto found = texts.find(key);
-    return found == texts.end() ? otherwise : found->second;
-}
-
-template <class E>
-void readEnum(const Texts& texts, const char* key, E& value) {
-    const auto& names = types::EnumNames<E>::names;
-    const auto found = std::ranges::find(names, valueOr(texts, key, ""));
-    if (found != std::end(names)) value = static_cast<E>(found - std::begin(names));
-}
-
-ros::MessageOptions optionsOf(const Texts& metadata) {
-    ros::MessageOptions options;
-    options.world_frame = ros::WorldFrame::Enu;
-    readEnum(metadata, "insonify_order", options.order);
-    readEnum(metadata, "insonify_frame", options.frame);
-    readEnum(metadata, "insonify_world_frame", options.world_frame);
-    return options;
-}
-
-std::string streamName(const Channel& channel) {
-    std::string name = channel.topic.substr(channel.topic.starts_with('/'));
-    std::ranges::replace(name, '/', '.');
-    return valueOr(channel.metadata, "insonify_stream", name);
-}
 
 types::Time timeOf(uint64_t ns) { return {static_cast<int64_t>(ns / 1000)}; }
 
@@ -157,30 +126,7 @@ bool isOfStream(const Texts& channel, const std::string& key) {
     return channel.contains("insonify_stream") && !of_messages.contains(key);
 }
 
-/** Reads the messages of one channel as samples. */
-class Reader::Decoder {
-public:
-    virtual ~Decoder() = default;
-    /** Throws std::exception for invalid messages. */
-    virtual void decode(std::span<const char> bytes, types::SampleRoom room) = 0;
-};
-
-template <class T, class Message>
-class Reader::TypedDecoder final : public Decoder {
-public:
-    explicit TypedDecoder(const ros::MessageOptions& options) : options_(options) {}
-    void decode(std::span<const char> bytes, types::SampleRoom room) override {
-        ros::decode(bytes, message_);
-        ros::noteStamp(message_);
-        ros::toSample(message_, options_, *std::get<T*>(room));
-    }
-
-private:
-    ros::MessageOptions options_;
-    Message message_;
-};
-
-Reader::Reader(const std::filesystem::path& path, AtDamage at_damage)
+Reader::Reader(const std::filesystem::path& path, AtDamage at_damage, types::WorldFrame foreign)
     : log::Reader(path), file_(path), contents_(file_.contents(at_damage)) {
     gaps_ = contents_.gaps;
     std::erase_if(contents_.messages, [&](const MessageRef& message) {
@@ -196,21 +142,19 @@ Reader::Reader(const std::filesystem::path& path, AtDamage at_damage)
         }
         numbers[number] = streams_.size();
         channels_.push_back(number);
-        addStream(channel, own_place);
+        addStream(channel, own_place, foreign);
     }
     for (const MessageRef& message : contents_.messages)
         addSample(numbers.at(message.channel), timeOf(message.log_ns), timeOf(message.publish_ns), message.position);
 }
 
-Reader::~Reader() = default;
-
-void Reader::addStream(const Channel& channel, size_t place) {
+void Reader::addStream(const Channel& channel, size_t place, types::WorldFrame foreign) {
     const Contents& contents = contents_;
     const auto schema = contents.schemas.find(channel.schema);
-    Stream& stream = streams_.emplace_back();
-    stream.name = streamName(channel);
-    stream.topic = channel.topic;
-    stream.type = schema == contents.schemas.end() ? channel.encoding : schema->second.name;
+    const DeclaredTopic topic{channel.topic, schema == contents.schemas.end() ? "" : schema->second.name,
+                              channel.encoding, &channel.metadata, foreign};
+    Stream& stream = streams_.emplace_back(streamOf(topic));
+    decoders_.push_back(decoderOf(topic));
     for (const Contents::Metadata& metadata : contents.metadata)
         if (metadata.name == "insonify" && metadata.channels_before <= place) stream.metadata = metadata.texts;
     if (streams_.size() > 1 && streams_.front().metadata.contains("insonify_deployment"))
@@ -218,27 +162,6 @@ void Reader::addStream(const Channel& channel, size_t place) {
     for (const auto& [key, value] : channel.metadata)
         if (isOfStream(channel.metadata, key)) stream.metadata[key] = value;
     std::erase_if(stream.metadata, [](const auto& text) { return text.second.empty(); });
-    decoders_.push_back(decoderFor(stream, channel, schema == contents.schemas.end() ? "" : schema->second.name));
-}
-
-std::unique_ptr<Reader::Decoder> Reader::decoderFor(Stream& stream, const Channel& channel,
-                                                    const std::string& schema) const {
-    std::unique_ptr<Decoder> decoder;
-    const bool named = channel.metadata.contains("insonify_type");
-    const auto offer = [&]<class T, class Message>(std::type_identity<T>, std::type_identity<Message>) {
-        if (decoder || schema != Message::type_name) return;
-        if (named ? channel.metadata.at("insonify_type") != cxxName<T>() : ros::only_by_name<T>) return;
-        decoder = std::make_unique<TypedDecoder<T, Message>>(optionsOf(channel.metadata));
-        stream.type = typelibName<T>();
-        stream.sample = types::sampleIndex<T>();
-    };
-    if (channel.encoding != "cdr") return decoder;
-    types::forEachSampleType([&]<class T>(std::type_identity<T> sample) {
-        ros::forEachMessageOf<T>([&]<class Message>(std::type_identity<Message> message) {
-            if constexpr (ros::ReadFrom<T, Message>) offer(sample, message);
-        });
-    });
-    return decoder;
 }
 
 const Schema* Reader::schema(size_t stream) const {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "components/log/MessageDecoder.hpp"
 #include "components/log/Reader.hpp"
 #include "components/log/mcap/ChunkWriter.hpp"
 #include "components/log/mcap/Contents.hpp"
@@ -38,13 +39,13 @@ bool isOfStream(const Texts& channel, const std::string& key);
 
 /** Reads an MCAP file. Messages of known types in CDR are samples. Other channels are streams of an unknown type,
  *  except those written by Transforms, which are omitted. Streams have their written names; else topic /a/b is stream
- *  a.b. Images and poses of other programs are read with the default settings of this program, poses as ENU (REP
- *  103). */
+ *  a.b. Images of other programs are read with the default settings of this program. */
 class Reader final : public log::Reader {
 public:
-    /** Throws ConfigError when the file cannot be read or is not an MCAP file. */
-    explicit Reader(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop);
-    ~Reader() override;
+    /** Throws ConfigError when the file cannot be read or is not an MCAP file.
+     *  @param foreign axes of the poses of other programs; ENU in ROS (REP 103) */
+    explicit Reader(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop,
+                    types::WorldFrame foreign = types::WorldFrame::Enu);
 
     uint64_t bytes() const override { return file_.size(); }
     std::span<const char> bytesOf(const SampleRef& at) override;
@@ -58,21 +59,15 @@ public:
     bool hasTransforms() const { return has_transforms_; }
 
 private:
-    class Decoder;
-    template <class T, class Message>
-    class TypedDecoder;
-
     void decode(const SampleRef& at, types::SampleRoom room) override;
     /** @param place index of the channel among all of the file */
-    void addStream(const Channel& channel, size_t place);
-    /** Returns the decoder of a stream's messages; null: unknown type. */
-    std::unique_ptr<Decoder> decoderFor(Stream& stream, const Channel& channel, const std::string& schema) const;
+    void addStream(const Channel& channel, size_t place, types::WorldFrame foreign);
 
     File file_;
     Contents contents_;
     bool has_transforms_ = false;
-    std::vector<uint16_t> channels_;                  ///< Number of each stream's channel.
-    std::vector<std::unique_ptr<Decoder>> decoders_;  ///< One per stream; null: unknown type.
+    std::vector<uint16_t> channels_;                         ///< Number of each stream's channel.
+    std::vector<std::unique_ptr<MessageDecoder>> decoders_;  ///< One per stream; null: unknown type.
     std::vector<char> bytes_;
 };
 

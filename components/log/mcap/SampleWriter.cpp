@@ -155,7 +155,14 @@ size_t SampleWriter::addLike(const log::Reader& log, size_t number, const Metada
         return copied;
     }
     if (stream.sample) return add(*stream.sample, stream.name, all);
-    throw types::ConfigError(log.path(), stream.name, "holds " + stream.type + ", which has no message");
+    if (stream.message.empty())
+        throw types::ConfigError(log.path(), stream.name, "holds " + stream.type + ", which has no message");
+    Schema schema{stream.message, "ros2msg", log.layout(number)};
+    if (schema.text.empty())
+        ros::forEachMessage([&]<class Message>(std::type_identity<Message>) {
+            if (stream.message == Message::type_name) schema.text = ros::schemaOf<Message>();
+        });
+    return declare(&schema, {0, stream.topic, "cdr", {{"offered_qos_profiles", qos_profile}}}, all);
 }
 
 void SampleWriter::put(size_t stream, types::Time received, types::Time time, types::SampleView sample) {
@@ -194,7 +201,8 @@ void SampleWriter::writeMessage(size_t stream, uint64_t log_ns, uint64_t publish
 
 void SampleWriter::copy(size_t stream, log::Reader& log, const SampleRef& at) {
     const auto* const same = dynamic_cast<const Reader*>(&log);
-    if (!same) return put(stream, at.received, at.time, log.sampleAt(at));
+    if (!same && log.streams()[at.stream].sample) return put(stream, at.received, at.time, log.sampleAt(at));
+    if (!same) return writeMessage(stream, nanoseconds(at.received), nanoseconds(at.time), log.bytesOf(at));
     const MessageRef& message = same->message(at);
     writeMessage(stream, message.log_ns, message.publish_ns, log.bytesOf(at));
 }

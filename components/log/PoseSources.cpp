@@ -1,0 +1,392 @@
+#include "components/log/PoseSources.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Poses.hpp"
+#include "components/ros/Stamps.hpp"
+#include "components/ros/TransformTree.hpp"
+#include "types/ConfigError.hpp"
+#include "types/DidYouMean.hpp"
+
+namespace insonify::log {
+namespace {
+
+constexpr std::string_view arrow = "->";
+
+bool hasFixes(const Stream& stream) { return stream.message == ros::NavSatFix::type_name; }
+
+/** Calls `use(at, message)` for each sample of the streams for which `wanted` is true. Throws ConfigError for a message
+ *  that cannot be decoded. */
+template <class Message>
+void forEachMessage(Reader& log, auto&& wanted, auto&& use) {
+    std::vector<bool> is_wanted;
+    for (const Stream& stream : log.streams())
+        is_wanted.push_back(stream.message == Message::type_name && wanted(stream));
+    if (std::ranges::none_of(is_wanted, [](bool each) { return each; })) return;
+    Message message;
+    for (const SampleRef& at : log.samples()) {
+        if (!is_wanted[at.stream]) continue;
+        try {
+            ros::decode(log.bytesOf(at), message);
+        } catch (const ros::CdrError& error) {
+            throw types::ConfigError(
+                log.path(), log.streams()[at.stream].name,
+                fmt::format("message {} of the log is not of its type: {}", at.number, error.what()));
+        }
+        use(at, std::as_const(message));
+    }
+}
+
+/** Calls `use(at, transform, is_static)` for each transform, those of /tf_static first. */
+void forEachTransform(Reader& log, auto&& use) {
+    for (const bool is_static : {true, false})
+        forEachMessage<ros::TFMessage>(
+            log, [&](const Stream& stream) { return stream.topic.ends_with("tf_static") == is_static; },
+            [&](const SampleRef& at, const ros::TFMessage& message) {
+                for (const ros::TransformStamped& transform : message.transforms) use(at, transform, is_static);
+            });
+}
+
+types::Time stampOf(const ros::Time& stamp, types::Time otherwise) {
+    return stamp == ros::Time{} ? otherwise : ros::fromRos(stamp);
+}
+
+std::string nameOf(const std::string& frame) { return frame.substr(frame.starts_with('/')); }
+
+/** What the transforms of a log say of one frame. */
+struct Edge {
+    std::string parent;
+    bool moves = false;
+    size_t count = 0;
+    types::Time first, last;
+};
+
+/** Returns the frame that a chain upwards ends at; empty: the parents form a circle. */
+std::string rootOf(const std::map<std::string, Edge>& edges, const std::string& frame) {
+    std::string root = frame;
+    for (size_t steps = 0; steps <= edges.size(); ++steps) {
+        const auto edge = edges.find(root);
+        if (edge == edges.end()) return root;
+        root = edge->second.parent;
+    }
+    return {};
+}
+
+void findTransforms(Reader& log, std::vector<FoundPoses>& found) {
+    std::map<std::string, Edge> edges;
+    forEachTransform(log, [&](const SampleRef& at, const ros::TransformStamped& transform, bool is_static) {
+        if (edges.size() >= ros::TransformTree::max_frames && !edges.contains(nameOf(transform.child_frame_id))) return;
+        Edge& edge = edges[nameOf(transform.child_frame_id)];
+        const types::Time time = stampOf(transform.header.stamp, at.time);
+        if (edge.count++ == 0) edge.parent = nameOf(transform.header.frame_id), edge.first = time;
+        edge.last = time;
+        edge.moves |= !is_static;
+    });
+    for (const auto& [child, edge] : edges) {
+        const std::string root = edge.moves ? rootOf(edges, child) : "";
+        if (root.empty()) continue;
+        for (const std::string& parent : std::set<std::string>{root, edge.parent})
+            found.push_back({fmt::format("{}{}{}", parent, arrow, child), ros::TFMessage::type_name, parent, child,
+                             edge.count, edge.first, edge.last});
+    }
+}
+
+/** Sets the frames that the first sample names. */
+void readFrames(Reader& log, size_t stream, FoundPoses& found) try {
+    const auto first = std::ranges::find(log.samples(), stream, &SampleRef::stream);
+    if (found.has_fixes) {
+        ros::NavSatFix fix;
+        ros::decode(log.bytesOf(*first), fix);
+        found.child = fix.header.frame_id;
+        return;
+    }
+    types::Pose pose;
+    log.read(*first, pose);
+    found.parent = pose.target_frame;
+    found.child = pose.source_frame;
+} catch (const std::runtime_error&) {  // reported where it is used
+}
+
+/** Returns the sources that there are, to end a message. */
+std::string choices(Reader& log) {
+    std::string text;
+    for (const FoundPoses& each : findPoses(log)) text += (text.empty() ? "" : ", ") + each.source + " " + each.text();
+    return text.empty() ? "the log has none" : "there are: " + text;
+}
+
+[[noreturn]] void refuseSource(Reader& log, const PoseSource& asked, const std::string& what) {
+    throw types::ConfigError(log.path(), asked.source, what);
+}
+
+/** The orientations of a body over time. */
+class Attitudes {
+public:
+    Attitudes(Reader& log, const std::string& source) {
+        const size_t stream = log.indexOf(source);
+        if (log.streams()[stream].holds<types::Imu>())
+            read<types::Imu>(log, stream);
+        else if (log.streams()[stream].holds<types::Pose>())
+            read<types::Pose>(log, stream);
+        else
+            throw types::ConfigError(log.path(), source,
+                                     "is the orientation, and holds " + log.streams()[stream].type +
+                                         "; may be a stream of poses or of sensor_msgs/msg/Imu");
+        std::ranges::stable_sort(turns_, {}, &Turn::first);
+        if (turns_.empty())
+            throw types::ConfigError(log.path(), source, "is the orientation, and has none that is known");
+    }
+    glm::dquat at(types::Time time) const {
+        const auto after = std::ranges::lower_bound(turns_, time, {}, &Turn::first);
+        if (after == turns_.end()) return turns_.back().second;
+        if (after == turns_.begin() || after->first == time) return after->second;
+        const Turn& before = *std::prev(after);
+        const double share = (time - before.first).seconds() / (after->first - before.first).seconds();
+        return glm::normalize(glm::slerp(before.second, after->second, share));
+    }
+
+private:
+    using Turn = std::pair<types::Time, glm::dquat>;
+
+    template <class T>
+    void read(Reader& log, size_t stream) {
+        T sample;
+        for (const SampleRef& at : log.samples()) {
+            if (at.stream != stream) continue;
+            log.read(at, sample);
+            const double length = glm::length(sample.orientation);
+            if (std::isfinite(length) && length > 1e-6)
+                turns_.emplace_back(types::sampleTime(sample, at.time), sample.orientation / length);
+        }
+    }
+
+    std::vector<Turn> turns_;
+};
+
+types::Notices renamePoses(Reader& log, const PoseSource& asked, size_t stream) {
+    const size_t count = log.streams()[stream].count;
+    types::Pose pose;
+    log.keepSamples(stream, [&](SampleRef& at) {
+        log.read(at, pose);
+        at.time = types::sampleTime(pose, at.time);
+        return types::isUsable(pose);
+    });
+    const size_t kept = log.streams()[stream].count;
+    if (kept == 0) refuseSource(log, asked, "has no pose that is finite and has an orientation");
+    log.rename(stream, asked.stream);
+    if (kept == count) return {};
+    return {types::warning(
+        fmt::format("{} of {} poses of {} are omitted: they are not finite, or their orientation has no length",
+                    count - kept, count, asked.source))};
+}
+
+/** Follows one frame in another through a log. */
+class Follower {
+public:
+    /** @param stamped whether the transforms of the log have stamps: those of a simulator may begin at 0 */
+    Follower(std::string parent, std::string child, types::WorldFrame frame, bool stamped)
+        : made_{std::move(parent), std::move(child), {}}, axes_{frame}, stamped_(stamped) {}
+
+    void add(const SampleRef& at, const ros::TransformStamped& transform, bool is_static) {
+        if (current_ != at.number) take();
+        current_ = at.number;
+        const types::Time stamp = stamped_ ? std::max(ros::fromRos(transform.header.stamp), types::Time{1}) : at.time;
+        if (!is_static && !offset_) offset_ = stamp - at.received;
+        // The clock of the senders, of which a log knows only the stamps: these may run faster than it was received.
+        const types::Time by_reception = at.received + offset_.value_or(types::Time{});
+        now_ = std::max(by_reception, stamp - ros::TransformTree::max_ahead);
+        const std::string refused = tree_.add(transform, is_static, stamp, now_);
+        if (!refused.empty() && omitted_++ == 0) first_omitted_ = refused;
+        moves_ |= !is_static;
+    }
+    /** Takes the pose that is known after the messages so far. */
+    void take() {
+        if (!current_ || !moves_) return;
+        const auto [placed, diagnostic] = tree_.newest(made_.parent, made_.child, now_);
+        if (!diagnostic.empty()) diagnostic_ = diagnostic;
+        if (!placed || !std::isfinite(glm::length(placed->position))) return;
+        is_fixed_ = placed->time.isNull();
+        const bool is_old = !made_.poses.empty() && placed->time <= made_.poses.back().time && life_ == tree_.lives();
+        if (is_fixed_ || is_old || (!made_.poses.empty() && placed->time == made_.poses.back().time)) return;
+        life_ = tree_.lives();
+        made_.poses.push_back({*current_, placed->time, axes_.rockFromWorld(placed->position),
+                               axes_.rockFromOrientation(placed->orientation)});
+    }
+    /** Returns why there are no poses. */
+    std::string reason() const {
+        if (is_fixed_) return "is a fixed pose: all transforms between them are static";
+        return diagnostic_.empty() ? "the log has no transforms that move" : diagnostic_;
+    }
+    types::Notices notices() const {
+        if (omitted_ == 0) return {};
+        return {
+            types::warning(fmt::format("{} transforms are omitted, the first because: {}", omitted_, first_omitted_))};
+    }
+    Reader::MadePoses& made() { return made_; }
+
+private:
+    Reader::MadePoses made_;
+    const types::Axes axes_;
+    const bool stamped_;
+    ros::TransformTree tree_;
+    std::optional<size_t> current_;  ///< The message that is being added.
+    std::optional<types::Time> offset_;
+    types::Time now_;
+    uint64_t life_ = 0;
+    bool moves_ = false, is_fixed_ = false;
+    size_t omitted_ = 0;
+    std::string first_omitted_, diagnostic_;
+};
+
+types::Notices followFrames(Reader& log, const PoseSource& asked, types::WorldFrame frame) {
+    const size_t middle = asked.source.find(arrow);
+    bool stamped = false;
+    forEachTransform(log, [&](const SampleRef&, const ros::TransformStamped& transform, bool is_static) {
+        stamped |= !is_static && transform.header.stamp != ros::Time{};
+    });
+    Follower follower(nameOf(asked.source.substr(0, middle)), nameOf(asked.source.substr(middle + arrow.size())), frame,
+                      stamped);
+    forEachTransform(log, [&](const SampleRef& at, const ros::TransformStamped& transform, bool is_static) {
+        follower.add(at, transform, is_static);
+    });
+    follower.take();
+    if (follower.made().poses.empty())
+        refuseSource(log, asked, "gives no poses: " + follower.reason() + "; " + choices(log));
+    Stream stream;
+    stream.name = asked.stream;
+    const types::Notices notices = follower.notices();
+    log.addPoses(std::move(stream), std::move(follower.made()));
+    return notices;
+}
+
+types::Datum placeOf(const ros::NavSatFix& fix, double otherwise_m) {
+    return {fix.latitude, fix.longitude, std::isnan(fix.altitude) ? otherwise_m : fix.altitude};
+}
+
+bool isUsable(const ros::NavSatFix& fix) {
+    return fix.status.status > ros::NavSatStatus::no_fix && std::abs(fix.latitude) <= 90 &&
+           std::abs(fix.longitude) <= 360 && !(std::abs(fix.altitude) > 1e7);
+}
+
+/** Returns what there is to say of fixes that became poses. */
+types::Notices noticesOf(Reader& log, const PoseSource& asked, size_t omitted, glm::dvec3 first) {
+    constexpr double far = 1e5;  // [m]
+    types::Notices notices;
+    if (omitted > 0)
+        notices.push_back(
+            types::warning(fmt::format("{} messages of {} are omitted: they have no fix", omitted, asked.source)));
+    if (asked.orientation.empty()) {
+        std::string turning;
+        for (const Stream& stream : log.streams())
+            if (stream.holds<types::Imu>() || (stream.holds<types::Pose>() && stream.name != asked.stream))
+                turning += (turning.empty() ? "" : ", ") + (stream.topic.empty() ? stream.name : stream.topic);
+        notices.push_back(fmt::format("{} has only positions: the body is level and looks to the north{}", asked.source,
+                                      turning.empty() ? "" : "; orientation may be " + turning));
+    }
+    if (glm::length(first) > far)
+        notices.push_back(types::warning(fmt::format("{} begins {:.0f} km from the datum; is that of another place?",
+                                                     asked.source, glm::length(first) / 1e3)));
+    return notices;
+}
+
+types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream) {
+    std::optional<Attitudes> attitudes;
+    if (!asked.orientation.empty()) attitudes.emplace(log, asked.orientation);
+    const types::Axes enu{types::WorldFrame::Enu};
+    Reader::MadePoses made;
+    size_t omitted = 0;
+    const std::string topic = log.streams()[stream].topic;
+    const auto take = [&](const SampleRef& at, const ros::NavSatFix& fix) {
+        if (!isUsable(fix)) return void(++omitted);
+        if (!asked.datum)
+            refuseSource(
+                log, asked,
+                fmt::format(
+                    "has latitudes and longitudes, and needs a datum, the origin of the world; that of its first fix "
+                    "is datum: {{latitude_deg: {0:.9g}, longitude_deg: {1:.9g}, height_m: {2:.6g}}}, or --datum "
+                    "{0:.9g},{1:.9g},{2:.6g}",
+                    fix.latitude, fix.longitude, placeOf(fix, 0).height_m));
+        made.child = fix.header.frame_id;
+        const types::Time time = stampOf(fix.header.stamp, at.time);
+        made.poses.push_back({at.number, time,
+                              enu.rockFromWorld(eastNorthUp(*asked.datum, placeOf(fix, asked.datum->height_m))),
+                              attitudes ? attitudes->at(time) : glm::dquat(1, 0, 0, 0)});
+    };
+    forEachMessage<ros::NavSatFix>(
+        log, [&](const Stream& each) { return each.topic == topic; }, take);
+    if (made.poses.empty()) refuseSource(log, asked, fmt::format("has no fix in its {} messages", omitted));
+    const glm::dvec3 first = made.poses.front().position;
+    Stream placed;
+    placed.name = asked.stream;
+    log.addPoses(std::move(placed), std::move(made));
+    return noticesOf(log, asked, omitted, first);
+}
+
+}  // namespace
+
+std::string FoundPoses::text() const {
+    const std::string frames =
+        (parent.empty() && child.empty()) || source.find(arrow) != source.npos
+            ? ""
+            : fmt::format("{} {} {}, ", parent.empty() ? "?" : parent, arrow, child.empty() ? "?" : child);
+    return fmt::format("({}, {}{} in {:.6g} s)", type, frames, count, (last - first).seconds());
+}
+
+std::vector<FoundPoses> findPoses(Reader& log) {
+    std::vector<FoundPoses> found;
+    for (size_t i = 0; i < log.streams().size(); ++i) {
+        const Stream& stream = log.streams()[i];
+        if (stream.count == 0 || !(stream.holds<types::Pose>() || hasFixes(stream))) continue;
+        FoundPoses poses;
+        poses.source = stream.topic.empty() ? stream.name : stream.topic;
+        poses.type = stream.message.empty() ? stream.type : stream.message;
+        poses.count = stream.count;
+        poses.first = stream.first;
+        poses.last = stream.last;
+        poses.has_fixes = hasFixes(stream);
+        readFrames(log, i, poses);
+        found.push_back(std::move(poses));
+    }
+    findTransforms(log, found);
+    return found;
+}
+
+std::string tableOf(const std::vector<FoundPoses>& found) {
+    std::string table =
+        fmt::format("  {:24} {:44} {:28} {:>8} {:>26} {:>26}\n", "--pose", "type", "frames", "number", "first", "last");
+    for (const FoundPoses& each : found)
+        table +=
+            fmt::format("  {:24} {:44} {:28} {:>8} {:>26} {:>26}{}\n", each.source, each.type,
+                        fmt::format("{} {} {}", each.parent.empty() ? "?" : each.parent, arrow,
+                                    each.child.empty() ? "?" : each.child),
+                        each.count, readable(each.first), readable(each.last), each.has_fixes ? "  needs --datum" : "");
+    return table;
+}
+
+types::Notices addPoses(Reader& log, const PoseSource& asked, types::WorldFrame foreign) {
+    const Stream* const stream = log.find(asked.source);
+    const bool is_pair = !stream && asked.source.find(arrow) != asked.source.npos;
+    if (!stream && !is_pair) {
+        std::vector<std::string> known;
+        for (const FoundPoses& each : findPoses(log)) known.push_back(each.source);
+        refuseSource(log, asked, "is no stream of the log; " + types::didYouMean(asked.source, known) + choices(log));
+    }
+    if (stream && !stream->holds<types::Pose>() && !hasFixes(*stream))
+        refuseSource(log, asked, "holds " + stream->type + ", which is no pose; " + choices(log));
+    const size_t index = stream ? static_cast<size_t>(stream - log.streams().data()) : 0;
+    if (const Stream* const same = log.find(asked.stream); same && same != stream)
+        log.rename(static_cast<size_t>(same - log.streams().data()), same->name + "_recorded");
+    if (!is_pair && hasFixes(log.streams()[index])) return placeFixes(log, asked, index);
+    types::Notices notices = is_pair ? followFrames(log, asked, foreign) : renamePoses(log, asked, index);
+    if (asked.datum || !asked.orientation.empty())
+        notices.push_back(types::warning(
+            fmt::format("datum and orientation are without effect on {}, which has whole poses", asked.source)));
+    return notices;
+}
+
+}  // namespace insonify::log
