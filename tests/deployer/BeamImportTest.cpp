@@ -101,10 +101,11 @@ struct BeamImportTest : testing::Test {
         return callInsonify(folder_, arguments);
     }
     /** Expects that the pings of the log are rendered again. */
-    void expectScore(size_t count) const {
-        EXPECT_THAT(
-            callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"}),
-            succeeds());
+    void expectScore(size_t count, const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"replay",  "dive.0.log", "wall.yml", "--rerender",
+                                           "--score", "--out",      "scored"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        EXPECT_THAT(callInsonify(folder_, arguments), succeeds());
         const json all = json::parse(readFile(folder_ / "scored/score.json"));
         ASSERT_EQ(all["streams"].size(), 1u);
         EXPECT_EQ(all["streams"][0]["stream"], "receiver.ping");
@@ -138,6 +139,8 @@ TEST_F(BeamImportTest, AScanOfAPing360IsRenderedAgainAtItsBearings) {
     });
     EXPECT_EQ(ping, 12);
     expectScore(12);
+    fs::remove_all(folder_ / "scored");
+    expectScore(7, {"--from", "0.5"});
 }
 
 TEST_F(BeamImportTest, ProfilesOfAPing1DAreRenderedAgainAndItsDistancesAreRanges) {
