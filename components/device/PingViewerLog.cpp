@@ -231,7 +231,6 @@ namespace {
 /** Sets what the pings of one device have in common. */
 void setDevice(const char* name, RecordedPing& read) {
     const sonars::SonarMode& mode = sonars::sonar(name).modes.front();
-    read.frequency_khz = mode.frequency_khz;
     read.ping.beam_width = types::Angle::fromDeg(mode.beam_width_deg);
     read.ping.beam_height = types::Angle::fromDeg(mode.beam_height_deg);
     read.sonar.position.x = types::Pose::unknown;
@@ -256,7 +255,7 @@ std::optional<RecordedPing> PingViewerReader::scanned(uint16_t angle, const Ping
     RecordedPing read;
     read.ping.time = named_begin_.value_or(types::Time{1'000'000}) + types::Time::fromSeconds(progress_.seconds);
     setDevice("ping360", read);
-    if (acoustics.frequency_khz > 0) read.frequency_khz = acoustics.frequency_khz;
+    read.frequency_khz = acoustics.frequency_khz;
     read.gain_db = device.gain_db[acoustics.gain];
     setResolution(acoustics.sample_period * tick * usual_speed / 2, usual_speed, read);
     const double bearing = ping360Bearing(angle, ahead).rad;

@@ -28,7 +28,8 @@ namespace insonify::device {
  *  record without a time, which Ping Viewer writes after 24 hours, has that of the record before.
  *
  *  The pings have no poses. Bins of a Ping360 count time: their ranges are those at 1500 m/s. Those of a Ping1D are by
- *  the speed of sound that the device reports (message 1203), 1500 m/s before. */
+ *  the speed of sound that the device reports (message 1203), 1500 m/s before. The frequency of a Ping1D is not stated,
+ * and unknown. */
 class PingViewerReader final : public recordings::RecordingReader {
 public:
     /** Throws types::ConfigError for a file that cannot be read, or does not begin as a log of Ping Viewer. */

@@ -156,6 +156,7 @@ TEST_F(PingViewerLogTest, ProfilesAreReadBackByTheReportedSpeedOfSound) {
             EXPECT_EQ(pings[i].altitude, made.confidence > 0 ? made.distance / 1e3 : 0);
             EXPECT_EQ(pings[i].number, made.ping_number);
             EXPECT_EQ(pings[i].ping.bearings.at(0).rad, 0);
+            EXPECT_EQ(pings[i].frequency_khz, 0) << "is not stated";
             EXPECT_NEAR(pings[i].speed_of_sound, speed, 1e-3);
             EXPECT_NEAR(pings[i].gain_db, ping1dGainDb(made.gain), 1e-12);
         }
