@@ -266,13 +266,13 @@ std::optional<RecordedPing> PingViewerReader::scanned(uint16_t angle, const Ping
 std::optional<RecordedPing> PingViewerReader::sounded(const Ping1dProfile& profile) {
     const Ping1dMeasurement& made = profile.measurement;
     if (profile.data.empty()) return omit(progress_.silent), std::nullopt;
-    constexpr double most_bins = 65535;
+    constexpr double max_bins = 65535;
     const double sample = made.length / 1e3 / static_cast<double>(profile.data.size());
     const double first = std::round(made.start / 1e3 / sample);  // not finite without a length
-    if (!(first + static_cast<double>(profile.data.size()) <= most_bins)) {
+    if (!(first + static_cast<double>(profile.data.size()) <= max_bins)) {
         omit(progress_.odd, fmt::format("in the record at byte {} the scan begins at {} mm and is {} mm long; it must "
                                         "have a length, and begin at most {:g} samples from the sonar",
-                                        at_, made.start, made.length, most_bins));
+                                        at_, made.start, made.length, max_bins));
         return std::nullopt;
     }
     RecordedPing read;
