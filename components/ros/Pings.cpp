@@ -51,6 +51,21 @@ void fillReceiveAngles(const std::vector<types::Angle>& bearings, std::vector<fl
     for (size_t beam = 0; beam < bearings.size(); ++beam) angles[beam] = static_cast<float>(-bearings[beam].rad);
 }
 
+/** Fills flags, intensities and the places of the first return of each beam. @param placeOf returns that of a bin */
+void fillFirstReturns(const types::Sonar& ping, const SonarOptions& options, auto& message, std::vector<float>& places,
+                      auto&& placeOf) {
+    message.flags.assign(ping.beam_count, {DetectionFlag::bad_filter});
+    message.intensities.assign(ping.beam_count, 0);
+    places.assign(ping.beam_count, std::numeric_limits<float>::quiet_NaN());
+    const DetectionThreshold rule(ping, options);
+    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
+        if (const auto bin = rule.firstOf(beam)) {
+            message.flags[beam].flag = DetectionFlag::ok;
+            message.intensities[beam] = ping.bins[size_t{beam} * ping.bin_count + *bin];
+            places[beam] = placeOf(*bin);
+        }
+}
+
 double stepTo(const types::BeamArc& arc, size_t place) { return arc.bearings[place] - arc.bearings[place - 1]; }
 
 /** Returns the min angle between two neighbouring beams; 0 for fewer than two beams [rad]. */
@@ -101,34 +116,17 @@ void convert(const types::Sonar& ping, const SonarOptions& options, SonarRanges&
     fillInfo(ping, options, message.ping_info);
     fillDirections(ping, options.frame, message.beam_unit_vec);
     fillDelays(ping, message.transmit_delays);
-    message.flags.assign(ping.beam_count, {DetectionFlag::bad_filter});
-    message.intensities.assign(ping.beam_count, 0);
-    message.ranges.assign(ping.beam_count, std::numeric_limits<float>::quiet_NaN());
-    const DetectionThreshold rule(ping, options);
-    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
-        if (const auto bin = rule.firstOf(beam)) {
-            message.flags[beam].flag = DetectionFlag::ok;
-            message.intensities[beam] = ping.bins[size_t{beam} * ping.bin_count + *bin];
-            message.ranges[beam] = binCentre(ping, *bin);
-        }
+    fillFirstReturns(ping, options, message, message.ranges, [&](uint32_t bin) { return binCentre(ping, bin); });
 }
 
 void convert(const types::Sonar& ping, const SonarOptions& options, SonarDetections& message) {
     fillHeader(ping, options, message.header);
     fillInfo(ping, options, message.ping_info);
     fillDelays(ping, message.tx_delays);
-    message.flags.assign(ping.beam_count, {DetectionFlag::bad_filter});
-    message.intensities.assign(ping.beam_count, 0);
-    message.two_way_travel_times.assign(ping.beam_count, std::numeric_limits<float>::quiet_NaN());
     message.tx_angles.assign(ping.beam_count, 0);
     fillReceiveAngles(ping.bearings, message.rx_angles);
-    const DetectionThreshold rule(ping, options);
-    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
-        if (const auto bin = rule.firstOf(beam)) {
-            message.flags[beam].flag = DetectionFlag::ok;
-            message.intensities[beam] = ping.bins[size_t{beam} * ping.bin_count + *bin];
-            message.two_way_travel_times[beam] = static_cast<float>(2 * (*bin + 0.5) * ping.binSeconds());
-        }
+    fillFirstReturns(ping, options, message, message.two_way_travel_times,
+                     [&](uint32_t bin) { return static_cast<float>(2 * (bin + 0.5) * ping.binSeconds()); });
 }
 
 void convert(const types::SonarDetections& detections, const SonarOptions& options, SonarDetections& message) {
