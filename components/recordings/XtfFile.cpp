@@ -60,6 +60,14 @@ bool XtfFile::beginsPacket(uint64_t at) {
     return mark.size() == sizeof(uint16_t) && field<uint16_t>(mark, 0) == xtf::packet::magic;
 }
 
+bool XtfFile::describesChannel(uint64_t at) {
+    namespace info = xtf::channel_info;
+    constexpr uint8_t max_type = 3;  // bathymetry
+    const std::vector<char> bytes = take(at, info::size);
+    return bytes.size() == info::size && field<uint8_t>(bytes, info::type) <= max_type &&
+           sampleBytes(field<uint8_t>(bytes, info::sample_format), field<uint16_t>(bytes, info::sample_bytes)) > 0;
+}
+
 void XtfFile::readChannels() {
     namespace header = xtf::file_header;
     namespace info = xtf::channel_info;
@@ -71,6 +79,7 @@ void XtfFile::readChannels() {
         size_t{field<uint16_t>(bytes, header::channel_count)} + field<uint16_t>(bytes, header::bathymetry_count);
     const size_t needed = header::channel_infos + declared_ * info::size;
     for (next_ = header::size; next_ < needed && !beginsPacket(next_);) next_ += header::size;
+    while (!beginsPacket(next_) && describesChannel(next_)) next_ += header::size;  // more than it declares
     bytes = take(0, next_);
     if (bytes.size() < next_)
         fail(header::channel_count,

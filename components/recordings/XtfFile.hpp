@@ -63,6 +63,8 @@ private:
     std::optional<RecordedPing> read() override;
     void readChannels();
     bool beginsPacket(uint64_t at);
+    /** Whether a channel is described at this place behind the first block of the header. */
+    bool describesChannel(uint64_t at);
     bool nextPacket();
     std::optional<RecordedPing> line();
     Sides sides();

@@ -38,7 +38,8 @@ struct Sampled {
 using MadePing = std::vector<Sampled>;
 
 RecordedBytes header(const std::vector<Described>& described, size_t declared) {
-    RecordedBytes bytes(xtf::file_header::size);
+    const size_t block = xtf::file_header::size, end = xtf::file_header::channel_infos + described.size() * info::size;
+    RecordedBytes bytes((end + block - 1) / block * block);
     putAt(bytes, 0, xtf::file_header::mark);
     putAt(bytes, 1, uint8_t{1});
     putAt(bytes, xtf::file_header::channel_count, static_cast<uint16_t>(declared));
@@ -169,6 +170,21 @@ TEST_F(XtfDialectTest, ChannelsAreReadAsDescribedWhateverNumberIsDeclared) {
                             "only " +
                             std::to_string(declared) + " channels"),
                   declared < 2);
+    }
+}
+
+/** Nine channels take a header of two blocks, also if one is declared. */
+TEST_F(XtfDialectTest, AHeaderOfSeveralBlocksEndsWhereAPacketBegins) {
+    for (const size_t count : {6, 7, 9, 14, 15, 22}) {
+        std::vector<Described> described(count, sub_bottom);
+        described[count - 2] = port, described[count - 1] = starboard;
+        const MadePing ping{{static_cast<uint16_t>(count - 2), counting(100, 8), 4},
+                            {static_cast<uint16_t>(count - 1), counting(200, 8), 4}};
+        for (const size_t declared : {size_t{0}, size_t{1}, size_t{6}, count, size_t{40}}) {
+            const auto pings = readPings(described, declared, {ping, ping});
+            ASSERT_THAT(pings, SizeIs(2)) << count << ", declared " << declared;
+            expectPing(pings[0].ping, described, ping);
+        }
     }
 }
 
