@@ -21,6 +21,7 @@
 #include "types/Pressure.hpp"
 #include "types/Range.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarDetections.hpp"
 #include "types/SonarElements.hpp"
 #include "types/SonarReturns.hpp"
 #include "types/SonarScan.hpp"
@@ -29,9 +30,9 @@
 
 namespace insonify::types {
 
-using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, SonarElements, SonarSettings,
-                               Pose, Image, PointCloud, DepthMap, Range, ImuSensors, Imu, Dvl, Pressure, Time, Angle,
-                               double, float, int32_t, int64_t, bool, std::string>;
+using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, SonarElements, SonarDetections,
+                               SonarSettings, Pose, Image, PointCloud, DepthMap, Range, ImuSensors, Imu, Dvl, Pressure,
+                               Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
 
 /** The type that a port passes for a T: a shared pointer for samples with `shared`, otherwise T itself. */
 template <class T>

@@ -118,7 +118,8 @@ struct StaticTransforms {
 /** Returns the axes of the ping's message; none if it has no axes, or is the message of a pose. */
 inline std::optional<ros::SensorFrame> axesOf(const TopicOut& topic) {
     const auto is = [&]<class Message>(std::type_identity<Message>) { return topic.type == message_type<Message>; };
-    if (is(std::type_identity<ros::ProjectedSonarImage>{}) || is(std::type_identity<ros::SonarRanges>{}))
+    if (is(std::type_identity<ros::ProjectedSonarImage>{}) || is(std::type_identity<ros::SonarRanges>{}) ||
+        is(std::type_identity<ros::SonarDetections>{}))
         return topic.sonar.frame;
     if (is(std::type_identity<ros::PointCloud2>{}) || is(std::type_identity<ros::LaserScan>{}))
         return ros::SensorFrame::XForward;

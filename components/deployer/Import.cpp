@@ -16,11 +16,14 @@
 #include "components/logger/PropertyLog.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/recordings/RecordingReader.hpp"
+#include "components/sonar/tasks/AltimeterTask.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "components/sonar/tasks/SideScanTask.hpp"
 #include "components/sonar/tasks/SonarTask.hpp"
 #include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Range.hpp"
+#include "types/SonarSettings.hpp"
 
 namespace insonify::deployer {
 namespace {
@@ -109,42 +112,67 @@ private:
 
 /** The tasks of a deployment that correspond to the recorded sonar; without a deployment, default names. */
 struct RecordedTasks {
-    std::string sonar = "sonar", receiver = "receiver";
+    std::string sonar = "sonar", receiver = "receiver", altitude = "altimeter.range";
+    std::string settings = "";    ///< Stream of the requests that drive the sonar of one beam; empty: there is none.
     double max_code = 0;          ///< The receiver's max code.
     bool has_beam_width = false;  ///< Whether the deployment states the width of a beam.
     std::vector<std::pair<std::string, pose::Trajectory>> trajectories{};  ///< By the stream of their poses.
     std::vector<std::string> vehicles{"vehicle.pose"};                     ///< Streams of poses of the sonar's vehicle.
 };
 
+/** Returns the first sonar of a type that a receiver hears; null: it hears none. */
+template <class Sonar>
+const Sonar* sonarOf(const receiver::ReceiverTask& receiver, const framework::Deployment& deployment) {
+    for (const std::string& name : upstream({receiver.name()}, deployment))
+        if (const auto* sonar = dynamic_cast<const Sonar*>(deployment.task(name))) return sonar;
+    return nullptr;
+}
+
 /** Throws types::ConfigError for a deployment without a receiver that outputs codes of the pings of such a sonar. */
 template <class Sonar>
 RecordedTasks recordedTasks(const DeploymentSpec& spec, const char* sonar_type) {
     framework::Registry registry = coreTasks();
     const framework::Deployment deployment(spec, registry);
-    const receiver::ReceiverTask& receiver = codingReceiverOf(deployment, spec.file);
-    const Sonar* sonar = nullptr;
-    for (const std::string& name : upstream({receiver.name()}, deployment))
-        if (!sonar) sonar = dynamic_cast<const Sonar*>(deployment.task(name));
+    const receiver::ReceiverTask* receiver = &codingReceiverOf(deployment, spec.file);
+    for (const auto& task : deployment.tasks())
+        if (const auto* other = dynamic_cast<const receiver::ReceiverTask*>(task.get()))
+            if (other->config->output == receiver::Output::Code && !sonarOf<Sonar>(*receiver, deployment))
+                receiver = other;
+    const Sonar* const sonar = sonarOf<Sonar>(*receiver, deployment);
     if (!sonar)
-        throw types::ConfigError(spec.file, "tasks." + receiver.name(),
+        throw types::ConfigError(spec.file, "tasks." + receiver->name(),
                                  std::string("has no input from a ") + sonar_type + ", whose pings are recorded");
-    RecordedTasks tasks{.sonar = sonar->name(), .receiver = receiver.name(), .vehicles = {}};
-    tasks.max_code = std::exp2(receiver.config->code.value_or(receiver::CodeConfig{}).bits) - 1;
-    constexpr bool is_fan = std::is_same_v<Sonar, sonar::SonarTask>;
-    if constexpr (is_fan) tasks.has_beam_width = sonar->sonarConfig().beam_width_deg.has_value();
+    RecordedTasks tasks{.sonar = sonar->name(), .receiver = receiver->name(), .vehicles = {}};
+    tasks.max_code = std::exp2(receiver->config->code.value_or(receiver::CodeConfig{}).bits) - 1;
+    constexpr bool is_scan = std::is_same_v<Sonar, sonar::ScanningSonarTask>,
+                   is_sounder = std::is_same_v<Sonar, sonar::AltimeterTask>,
+                   is_line = std::is_same_v<Sonar, sonar::SideScanTask>;
+    if constexpr (is_sounder) tasks.altitude = sonar->range.path();
+    for (const framework::Connection& connection : deployment.connections())
+        if ((is_scan || is_sounder) && connection.to == &sonar->settings) tasks.settings = connection.from->path();
+    if (is_scan && tasks.settings.empty())
+        throw types::ConfigError(spec.file, "tasks." + sonar->name(),
+                                 "has no connection to `settings`, by which each recorded ping gets its bearing; "
+                                 "connect the `settings` of a device::Ping360Task, as deploy/hil_ping360.yml does");
+    if constexpr (std::is_same_v<Sonar, sonar::SonarTask>)
+        tasks.has_beam_width = sonar->sonarConfig().beam_width_deg.has_value();
     const std::set<std::string> sources = upstream({tasks.sonar}, deployment);
     for (const auto& task : deployment.tasks())
         if (const auto* source = dynamic_cast<const pose::TrajectoryTask*>(task.get())) {
             tasks.trajectories.emplace_back(source->name() + ".pose", source->trajectory());
-            if (is_fan || sources.contains(source->name())) tasks.vehicles.push_back(source->name() + ".pose");
+            if (!is_line || sources.contains(source->name())) tasks.vehicles.push_back(source->name() + ".pose");
         }
-    if (is_fan && tasks.vehicles.empty()) tasks.vehicles = {"vehicle.pose"};
+    if (!is_line && tasks.vehicles.empty()) tasks.vehicles = {"vehicle.pose"};
     return tasks;
 }
 
 RecordedTasks recordedTasks(const DeploymentSpec& spec, RecordedShape shape) {
-    return shape == RecordedShape::Line ? recordedTasks<sonar::SideScanTask>(spec, "sonar::SideScanTask")
-                                        : recordedTasks<sonar::SonarTask>(spec, "sonar::SonarTask");
+    switch (shape) {
+        case RecordedShape::Line: return recordedTasks<sonar::SideScanTask>(spec, "sonar::SideScanTask");
+        case RecordedShape::Scan: return recordedTasks<sonar::ScanningSonarTask>(spec, "sonar::ScanningSonarTask");
+        case RecordedShape::Sounder: return recordedTasks<sonar::AltimeterTask>(spec, "sonar::AltimeterTask");
+        default: return recordedTasks<sonar::SonarTask>(spec, "sonar::SonarTask");
+    }
 }
 
 /** Returns the bits of the codes of a side-scan, whose samples are not stated to be codes; none if a sample is no whole
@@ -165,11 +193,11 @@ class Import {
 public:
     Import(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to)
         : reader_(RecordingReader::open(recording)),
-          is_line_(reader_->format().shape == RecordedShape::Line),
+          shape_(reader_->shape()),
+          is_line_(shape_ == RecordedShape::Line),
           line_bits_(is_line_ ? lineCodeBits(recording) : std::nullopt),
           ping_(reader_->next().value()),
-          tasks_(spec ? recordedTasks(*spec, reader_->format().shape)
-                      : RecordedTasks{.max_code = std::exp2(ping_.code.bits) - 1}),
+          tasks_(spec ? recordedTasks(*spec, shape_) : RecordedTasks{.max_code = std::exp2(ping_.code.bits) - 1}),
           has_poses_(is_line_ || isUsable(ping_.sonar)) {
         if (spec && !has_poses_ && tasks_.trajectories.empty())
             throw types::ConfigError(spec->file, "tasks",
@@ -205,6 +233,13 @@ private:
                 "\n    type: receiver::ReceiverTask\n"
                 "    properties: {{output: code, code: {{bits: {}, law: sqrt, gamma: {}}}}}",
                 code.bits, code.gamma);
+        struct Names {
+            const char *words, *type;
+        };
+        constexpr Names names[] = {{"forward-looking sonar", "SonarTask"},
+                                   {"side-scan", "SideScanTask"},
+                                   {"scanning sonar", "ScanningSonarTask"},
+                                   {"echo sounder", "AltimeterTask"}};  // in the order of RecordedShape
         return fmt::format(
             "# A {} as its recording states it.\n"
             "tasks:\n"
@@ -212,10 +247,8 @@ private:
             "  receiver:{}{}\n"
             "connections:\n"
             "  - {{from: sonar.ping, to: receiver.intensity}}\n",
-            is_line_       ? "side-scan"
-            : is_amplitude ? "sonar"
-                           : "forward-looking sonar",
-            is_line_ ? "SideScanTask" : "SonarTask", is_amplitude ? "" : " ", receiver);
+            is_amplitude ? "sonar" : names[static_cast<size_t>(shape_)].words, names[static_cast<size_t>(shape_)].type,
+            is_amplitude ? "" : " ", receiver);
     }
 
     /** Returns properties, as `--set` takes them, that give the deployment's pings the shape and the law of this one.
@@ -226,19 +259,21 @@ private:
         const auto set = [&](const std::string& task, const char* property, const auto& value) {
             all.push_back(fmt::format("{}.{}={}", task, property, value));
         };
-        set(tasks_.sonar, "range", ping_.range);
-        set(tasks_.sonar, "bin_count", ping.bin_count);
+        const bool is_driven = !tasks_.settings.empty();  // by requests with the rest
+        if (!is_driven) set(tasks_.sonar, "range", ping_.range);
+        if (!is_driven) set(tasks_.sonar, "bin_count", ping.bin_count);
         set(tasks_.sonar, "range_rounding", "exact");
         if (is_line_)
             set(tasks_.sonar, "speed_of_sound", ping.speed_of_sound);
         else if (ping_.speed_of_sound > 0)
             set(tasks_.sonar, "speed_of_sound", ping_.speed_of_sound);
-        if (ping_.frequency_khz > 0) set(tasks_.sonar, "frequency_khz", ping_.frequency_khz);
+        if (ping_.frequency_khz > 0 && !is_driven) set(tasks_.sonar, "frequency_khz", ping_.frequency_khz);
         if (is_line_) {
             if (!ping.beam_width.isUnknown()) set(tasks_.sonar, "beam_width_deg", ping.beam_width.deg());
             if (!ping.beam_height.isUnknown()) set(tasks_.sonar, "beam_height_deg", ping.beam_height.deg());
             return all;
         }
+        if (shape_ != RecordedShape::Fan) return all;
         std::vector<double> bearings;
         for (const types::Angle bearing : ping.bearings) bearings.push_back(types::degrees(bearing.rad));
         set(tasks_.sonar, "bearings_deg", bearings);
@@ -254,6 +289,18 @@ private:
         return all;
     }
 
+    /** Returns the request of a driver for this ping. */
+    types::SonarSettings request() const {
+        types::SonarSettings settings;
+        settings.time = ping_.ping.time;
+        settings.range = ping_.range;
+        settings.bin_count = ping_.ping.bin_count;
+        settings.gain_db = ping_.gain_db;
+        if (ping_.frequency_khz > 0) settings.frequency_khz = ping_.frequency_khz;
+        if (shape_ == RecordedShape::Scan) settings.bearing = ping_.ping.bearings.front();
+        return settings;
+    }
+
     void write() {
         log_->set(properties(), ping_.ping.time);
         if (isUsable(ping_.sonar)) {
@@ -267,11 +314,12 @@ private:
                 pose.time = ping_.ping.time;
                 log_->write(stream, pose);
             }
+        if (!tasks_.settings.empty()) log_->write(tasks_.settings, request());
         if (ping_.altitude > 0) {
             types::Range range;
             range.time = ping_.ping.time;
             range.range = ping_.altitude;
-            log_->write("altimeter.range", range);
+            log_->write(tasks_.altitude, range);
         }
         log::Metadata more{{"insonify_frequency_khz", fmt::format("{}", ping_.frequency_khz)}};
         if (line_bits_) more["insonify_code_bits"] = std::to_string(*line_bits_);
@@ -282,6 +330,7 @@ private:
     }
 
     const std::unique_ptr<RecordingReader> reader_;
+    const RecordedShape shape_;
     const bool is_line_;
     const std::optional<int> line_bits_;
     RecordedPing ping_;  ///< The ping that is written.

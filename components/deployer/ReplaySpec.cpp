@@ -158,10 +158,16 @@ void connectAltitudes(DeploymentSpec& spec, const log::Reader& log, const std::s
     }
 }
 
-/** Throws for scanning sonars, because a log does not record the head's bearing at `from`. */
-void refuseScansFrom(const DeploymentSpec& spec, double from) {
+/** Throws for scanning sonars, because a log does not record the head's bearing at `from`, unless it has the requests
+ * of a driver. */
+void refuseScansFrom(const DeploymentSpec& spec, const log::Reader& log, double from) {
+    const auto isDriven = [&](const TaskSpec& task) {
+        return std::ranges::any_of(spec.connections, [&](const ConnectionSpec& connection) {
+            return connection.to == task.name + ".settings" && !streamOf(log, spec, connection.from).empty();
+        });
+    };
     for (const TaskSpec& task : spec.tasks)
-        if (from > 0 && task.type == "sonar::ScanningSonarTask")
+        if (from > 0 && task.type == "sonar::ScanningSonarTask" && !isDriven(task))
             throw types::ConfigError(spec.file, task.path(),
                                      "is a scanning sonar, whose head starts at its left limit: rendered again with "
                                      "--from it would look in other directions than in the log; omit --from");
@@ -170,7 +176,7 @@ void refuseScansFrom(const DeploymentSpec& spec, double from) {
 }  // namespace
 
 DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const ReplayOptions& options) {
-    if (options.rerender) refuseScansFrom(spec, options.from);
+    if (options.rerender) refuseScansFrom(spec, log, options.from);
     std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
     if (!options.outside) replaced.merge(outsideTasks(spec));
     if (!options.rerender) addDeaf(spec, log, replaced);

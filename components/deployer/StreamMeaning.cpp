@@ -144,6 +144,8 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
         meaning.update(fieldsOf<types::SonarTruth>());
     else if (stream.holds<types::SonarReturns>())
         meaning.update(fieldsOf<types::SonarReturns>());
+    else if (stream.holds<types::SonarDetections>())
+        meaning.update(fieldsOf<types::SonarDetections>());
     else if (stream.holds<types::SonarElements>())
         meaning.update(fieldsOf<types::SonarElements>());
     else if (stream.holds<types::PointCloud>())

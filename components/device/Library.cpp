@@ -1,6 +1,7 @@
-// The component library device: its task types, `insonify device`, and recordings of an Oculus.
+// The component library device: its task types, `insonify device`, and recordings of an Oculus and of Ping Viewer.
 #include "components/device/DeviceTask.hpp"
 #include "components/device/OculusRecording.hpp"
+#include "components/device/PingViewerLog.hpp"
 #include "components/device/commands/DeviceCommand.hpp"
 #include "components/device/commands/OculusExport.hpp"
 #include "components/loader/Interface.hpp"
@@ -17,7 +18,10 @@ void insonify_add_command(CLI::App& app, insonify::console::Action& action) {
 
 void insonify_open_recording(const std::filesystem::path& file,
                              std::unique_ptr<insonify::recordings::RecordingReader>& reader) {
-    reader = std::make_unique<insonify::device::OculusReader>(file);
+    if (insonify::recordings::recognisedFormat(file).shape == insonify::recordings::RecordedShape::Scan)
+        reader = std::make_unique<insonify::device::PingViewerReader>(file);
+    else
+        reader = std::make_unique<insonify::device::OculusReader>(file);
 }
 
 void insonify_export_oculus(insonify::log::Reader& log, const std::string& stream, const std::filesystem::path& to) {

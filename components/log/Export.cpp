@@ -103,16 +103,19 @@ void writeRun(Reader& log, const Run& run, NpzFile& npz, Sonar ping) {
     npz.array("range_m", {count, run.shape[1]}, range);
 }
 
-/** Writes time and bearings; for samples of bins also their ranges and the names of the first sample's objects. */
+/** Writes time and bearings; for samples of bins also their ranges and the names of the first sample's objects, for
+ *  travel times the speed of sound. */
 template <types::Arrayed T>
 void writeGrid(Reader& log, const Run& run, NpzFile& npz, T sample) {
-    std::vector<double> time, bearings;
+    constexpr bool has_travel_times = std::is_same_v<T, types::SonarDetections>;
+    std::vector<double> time, bearings, speed_of_sound;
     std::vector<float> range;
     std::vector<std::string> objects;
     for (const SampleRef& at : run.samples) {
         log.read(at, sample);
         time.push_back(sampleTime(sample, at.time).seconds());
         for (const types::Angle& bearing : sample.bearings) bearings.push_back(bearing.rad);
+        if constexpr (has_travel_times) speed_of_sound.push_back(static_cast<double>(sample.speed_of_sound));
         if constexpr (types::NamesObjects<T>) {
             if (objects.empty()) objects = sample.objects;
             for (uint32_t k = 0; k < sample.bin_count; ++k)
@@ -122,6 +125,7 @@ void writeGrid(Reader& log, const Run& run, NpzFile& npz, T sample) {
     const size_t count = run.samples.size();
     npz.array("time", {count}, time);
     npz.array("bearings", {count, run.shape[0]}, bearings);
+    if constexpr (has_travel_times) npz.array("speed_of_sound", {count}, speed_of_sound);
     if constexpr (types::NamesObjects<T>) {
         npz.array("range_m", {count, run.shape[1]}, range);
         npz.texts("objects", objects);

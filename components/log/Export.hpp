@@ -15,7 +15,8 @@ namespace insonify::log {
  *  shape changes, a new file begins: x.0.npz, x.1.npz.
  *  Truth of pings: `elevation`, `object`, `share`, `hits`, `grazing`, `path` and `shadow` [pings, beams, bins], as in
  *  types::SonarTruth, `objects` (names), `time`, `bearings`, `range_m`. Returns of pings: `first_range` and the other
- *  fields of types::SonarReturns [pings, beams], `time`, `bearings`. Elements of pings: `in_phase`, `quadrature`
+ *  fields of types::SonarReturns [pings, beams], `time`, `bearings`. Detections: `elevation`, `travel_time` and
+ * `intensity` [pings, beams], `speed_of_sound` [pings], `time`, `bearings`. Elements of pings: `in_phase`, `quadrature`
  *  [pings, elements, samples], `positions`, `weights` [pings, elements], `range_m` [pings, samples], `wavelength`,
  *  `speed_of_sound`, `time`, as in types::SonarElements.
  *  Points: `time` s, `points` [n, 3] m, `intensity`, of each point. Maps of distances: `distances`, `remissions` [maps,

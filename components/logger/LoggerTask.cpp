@@ -15,6 +15,10 @@ namespace insonify::logger {
 
 namespace {
 
+/** Whether samples are measured in the frame of a sonar. */
+template <class T>
+constexpr bool in_sonar_frame = std::is_same_v<T, types::Sonar> || std::is_same_v<T, types::SonarDetections>;
+
 template <class Input>
 constexpr size_t sampleOf(const Input&) {
     return types::sampleIndex<typename Input::Sample>();
@@ -127,7 +131,7 @@ std::string LoggerTask::bodyOf(const framework::InputPortBase& port) const {
 template <class Input>
 log::Metadata LoggerTask::metadataOf(const Input& input) {
     log::Metadata metadata = streamMetadata(input.kept.name);
-    if constexpr (std::is_same_v<typename Input::Sample, types::Sonar>) {
+    if constexpr (in_sonar_frame<typename Input::Sample>) {
         if (const auto khz = framework::upstreamNumber(input.port, {"frequency_khz", "absorption.frequency_khz"}))
             metadata["insonify_frequency_khz"] = fmt::format("{}", *khz);
         const auto mount = framework::upstreamMount(input.port);
@@ -145,8 +149,7 @@ std::vector<std::string> LoggerTask::sharedFrames() const {
     std::map<std::string, Claim> claims;
     std::vector<std::string> shared;
     inputs_.forEach([&]<class Input>(const Input& input) {
-        const auto mount =
-            std::is_same_v<typename Input::Sample, types::Sonar> ? framework::upstreamMount(input.port) : std::nullopt;
+        const auto mount = in_sonar_frame<typename Input::Sample> ? framework::upstreamMount(input.port) : std::nullopt;
         if (!mount) return;
         const std::string stream = input.kept.name.path();
         const auto given = config->mcap.streams.find(stream);

@@ -31,11 +31,13 @@ constexpr RecordingFormat all_formats[] = {
     {".jsf", "JSF", "a side-scan", Line, "\x01\x16"sv, make<JsfFile>},
     {".aris", "ARIS", "an ARIS", Fan, "DDF"sv, make<ArisFile>},
     {".glf", "Gemini", "a Gemini", Fan, "PK\3\4"sv, make<GlfFile>},
+    {".bin", "Ping Viewer", "a Ping360 or a Ping1D", Scan, "\0\0\0"sv, nullptr, "device"},
     {".oculus", "Oculus", "an Oculus", Fan, "\x44\x33\x22\x11\x30\0\0\0"sv, nullptr, "device"},
     {"", "messages of an Oculus as captured", "an Oculus", Fan, "", nullptr, "device"},
 };
 
-/** Returns the format of a file by its first bytes. Throws types::ConfigError for a file that cannot be read. */
+}  // namespace
+
 const RecordingFormat& recognisedFormat(const std::filesystem::path& file) {
     const auto refuse = [&](const std::string& why) { throw types::ConfigError(file.string(), "", why); };
     std::error_code error;
@@ -50,8 +52,6 @@ const RecordingFormat& recognisedFormat(const std::filesystem::path& file) {
     return *std::ranges::find_if(all_formats,
                                  [&](const RecordingFormat& format) { return head.starts_with(format.signature); });
 }
-
-}  // namespace
 
 std::span<const RecordingFormat> recordingFormats() { return all_formats; }
 
@@ -81,6 +81,7 @@ std::unique_ptr<RecordingReader> RecordingReader::open(const std::filesystem::pa
 
 RecordingReader::RecordingReader(const std::filesystem::path& path)
     : size_(0), path_(path), format_(recognisedFormat(path)), file_(path, std::ios::binary) {
+    shape_ = format_.shape;
     size_ = std::filesystem::file_size(path);
 }
 

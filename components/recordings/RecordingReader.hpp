@@ -65,24 +65,27 @@ T field(std::span<const char> bytes, size_t at) {
     return value;
 }
 
-/** What the pings of a recording are: fans of a forward-looking sonar, or lines of a side-scan. */
-enum class RecordedShape { Fan, Line };
+/** What the pings of a recording are: fans of a forward-looking sonar, lines of a side-scan, or single beams, of a
+ *  scanning sonar at different bearings or of an echo sounder. */
+enum class RecordedShape { Fan, Line, Scan, Sounder };
 
 class RecordingReader;
 
 /** A format of recordings: a line of the table in RecordingReader.cpp, from which files are recognised and messages are
  *  made. */
 struct RecordingFormat {
-    std::string_view ending;  ///< Of the files, in lower case; empty: any.
-    const char* name;         ///< For messages: "XTF".
-    const char* device;       ///< For messages: "a side-scan".
-    RecordedShape shape;
+    std::string_view ending;     ///< Of the files, in lower case; empty: any.
+    const char* name;            ///< For messages: "XTF".
+    const char* device;          ///< For messages: "a side-scan".
+    RecordedShape shape;         ///< Of most files, see RecordingReader::shape().
     std::string_view signature;  ///< The first bytes of each file; empty: any bytes.
     std::unique_ptr<RecordingReader> (*open)(const std::filesystem::path&) = nullptr;  ///< Null: of `component`.
     const char* component = nullptr;  ///< Its component library, with the function insonify_open_recording.
 };
 /** The formats that can be read; the last one, without a signature, is tried for files that are of no other. */
 std::span<const RecordingFormat> recordingFormats();
+/** Returns the format of a file by its first bytes. Throws types::ConfigError for a file that cannot be read. */
+const RecordingFormat& recognisedFormat(const std::filesystem::path& file);
 /** Returns the format with the ending of a file, in any case of letters; null: none has it. */
 const RecordingFormat* findRecordingFormat(const std::filesystem::path& file);
 /** Throws types::ConfigError where a log is wanted and the file has the ending of a recording, with the command that
@@ -102,7 +105,8 @@ struct RecordedPing {
     double speed_of_sound = 0;  ///< As the file states it [m/s]; 0: unknown.
     double range = 0;           ///< Slant range of the end of the last bin [m].
     double window_start = 0;    ///< Slant range of the first sample [m]; the bins before it are 0.
-    double max_code = 0;        ///< Max code of the device; 0: bins are no codes.
+    double gain_db = std::numeric_limits<double>::quiet_NaN();  ///< Of the receiver; NaN: unknown.
+    double max_code = 0;                                        ///< Max code of the device; 0: bins are no codes.
     receiver::CodeConfig code;  ///< The law of the codes as far as the file states it; at most 16 bits.
     bool law_known = false;     ///< Whether the file states the law.
 };
@@ -121,6 +125,7 @@ public:
     RecordingReader& operator=(const RecordingReader&) = delete;
 
     const RecordingFormat& format() const { return format_; }
+    RecordedShape shape() const { return shape_; }
     /** Returns the next ping; none at the end of the file. Throws types::ConfigError if the file has no ping, or with
      *  the byte at which the first ping is damaged. Later damage ends the pings, with a notice; a packet that the end
      * of the file cuts off is no damage. */
@@ -185,6 +190,7 @@ protected:
     /** Returns the pose in the world; unknown if it is not stated or not on the earth. */
     types::Pose placed(types::Time time, const std::optional<Stated>& stated);
 
+    RecordedShape shape_{};       ///< That of the format, unless the file has another.
     uint64_t at_ = 0, next_ = 0;  ///< Offsets of this packet and the next [B].
     uint64_t size_ = 0;           ///< Size of the file [B].
 

@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "components/recordings/XtfLayout.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::recordings {
 namespace {
@@ -34,6 +35,12 @@ types::Angle angleAt(std::span<const char> bytes, size_t at) {
     return deg > 0 && deg <= 360 ? types::Angle{types::radians(deg)} : types::Angle{};
 }
 
+/** Returns "byte 1280: the channel is 7". */
+std::string textOf(const types::ConfigError& error) {
+    const types::Diagnostic& found = error.diagnostics().front();
+    return found.path + ": " + found.message;
+}
+
 float sampleAt(std::span<const char> samples, size_t index, size_t bytes, bool is_float) {
     const size_t at = index * bytes;
     if (is_float) return field<float>(samples, at);
@@ -48,6 +55,19 @@ float sampleAt(std::span<const char> samples, size_t index, size_t bytes, bool i
 
 XtfFile::XtfFile(const std::filesystem::path& path) : RecordingReader(path) { readChannels(); }
 
+bool XtfFile::beginsPacket(uint64_t at) {
+    const std::vector<char> mark = take(at, sizeof(uint16_t));
+    return mark.size() == sizeof(uint16_t) && field<uint16_t>(mark, 0) == xtf::packet::magic;
+}
+
+bool XtfFile::describesChannel(uint64_t at) {
+    namespace info = xtf::channel_info;
+    constexpr uint8_t max_type = 3;  // bathymetry
+    const std::vector<char> bytes = take(at, info::size);
+    return bytes.size() == info::size && field<uint8_t>(bytes, info::type) <= max_type &&
+           sampleBytes(field<uint8_t>(bytes, info::sample_format), field<uint16_t>(bytes, info::sample_bytes)) > 0;
+}
+
 void XtfFile::readChannels() {
     namespace header = xtf::file_header;
     namespace info = xtf::channel_info;
@@ -55,16 +75,16 @@ void XtfFile::readChannels() {
     if (bytes.size() < header::size)
         fail(bytes.size(), fmt::format("ends here; an XTF file has a header of {} bytes", header::size));
     in_degrees_ = field<uint16_t>(bytes, header::nav_units) == header::degrees;
-    const size_t count =
+    declared_ =
         size_t{field<uint16_t>(bytes, header::channel_count)} + field<uint16_t>(bytes, header::bathymetry_count);
-    const size_t needed = header::channel_infos + count * info::size;
-    next_ = (needed + header::size - 1) / header::size * header::size;
+    const size_t needed = header::channel_infos + declared_ * info::size;
+    for (next_ = header::size; next_ < needed && !beginsPacket(next_);) next_ += header::size;
+    while (!beginsPacket(next_) && describesChannel(next_)) next_ += header::size;  // more than it declares
     bytes = take(0, next_);
     if (bytes.size() < next_)
         fail(header::channel_count,
-             fmt::format("has {} channels, whose header is {} bytes; the file has {}", count, next_, size_));
-    for (size_t i = 0; i < count; ++i) {
-        const size_t at = header::channel_infos + i * info::size;
+             fmt::format("has {} channels, whose header is {} bytes; the file has {}", declared_, next_, size_));
+    for (size_t at = header::channel_infos; at + info::size <= bytes.size(); at += info::size) {
         const auto of = std::span<const char>(bytes).subspan(at, info::size);
         Channel channel{field<uint8_t>(of, info::type),
                         field<uint8_t>(of, info::sample_format),
@@ -75,12 +95,12 @@ void XtfFile::readChannels() {
                         floatAt(of, info::frequency)};
         const auto legacy = field<uint16_t>(of, info::sample_bytes);
         channel.sample_bytes = sampleBytes(channel.format, legacy);
-        if (channel.sample_bytes == 0 && isSide(channel.type))
+        if (channel.sample_bytes == 0 && isSide(channel.type) && channels_.size() < declared_)
             fail(at + info::sample_format,
                  fmt::format("the samples of channel {} have format {} of {} bytes; it may be 0 (1, 2 or 4 bytes), "
                              "2, 3, 5 or 8",
-                             i, channel.format, legacy));
-        if (channel.sample_bytes == 0) channel.sample_bytes = legacy;
+                             channels_.size(), channel.format, legacy));
+        if (channel.sample_bytes == 0 && !isSide(channel.type)) channel.sample_bytes = legacy;
         channels_.push_back(channel);
     }
 }
@@ -100,17 +120,21 @@ bool XtfFile::nextPacket() {
 
 std::optional<RecordedPing> XtfFile::read() {
     while (nextPacket()) {
-        if (const auto type = field<uint8_t>(packet_, xtf::packet::type); type != xtf::packet::sonar)
+        if (const auto type = field<uint8_t>(packet_, xtf::packet::type); type != xtf::packet::sonar) {
             ++other_packets_[type];
-        else if (auto read = line())
-            return read;
-        else
+            continue;
+        }
+        try {
+            if (auto read = line()) return read;
             ++without_side_;
+        } catch (const types::ConfigError& error) {
+            omitted_.add(textOf(error));
+        }
     }
     return std::nullopt;
 }
 
-XtfFile::Side XtfFile::side(size_t offset) const {
+XtfFile::Side XtfFile::side(size_t offset, bool by_header) const {
     namespace fields = xtf::channel_header;
     const uint64_t at = at_ + offset;
     const size_t left = packet_.size() - offset;
@@ -120,12 +144,13 @@ XtfFile::Side XtfFile::side(size_t offset) const {
     side.at = at;
     side.header = std::span<const char>(packet_).subspan(offset, fields::size);
     const auto number = field<uint16_t>(side.header, fields::channel);
-    if (number >= channels_.size())
-        fail(at + fields::channel, fmt::format("the channel is {}; the header of the file has {} channels, from 0",
-                                               number, channels_.size()));
+    if (number >= channels_.size() || channels_[number].sample_bytes == 0)
+        fail(at + fields::channel,
+             fmt::format("the channel is {}; the header of the file describes {} channels, from 0", number,
+                         std::ranges::count_if(channels_, &Channel::sample_bytes)));
     side.channel = &channels_[number];
     side.count = field<uint32_t>(side.header, fields::sample_count);
-    if (side.count == 0) side.count = side.channel->sample_count;
+    if (side.count == 0 && by_header) side.count = side.channel->sample_count;
     const uint64_t bytes = uint64_t{side.count} * side.channel->sample_bytes;
     if (bytes > left - fields::size)
         fail(at + fields::sample_count,
@@ -135,18 +160,44 @@ XtfFile::Side XtfFile::side(size_t offset) const {
     return side;
 }
 
-XtfFile::Sides XtfFile::sides() {
-    Sides found;
+std::vector<XtfFile::Side> XtfFile::channelsOfPing(bool by_header, Failure& failure) const {
+    std::vector<Side> all;
+    failure.reset();
     size_t offset = xtf::ping_header::size;
-    for (int left = field<uint16_t>(packet_, xtf::packet::channel_count); left > 0; --left) {
-        const Side read = side(offset);
-        offset += read.header.size() + read.samples.size();
+    try {
+        for (int left = field<uint16_t>(packet_, xtf::packet::channel_count); left > 0; --left) {
+            all.push_back(side(offset, by_header));
+            offset += all.back().header.size() + all.back().samples.size();
+        }
+    } catch (const types::ConfigError& error) {
+        failure = error;
+    }
+    return all;
+}
+
+XtfFile::Sides XtfFile::sides() {
+    Failure failure, by_header_failure;
+    std::vector<Side> all = channelsOfPing(false, failure);
+    if (std::ranges::none_of(all, &Side::count))
+        if (std::vector<Side> old = channelsOfPing(true, by_header_failure); !by_header_failure) {
+            all = std::move(old);
+            failure.reset();
+        }
+    Sides found;
+    for (const Side& read : all) {
+        const auto number = static_cast<size_t>(read.channel - channels_.data());
         auto& place = read.channel->type == xtf::channel_info::port ? found.port : found.starboard;
-        if (isSide(read.channel->type) && !place && read.count > 0)
+        if (isSide(read.channel->type) && read.count == 0)
+            empty_.add(fmt::format("byte {}", read.at));
+        else if (isSide(read.channel->type) && !place)
             place = read;
         else
-            ++other_channels_[static_cast<size_t>(read.channel - channels_.data())];
+            ++other_channels_[number];
+        if (number >= declared_) ++undeclared_[number];
     }
+    const bool has_side = found.port || found.starboard;
+    if (failure && !has_side) throw *failure;
+    if (failure) cut_short_.add(textOf(*failure));
     return found;
 }
 
@@ -211,26 +262,45 @@ std::optional<RecordingReader::Stated> XtfFile::stated() const {
         in_degrees_, place.x, place.y, depth, heading, floatAt(packet_, fields::pitch), floatAt(packet_, fields::roll)};
 }
 
-void XtfFile::append(const Side& side, bool is_port, types::Sonar& ping) {
-    const int weight = field<int16_t>(side.header, xtf::channel_header::weight);
-    const bool is_float = side.channel->format == xtf::channel_info::float32;
-    const auto sample = [&](uint32_t i) {
-        const uint32_t at = is_port ? side.count - 1 - i : i;  // port runs from the far end to the sonar
-        const float value = sampleAt(side.samples, at, side.channel->sample_bytes, is_float);
+uint32_t XtfFile::Side::binCount(double per_bin) const {
+    return static_cast<uint32_t>(std::ceil(count / per_bin - 0.5));
+}
+
+void XtfFile::Side::append(double per_bin, bool is_port, types::Sonar& ping) const {
+    const int weight = field<int16_t>(header, xtf::channel_header::weight);
+    const bool is_float = channel->format == xtf::channel_info::float32;
+    const auto sample = [&](uint32_t bin) {
+        const uint32_t i = std::min(static_cast<uint32_t>((bin + 0.5) * per_bin), count - 1);
+        const uint32_t place = is_port ? count - 1 - i : i;  // port runs from the far end to the sonar
+        const float value = sampleAt(samples, place, channel->sample_bytes, is_float);
         return weight == 0 ? value : std::ldexp(value, -weight);
     };
-    appendSide(is_port, 0, side.count, sample, ping);
+    appendSide(is_port, 0, binCount(per_bin), sample, ping);
 }
 
 void XtfFile::setBins(const Sides& sides, double speed_of_sound, RecordedPing& to) {
     const Side& any = sides.starboard ? *sides.starboard : *sides.port;
-    setResolution(any.resolution(), speed_of_sound, to);
+    const Side& other = sides.port ? *sides.port : any;
+    constexpr double alike = 1e-3, max_ratio = 10;
+    const double ratio = any.resolution() / other.resolution();  // the finer one gives the bins
+    const bool is_resampled = std::abs(ratio - 1) > alike;
+    const auto why = [&] {
+        return fmt::format("the samples are {:.6g} m long, and those to port {:.6g} m", any.resolution(),
+                           other.resolution());
+    };
+    if (is_resampled && !(ratio <= max_ratio && ratio >= 1 / max_ratio))
+        fail(any.at, why() + fmt::format("; one may be at most {:g} times the other", max_ratio));
+    if (is_resampled) resampled_.add(fmt::format("byte {}: {}", any.at, why()));
+    const double starboard_per_bin = is_resampled && ratio > 1 ? 1 / ratio : 1,
+                 port_per_bin = is_resampled && ratio < 1 ? ratio : 1;
+    setResolution(is_resampled && ratio > 1 ? other.resolution() : any.resolution(), speed_of_sound, to);
     types::Sonar& ping = to.ping;
     ping.beam_width = any.channel->beam_width;
     ping.beam_height = any.channel->beam_height;
-    ping.bin_count = std::max(sides.port ? sides.port->count : 0, sides.starboard ? sides.starboard->count : 0);
-    if (sides.starboard) append(*sides.starboard, false, ping);
-    if (sides.port) append(*sides.port, true, ping);
+    ping.bin_count = std::max(sides.port ? sides.port->binCount(port_per_bin) : 0,
+                              sides.starboard ? sides.starboard->binCount(starboard_per_bin) : 0);
+    if (sides.starboard) sides.starboard->append(starboard_per_bin, false, ping);
+    if (sides.port) sides.port->append(port_per_bin, true, ping);
 }
 
 std::optional<RecordedPing> XtfFile::line() {
@@ -243,11 +313,6 @@ std::optional<RecordedPing> XtfFile::line() {
     const double speed = speedOfSound();
     for (std::optional<Side>* side : {&found.port, &found.starboard})
         if (*side) (*side)->range = rangeOf(**side, speed);
-    if (found.port && found.starboard && std::abs(found.port->resolution() / found.starboard->resolution() - 1) > 1e-3)
-        fail(
-            found.starboard->at,
-            fmt::format("the samples are {:.6g} m long, and those to port {:.6g} m; both sides of a ping must be alike",
-                        found.starboard->resolution(), found.port->resolution()));
     RecordedPing read;
     read.ping.time = time();
     setBins(found, speed, read);
@@ -270,8 +335,20 @@ std::vector<std::string> XtfFile::notices() const {
     for (const auto& [number, count] : other_channels_)
         all.push_back(fmt::format("channel {} is omitted in {} pings: only the first to port and to starboard are read",
                                   number, count));
+    for (const auto& [number, count] : undeclared_)
+        all.push_back(
+            fmt::format("channel {} of {} pings is read as the header describes it, although the header "
+                        "declares only {} channels",
+                        number, count, declared_));
     if (without_side_ > 0)
         all.push_back(fmt::format("{} pings have no channel to port or to starboard and are omitted", without_side_));
+    const auto report = [&](const OddPings& odd, const char* what) {
+        if (odd.count > 0) all.push_back(fmt::format("{} {}; the first: {}", odd.count, what, odd.first));
+    };
+    report(omitted_, "pings are omitted, because they contradict themselves");
+    report(cut_short_, "pings are read up to a channel that cannot be read");
+    report(empty_, "sides of pings have no samples and are omitted");
+    report(resampled_, "pings have samples of two lengths, and get bins of the shorter");
     return all;
 }
 

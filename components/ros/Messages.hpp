@@ -319,7 +319,7 @@ struct DetectionFlag {
     static constexpr const char* type_hash = "RIHS01_233c78cf2cc8722d8372348d0bf5c3e34839baa3010f884a73e1d2ae35b9005c";
     static constexpr const char* constants =
         "uint8 DETECT_OK=0\nuint8 DETECT_BAD_SONAR=1\nuint8 DETECT_BAD_FILTER=2\nuint8 DETECT_BAD_USER=4\n";
-    static constexpr uint8_t ok = 0, bad_filter = 2;
+    static constexpr uint8_t ok = 0, bad_sonar = 1, bad_filter = 2;
     uint8_t flag = ok;
 
     friend bool operator==(const DetectionFlag&, const DetectionFlag&) = default;
@@ -346,6 +346,32 @@ struct SonarRanges {
         visit({"intensities", "1"}, self.intensities);
         visit({"beam_unit_vec", "1"}, self.beam_unit_vec);
         visit({"ranges", "m"}, self.ranges);
+    }
+};
+
+/** stamp is the start of transmission. Angles are those of a sonar that looks down. */
+struct SonarDetections {
+    static constexpr const char* type_name = "marine_acoustic_msgs/msg/SonarDetections";
+    static constexpr const char* type_hash = "RIHS01_2be9466b1dff9d71d6c8e21379e805805a5d315d899023961f183bc32182e60d";
+    Header header;
+    PingInfo ping_info;
+    std::vector<DetectionFlag> flags;
+    std::vector<float> two_way_travel_times;
+    std::vector<float> tx_delays;
+    std::vector<float> intensities;
+    std::vector<float> tx_angles;
+    std::vector<float> rx_angles;
+
+    friend bool operator==(const SonarDetections&, const SonarDetections&) = default;
+    static void describe(auto& self, auto& visit) {
+        visit({"header"}, self.header);
+        visit({"ping_info"}, self.ping_info);
+        visit({"flags"}, self.flags);
+        visit({"two_way_travel_times", "s"}, self.two_way_travel_times);
+        visit({"tx_delays", "s", "after the stamp"}, self.tx_delays);
+        visit({"intensities", "1"}, self.intensities);
+        visit({"tx_angles", "rad", "along the track, positive forward"}, self.tx_angles);
+        visit({"rx_angles", "rad", "across the track, positive to starboard"}, self.rx_angles);
     }
 };
 

@@ -9,6 +9,7 @@
 #include "components/ros/Clouds.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/BeamArc.hpp"
+#include "types/Samples.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -23,7 +24,8 @@ void fillWidths(types::Angle width, std::vector<float>& widths) {
     widths.assign(width.isUnknown() ? 0 : 1, static_cast<float>(width.rad));
 }
 
-void fillInfo(const types::Sonar& ping, const SonarOptions& options, PingInfo& info) {
+/** @param ping a ping, or the detections of one */
+void fillInfo(const auto& ping, const SonarOptions& options, PingInfo& info) {
     info.frequency = static_cast<float>(options.frequency_khz * 1000);
     info.sound_speed = ping.speed_of_sound;
     fillWidths(ping.beam_height, info.tx_beamwidths);
@@ -41,6 +43,27 @@ void fillDelays(const types::Sonar& ping, std::vector<float>& delays) {
     delays.resize(ping.beam_count);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
         delays[beam] = static_cast<float>((ping.beamStart(beam) - ping.time).seconds());
+}
+
+/** Fills the steering angle of each beam, positive to starboard [rad]. @param bearings positive to port */
+void fillReceiveAngles(const std::vector<types::Angle>& bearings, std::vector<float>& angles) {
+    angles.resize(bearings.size());
+    for (size_t beam = 0; beam < bearings.size(); ++beam) angles[beam] = static_cast<float>(-bearings[beam].rad);
+}
+
+/** Fills flags, intensities and the places of the first return of each beam. @param placeOf returns that of a bin */
+void fillFirstReturns(const types::Sonar& ping, const SonarOptions& options, auto& message, std::vector<float>& places,
+                      auto&& placeOf) {
+    message.flags.assign(ping.beam_count, {DetectionFlag::bad_filter});
+    message.intensities.assign(ping.beam_count, 0);
+    places.assign(ping.beam_count, std::numeric_limits<float>::quiet_NaN());
+    const DetectionThreshold rule(ping, options);
+    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
+        if (const auto bin = rule.firstOf(beam)) {
+            message.flags[beam].flag = DetectionFlag::ok;
+            message.intensities[beam] = ping.bins[size_t{beam} * ping.bin_count + *bin];
+            places[beam] = placeOf(*bin);
+        }
 }
 
 double stepTo(const types::BeamArc& arc, size_t place) { return arc.bearings[place] - arc.bearings[place - 1]; }
@@ -84,9 +107,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, RawSonarImag
     message.sample0 = 0;
     fillDelays(ping, message.tx_delays);
     message.tx_angles.assign(ping.beam_count, 0);
-    message.rx_angles.resize(ping.beam_count);
-    for (size_t beam = 0; beam < ping.beam_count; ++beam)
-        message.rx_angles[beam] = static_cast<float>(-ping.bearings[beam].rad);  // Rock's are positive to port
+    fillReceiveAngles(ping.bearings, message.rx_angles);
     fillImage(ping, options, message.image);
 }
 
@@ -95,16 +116,32 @@ void convert(const types::Sonar& ping, const SonarOptions& options, SonarRanges&
     fillInfo(ping, options, message.ping_info);
     fillDirections(ping, options.frame, message.beam_unit_vec);
     fillDelays(ping, message.transmit_delays);
-    message.flags.assign(ping.beam_count, {DetectionFlag::bad_filter});
-    message.intensities.assign(ping.beam_count, 0);
-    message.ranges.assign(ping.beam_count, std::numeric_limits<float>::quiet_NaN());
-    const DetectionThreshold rule(ping, options);
-    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
-        if (const auto bin = rule.firstOf(beam)) {
-            message.flags[beam].flag = DetectionFlag::ok;
-            message.intensities[beam] = ping.bins[size_t{beam} * ping.bin_count + *bin];
-            message.ranges[beam] = binCentre(ping, *bin);
-        }
+    fillFirstReturns(ping, options, message, message.ranges, [&](uint32_t bin) { return binCentre(ping, bin); });
+}
+
+void convert(const types::Sonar& ping, const SonarOptions& options, SonarDetections& message) {
+    fillHeader(ping, options, message.header);
+    fillInfo(ping, options, message.ping_info);
+    fillDelays(ping, message.tx_delays);
+    message.tx_angles.assign(ping.beam_count, 0);
+    fillReceiveAngles(ping.bearings, message.rx_angles);
+    fillFirstReturns(ping, options, message, message.two_way_travel_times,
+                     [&](uint32_t bin) { return static_cast<float>(2 * (bin + 0.5) * ping.binSeconds()); });
+}
+
+void convert(const types::SonarDetections& detections, const SonarOptions& options, SonarDetections& message) {
+    types::requireSound(detections, "it");
+    message.header = {toRos(detections.time), options.frame_id};
+    fillInfo(detections, options, message.ping_info);
+    const size_t beams = detections.bearings.size();
+    message.flags.assign(beams, {DetectionFlag::ok});
+    message.two_way_travel_times = detections.travel_times;
+    message.tx_delays.assign(beams, 0);
+    message.intensities = detections.intensities;
+    message.tx_angles = detections.elevations;
+    fillReceiveAngles(detections.bearings, message.rx_angles);
+    for (size_t beam = 0; beam < beams; ++beam)
+        if (!std::isfinite(message.two_way_travel_times[beam])) message.flags[beam].flag = DetectionFlag::bad_sonar;
 }
 
 void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2& message) {
@@ -246,6 +283,33 @@ types::Angle widthOf(const std::vector<float>& widths) {
 }
 
 }  // namespace
+
+void convert(const SonarDetections& message, types::SonarDetections& detections) {
+    const size_t beams = message.two_way_travel_times.size();
+    const auto require = [&](const char* name, size_t size, bool may_be_empty) {
+        if (size != beams && !(may_be_empty && size == 0))
+            throw std::invalid_argument("sonar detections: " + std::to_string(size) + " " + name + " for " +
+                                        std::to_string(beams) + " travel times");
+    };
+    require("rx_angles", message.rx_angles.size(), false);
+    require("tx_angles", message.tx_angles.size(), true);
+    require("flags", message.flags.size(), true);
+    require("intensities", message.intensities.size(), true);
+    detections.clear();
+    detections.time = fromRos(message.header.stamp);
+    detections.speed_of_sound = message.ping_info.sound_speed;
+    detections.beam_height = widthOf(message.ping_info.tx_beamwidths);
+    detections.beam_width = widthOf(message.ping_info.rx_beamwidths);
+    for (const float angle : message.rx_angles) detections.bearings.push_back({-static_cast<double>(angle)});
+    detections.elevations = message.tx_angles;
+    detections.travel_times = message.two_way_travel_times;
+    detections.intensities = message.intensities;
+    detections.elevations.resize(beams);
+    detections.intensities.resize(beams);
+    for (size_t beam = 0; beam < message.flags.size(); ++beam)
+        if (message.flags[beam].flag != DetectionFlag::ok)
+            detections.travel_times[beam] = std::numeric_limits<float>::quiet_NaN(), detections.intensities[beam] = 0;
+}
 
 void convert(const ProjectedSonarImage& message, const ImageLayout& layout, types::Sonar& ping) {
     checkShape(message);

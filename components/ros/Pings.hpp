@@ -5,6 +5,7 @@
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarDetections.hpp"
 
 namespace insonify::ros {
 
@@ -23,6 +24,20 @@ void convert(const types::Sonar& ping, const SonarOptions& options, RawSonarImag
 /** Writes the centre of each beam's first bin at or above the threshold. A beam without such a bin has range NaN,
  *  intensity 0 and the flag "bad filter". Intensities are the bins. */
 void convert(const types::Sonar& ping, const SonarOptions& options, SonarRanges& message);
+
+/** Writes first returns as above, as two-way travel times after each beam's own transmission: NaN, with intensity 0 and
+ *  the flag "bad filter", for a beam without one. The angle of the receiver is the beam's, positive to starboard; that
+ *  of the transmitter is 0. */
+void convert(const types::Sonar& ping, const SonarOptions& options, SonarDetections& message);
+
+/** Writes the detections of a sonar: the angle of the receiver is a beam's bearing, positive to starboard; that of the
+ *  transmitter its elevation, positive up, which is forward for a sonar that looks down. A beam without a return has
+ *  travel time NaN, intensity 0 and the flag "bad sonar". All beams transmit at the stamp. */
+void convert(const types::SonarDetections& detections, const SonarOptions& options, SonarDetections& message);
+/** Reads the detections of a sonar; a beam that is flagged for any reason has no return. Throws std::invalid_argument
+ *  for lists of unequal lengths, except those that may be empty: flags (all good), intensities and angles of the
+ *  transmitter (0). */
+void convert(const SonarDetections& message, types::SonarDetections& detections);
 
 /** Writes every bin at or above the threshold as a point: x, y, z [m], intensity: the bin. */
 void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2& message);

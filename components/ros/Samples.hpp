@@ -73,12 +73,12 @@ struct String {
     static void describe(auto& self, auto& visit) { visit({"data"}, self.data); }
 };
 
-using MessageTypes =
-    std::tuple<Bool, Int32, Int64, Float32, Float64, String, Time, Header, Clock, Vector3, Point, Quaternion, Pose,
-               PoseStamped, PoseWithCovariance, PoseWithCovarianceStamped, Twist, TwistWithCovariance, Odometry,
-               Transform, TransformStamped, TFMessage, Image, LaserScan, PointField, PointCloud2, Range, PingInfo,
-               SonarImageData, ProjectedSonarImage, RawSonarImage, DetectionFlag, SonarRanges, SonarTruth, SonarReturns,
-               SonarElements, SonarSettings, Imu, FluidPressure, NavSatStatus, NavSatFix, Dvl>;
+using MessageTypes = std::tuple<Bool, Int32, Int64, Float32, Float64, String, Time, Header, Clock, Vector3, Point,
+                                Quaternion, Pose, PoseStamped, PoseWithCovariance, PoseWithCovarianceStamped, Twist,
+                                TwistWithCovariance, Odometry, Transform, TransformStamped, TFMessage, Image, LaserScan,
+                                PointField, PointCloud2, Range, PingInfo, SonarImageData, ProjectedSonarImage,
+                                RawSonarImage, DetectionFlag, SonarRanges, SonarDetections, SonarTruth, SonarReturns,
+                                SonarElements, SonarSettings, Imu, FluidPressure, NavSatStatus, NavSatFix, Dvl>;
 
 /** Calls `use(std::type_identity<T>{})` for each message. */
 void forEachMessage(auto&& use) {
@@ -97,8 +97,8 @@ struct Messages {
     using read_as = T;
 };
 template <>
-struct MessagesOf<types::Sonar>
-    : Messages<types::Sonar, ProjectedSonarImage, RawSonarImage, SonarRanges, PointCloud2, LaserScan, Clock> {};
+struct MessagesOf<types::Sonar> : Messages<types::Sonar, ProjectedSonarImage, RawSonarImage, SonarRanges,
+                                           SonarDetections, PointCloud2, LaserScan, Clock> {};
 /** Rock's older sonar samples become the messages of pings. */
 template <>
 struct MessagesOf<types::SonarBeam> : MessagesOf<types::Sonar> {};
@@ -110,6 +110,8 @@ template <>
 struct MessagesOf<types::SonarReturns> : Messages<types::SonarReturns, SonarReturns, Clock> {};
 template <>
 struct MessagesOf<types::SonarElements> : Messages<types::SonarElements, SonarElements, Clock> {};
+template <>
+struct MessagesOf<types::SonarDetections> : Messages<types::SonarDetections, SonarDetections, Clock> {};
 template <>
 struct MessagesOf<types::SonarSettings> : Messages<types::SonarSettings, SonarSettings, Clock> {};
 template <>
@@ -192,6 +194,10 @@ inline void toMessage(const types::SonarReturns& returns, const MessageOptions& 
 inline void toMessage(const types::SonarElements& signals, const MessageOptions& options, SonarElements& message) {
     convert(signals, options.frame_id, message);
 }
+inline void toMessage(const types::SonarDetections& detections, const MessageOptions& options,
+                      SonarDetections& message) {
+    convert(detections, options, message);
+}
 inline void toMessage(const types::SonarSettings& settings, const MessageOptions& options, SonarSettings& message) {
     convert(settings, options.frame_id, message);
 }
@@ -247,6 +253,9 @@ inline void toSample(const SonarReturns& message, const MessageOptions&, types::
 }
 inline void toSample(const SonarElements& message, const MessageOptions&, types::SonarElements& signals) {
     convert(message, signals);
+}
+inline void toSample(const SonarDetections& message, const MessageOptions&, types::SonarDetections& detections) {
+    convert(message, detections);
 }
 inline void toSample(const SonarSettings& message, const MessageOptions&, types::SonarSettings& settings) {
     convert(message, settings);

@@ -93,6 +93,18 @@ std::vector<CodedPing> pingsOfLog(const LoggedPings& log, const receiver::CodeCo
     return pings;
 }
 
+/** Returns the pings of a recording. Throws types::ConfigError for pings of one beam. */
+std::vector<CodedPing> pingsOfRecording(const fs::path& file, const receiver::CodeConfig& assumed) {
+    const auto reader = RecordingReader::open(file);
+    if (reader->shape() == recordings::RecordedShape::Scan || reader->shape() == recordings::RecordedShape::Sounder)
+        throw types::ConfigError(file.string(), "--real",
+                                 fmt::format("is a recording of {}, whose pings have one beam; fans and side-scans can "
+                                             "be compared. `insonify log import` makes a log of it, whose pings "
+                                             "`insonify replay --rerender --score` compares",
+                                             reader->format().device));
+    return codedPings(*reader, assumed);
+}
+
 /** Values of lines; none if unknown. */
 using Known = std::vector<std::optional<double>>;
 
@@ -211,8 +223,8 @@ std::vector<CodedPing> codedLines(const std::vector<types::Sonar>& lines, const 
 }
 
 std::vector<CodedPing> codedPings(RecordingReader& reader, const receiver::CodeConfig& assumed) {
-    return reader.format().shape == recordings::RecordedShape::Line ? pingsOfLines(reader, assumed)
-                                                                    : pingsOfFan(reader, assumed);
+    return reader.shape() == recordings::RecordedShape::Line ? pingsOfLines(reader, assumed)
+                                                             : pingsOfFan(reader, assumed);
 }
 
 std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, const receiver::CodeConfig* law,
@@ -221,8 +233,7 @@ std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, cons
     std::vector<CodedPing> pings;
     for (const fs::path& file : filesOf(names)) {
         const std::optional<LoggedPings> logged = readLog ? readLog(file) : std::nullopt;
-        for (CodedPing& coded :
-             logged ? pingsOfLog(*logged, assumed) : codedPings(*RecordingReader::open(file), assumed)) {
+        for (CodedPing& coded : logged ? pingsOfLog(*logged, assumed) : pingsOfRecording(file, assumed)) {
             coded.file = file.string();
             const auto isSame = [&](const CodedPing& other) {
                 return other.name == coded.name && other.codes == coded.codes;

@@ -126,6 +126,7 @@ TEST_F(PeerTest, FindsTheNodeItsWritersTheirTypesAndHashes) {
 TEST_F(PeerTest, ReadsEveryTypeThatIsSent) {
     const std::pair<const char*, MessageType> types[] = {{"RawSonarImage", message_type<ros::RawSonarImage>},
                                                          {"SonarRanges", message_type<ros::SonarRanges>},
+                                                         {"SonarDetections", message_type<ros::SonarDetections>},
                                                          {"PointCloud2", message_type<ros::PointCloud2>},
                                                          {"LaserScan", message_type<ros::LaserScan>},
                                                          {"Clock", message_type<ros::Clock>}};
@@ -141,10 +142,12 @@ TEST_F(PeerTest, ReadsEveryTypeThatIsSent) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         return std::ranges::all_of(peers, &Peer::hasEnded);
     }));
-    const json raw = peers[0]->result(), ranges = peers[1]->result(), points = peers[2]->result(),
-               scan = peers[3]->result(), clock = peers[4]->result();
+    const json raw = peers[0]->result(), ranges = peers[1]->result(), detections = peers[2]->result(),
+               points = peers[3]->result(), scan = peers[4]->result(), clock = peers[5]->result();
     EXPECT_EQ(raw["first"]["samples_per_beam"], 50);
     EXPECT_EQ(ranges["first"]["ranges"].size(), 16u);
+    EXPECT_EQ(detections["first"]["two_way_travel_times"].size(), 16u);
+    EXPECT_NEAR(detections["first"]["rx_angles"][0], -ping->bearings[0].rad, 1e-6) << "to starboard";
     EXPECT_EQ(points["first"]["fields"].size(), 4u);
     EXPECT_EQ(scan["first"]["ranges"].size(), 16u);
     EXPECT_EQ(clock["first"]["clock"]["sec"], ping->time.microseconds / 1'000'000);

@@ -67,6 +67,7 @@ TEST_F(PublisherTaskTest, SendsAPingAsEachMessageThatItCanBecome) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/image", message_type<ros::ProjectedSonarImage>),
                                             topicOut("in", "/raw", message_type<ros::RawSonarImage>),
                                             topicOut("in", "/ranges", message_type<ros::SonarRanges>),
+                                            topicOut("in", "/detections", message_type<ros::SonarDetections>),
                                             topicOut("in", "/points", message_type<ros::PointCloud2>),
                                             topicOut("in", "/scan", message_type<ros::LaserScan>),
                                             topicOut("in", "/clock", message_type<ros::Clock>)});
@@ -84,9 +85,29 @@ TEST_F(PublisherTaskTest, SendsAPingAsEachMessageThatItCanBecome) {
     EXPECT_EQ(image, expected);
     EXPECT_EQ(received<ros::RawSonarImage>("/raw", send).samples_per_beam, 50u);
     EXPECT_EQ(received<ros::SonarRanges>("/ranges", send).ranges.size(), 16u);
+    EXPECT_EQ(received<ros::SonarDetections>("/detections", send).two_way_travel_times.size(), 16u);
     EXPECT_GT(received<ros::PointCloud2>("/points", send).width, 0u);
     EXPECT_EQ(received<ros::LaserScan>("/scan", send).ranges.size(), 16u);
     EXPECT_EQ(ros::fromRos(received<ros::Clock>("/clock", send).clock), ping->time);
+}
+
+TEST_F(PublisherTaskTest, SendsDetectionsInTheFrameOfTheSonarWithItsFrequency) {
+    auto found = std::make_shared<types::SonarDetections>();
+    found->time = framework::wallClock();
+    found->speed_of_sound = 1500;
+    found->beam_height = {0.0175};
+    found->add({0.5}, {-0.25}, 12, 0.5);
+    TopicOut topic = topicOut("in", "/detections", message_type<ros::SonarDetections>);
+    topic.sonar.frequency_khz = 400;
+    topic.sonar.frame_id = "multibeam";
+    Publishing<types::SonarDetectionsPtr> publishing({topic});
+    const auto message = received<ros::SonarDetections>("/detections", [&] { publishing.send(found); });
+    ros::SonarDetections expected;
+    ros::SonarOptions options;
+    options.frequency_khz = 400;
+    options.frame_id = "multibeam";
+    ros::convert(*found, options, expected);
+    EXPECT_EQ(message, expected);
 }
 
 TEST_F(PublisherTaskTest, ConvertsSoundingsToTheWorldFrameAndNamesIt) {

@@ -83,6 +83,10 @@ SonarRanges = message(
     "marine_acoustic_msgs", "SonarRanges", header=Header, ping_info=PingInfo, flags=sequence[DetectionFlag],
     transmit_delays=sequence[float32], intensities=sequence[float32], beam_unit_vec=sequence[Vector3],
     ranges=sequence[float32])
+SonarDetections = message(
+    "marine_acoustic_msgs", "SonarDetections", header=Header, ping_info=PingInfo, flags=sequence[DetectionFlag],
+    two_way_travel_times=sequence[float32], tx_delays=sequence[float32], intensities=sequence[float32],
+    tx_angles=sequence[float32], rx_angles=sequence[float32])
 Gid = message("rmw_dds_common", "Gid", data=array[uint8, 16])
 NodeEntitiesInfo = message(
     "rmw_dds_common", "NodeEntitiesInfo", node_namespace=str, node_name=str, reader_gid_seq=sequence[Gid],

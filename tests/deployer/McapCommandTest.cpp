@@ -1,8 +1,12 @@
 // MCAP files in all commands: logged, exported, inspected, replayed.
 #include <gmock/gmock.h>
 
+#include "components/log/Reader.hpp"
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Messages.hpp"
 #include "tests/deployer/Wall.hpp"
 
+using namespace insonify;
 using namespace insonify::deployer;
 using testing::HasSubstr;
 
@@ -59,6 +63,39 @@ TEST_F(McapCommandTest, OneStreamIsExportedAlone) {
         call({"log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "p.mcap", "--dtype", "uint8"}).out,
         "p.mcap: 3 messages\n");
     EXPECT_EQ(json::parse(call({"log", "info", "p.mcap", "--json"}).out)["streams"].size(), 1u);
+}
+
+/** The detections of a profiler alone, in a run's bag and in one made of its pocolog file. */
+TEST(DetectionsBagTest, ABagHasDetectionsWithTheFrequencyAndTheMountOfTheirSonar) {
+    std::string text = replaced(wall_deployment, "sonar::SonarTask", "sonar::ProfilerTask");
+    text = replaced(text, "range: 20\n", "range: 20\n      frequency_khz: 400\n");
+    text = replaced(text, "{file: wall.gltf}", "{file: wall.gltf, mount: {position: [0.2, 0, -0.2]}}");
+    text = replaced(text, "{from: sonar.ping, to: log.clean,", "{from: sonar.detections, to: log.found,");
+    text = replaced(text, "  - {from: noise.noisy, to: log.noisy, policy: {type: buffer, size: 64}}\n", "");
+    const WallFolder folder(text);
+    ASSERT_THAT(folder.run({"--pings", "3", "--set", "log.file=wall.0.mcap"}), succeeds());
+    ASSERT_THAT(callInsonify(folder, {"run", "wall.yml", "--pings", "3", "--out", "p"}), succeeds());
+    ASSERT_THAT(callInsonify(folder, {"log", "export", "p/wall.0.log", "--to", "e/wall.mcap"}), succeeds());
+    for (const char* bag : {"out/wall.0.mcap", "e/wall.mcap"}) {
+        SCOPED_TRACE(bag);
+        EXPECT_THAT(readFile(folder / fs::path(bag).parent_path() / "metadata.yaml"),
+                    AllOf(HasSubstr("marine_acoustic_msgs/msg/SonarDetections"), HasSubstr("/tf_static")));
+        const auto log = log::openLog(folder / bag);
+        size_t pings = 0;
+        log->forEachRef("sonar.detections", [&](const log::SampleRef& at) {
+            ros::SonarDetections message;
+            ros::decode(log->bytesOf(at), message);
+            EXPECT_EQ(message.ping_info.frequency, 400e3f);
+            EXPECT_EQ(message.header.frame_id, "sonar");
+            ASSERT_EQ(message.two_way_travel_times.size(), 16u);
+            for (size_t beam = 0; beam < 16; ++beam) {  // of the wall, 10 m ahead of the vehicle
+                const double range = 9.8 / std::cos(static_cast<double>(message.rx_angles[beam]));
+                EXPECT_NEAR(message.two_way_travel_times[beam] * message.ping_info.sound_speed / 2, range, 0.3) << beam;
+            }
+            ++pings;
+        });
+        EXPECT_EQ(pings, 3u);
+    }
 }
 
 TEST_F(McapCommandTest, MistakesAreNamed) {

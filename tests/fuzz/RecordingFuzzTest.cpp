@@ -1,6 +1,7 @@
 // Recordings of other makers' sonars, read by `insonify log import`.
 #include <gtest/gtest.h>
 
+#include "components/device/PingViewerLog.hpp"
 #include "components/recordings/ArisFile.hpp"
 #include "components/recordings/GlfFile.hpp"
 #include "components/recordings/JsfFile.hpp"
@@ -18,7 +19,7 @@ void readRecording(const Input& input) try {
     while (const auto next = file.next()) {
         EXPECT_NO_THROW(next->ping.validate());
         if (std::is_same_v<File, recordings::XtfFile>) {
-            EXPECT_LE(next->ping.bins.size(), input.bytes().size());
+            EXPECT_LE(next->ping.bins.size(), 20 * input.bytes().size());  // of two sides, resampled by at most 10
         }
         EXPECT_GE(next->altitude, 0);
         EXPECT_GE(next->window_start, 0);
@@ -48,6 +49,15 @@ TEST(JsfFuzzTest, EveryFileIsPingsOrAnError) {
           "line.jsf",
           {std::string("\x01\x16\x0D\0\x50\0\0\x14", 8), std::string("\x01\x16", 2)},
           readRecording<recordings::JsfFile>});
+}
+
+TEST(PingViewerFuzzTest, EveryFileIsPingsOrAnError) {
+    push({"ping_viewer",
+          "20240229-235959500.bin",
+          {std::string("\0\0\0\x18\0", 5), std::string("\0\0\0\x0C", 4), std::string("\xFF\xFF\xFF\xFF", 4),
+           std::string("\0\x32\0\x33\0:", 6), std::string("BR", 2), std::string("\xFC\x08", 2),
+           std::string("\x14\x05", 2)},
+          readRecording<device::PingViewerReader>});
 }
 
 TEST(XtfFuzzTest, EveryFileIsPingsOrAnError) {

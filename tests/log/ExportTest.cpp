@@ -196,6 +196,23 @@ TEST(ExportTest, CsvHasALineForEachBinOfTruthAndEachBeamOfReturns) {
                                     "strongest_level,strongest_elevation\n1.500000,0,0.5,0.04958"));
 }
 
+TEST(ExportTest, DetectionsAreArraysByBeamWithTheSpeedOfSound) {
+    types::SonarDetections found;
+    found.copyPing(ping(1'500'000, 2, 3));
+    found.speed_of_sound = 1480;
+    found.add({0.5}, {0.25}, 7.4, 2);
+    found.add({-0.5}, {0}, types::SonarDetections::no_return, 0);
+    auto [folder, reader] = Logged("sonar.detections", {found, found});
+    exportCsv(reader, "sonar.detections", folder / "x.csv");
+    EXPECT_THAT(textOf(folder / "x.csv"), testing::StartsWith("time,beam,bearing,elevation,travel_time,intensity\n"
+                                                              "1.500000,0,0.5,0.25,0.01,2\n"
+                                                              "1.500000,1,-0.5,0,nan,0\n"));
+    exportNpz(reader, "sonar.detections", folder / "x.npz");
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['travel_time'].shape, x['speed_of_sound'], x['bearings'][1]"),
+              "(2, 2) [1480. 1480.] [ 0.5 -0.5]\n");
+}
+
 TEST(ExportTest, AChangeOfShapeBeginsANewFile) {
     auto [folder, reader] = Logged("sonar.ping", {ping(1, 2, 3), ping(2, 2, 3), ping(3, 4, 3)});
     EXPECT_THAT(exportNpz(reader, "sonar.ping", folder / "x.npz"),

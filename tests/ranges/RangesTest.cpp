@@ -168,6 +168,11 @@ TEST(RangesTest, AWallIsWithinOneBinOfItsRangeInEveryOutput) {
         ros::SonarRanges ranges;
         convert(ping, options, ranges);
         expect(ranges.ranges[made.middle], "SonarRanges");
+        ros::SonarDetections detections;
+        convert(ping, options, detections);
+        expect(static_cast<double>(detections.two_way_travel_times[made.middle]) *
+                   static_cast<double>(detections.ping_info.sound_speed) / 2,
+               "SonarDetections");
     }
 }
 

@@ -86,6 +86,13 @@ types::SonarElements made(std::type_identity<types::SonarElements>) {
     signals.quadrature = {0, 0.25f, -1, 2, 0.125f, -8};
     return signals;
 }
+types::SonarDetections made(std::type_identity<types::SonarDetections>) {
+    types::SonarDetections detections;
+    detections.copyPing(made(std::type_identity<types::Sonar>{}));
+    detections.add({0.5}, {-0.25}, 12.5, 2);
+    detections.add({-0.125}, {0.5}, types::SonarDetections::no_return, 0);
+    return detections;
+}
 types::SonarSettings made(std::type_identity<types::SonarSettings>) {
     types::SonarSettings settings;
     settings.time = {1'500'000};

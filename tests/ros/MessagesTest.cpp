@@ -66,6 +66,7 @@ TEST(MessagesTest, RosbagsComputesTheSameHashesAndReadsTheSameValues) {
     add(ProjectedSonarImage{});
     add(RawSonarImage{});
     add(SonarRanges{});
+    add(SonarDetections{});
     add(PointCloud2{});
     add(LaserScan{});
     Odometry odometry;
@@ -73,12 +74,13 @@ TEST(MessagesTest, RosbagsComputesTheSameHashesAndReadsTheSameValues) {
     corpus.add(odometry);
     const std::string answer =
         pythonSays(test::sourceFile("tests/ros/read_messages.py ") + folder.path().string(), folder.path() / "answer");
-    EXPECT_THAT(answer, testing::StartsWith("48 messages as announced\n"));
+    EXPECT_THAT(answer, testing::StartsWith("49 messages as announced\n"));
     EXPECT_THAT(answer,
                 testing::HasSubstr("ProjectedSonarImage 1700000000.123456000 sonar 1500.0 [0.375, 1.125, 1.875] "
                                    "-0.479426 [128, 55, 168, 0, 213, 255]\n"));
     EXPECT_THAT(answer, testing::HasSubstr("RawSonarImage 1000.0 3 [-0.5, 0.25]\n"));
     EXPECT_THAT(answer, testing::HasSubstr("SonarRanges [1.875, 1.875] [0, 0] [100.0, 1000.0]\n"));
+    EXPECT_THAT(answer, testing::HasSubstr("SonarDetections [0.0025, 0.0025] [0, 0] [0.0, 0.0] [-0.5, 0.25]\n"));
     EXPECT_THAT(answer, testing::HasSubstr("PointCloud2 2 16 ['x', 'y', 'z', 'intensity']\n"));
     EXPECT_THAT(answer, testing::HasSubstr("LaserScan -0.25 0.75 [1.875, 1.875]\n"));
     EXPECT_THAT(answer, testing::HasSubstr("Odometry world body [-2.0, 3.0, -5.0] [1.5, -0.5, -0.25] 2.0\n"));

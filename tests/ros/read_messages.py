@@ -30,6 +30,8 @@ def show(name, m):
         print(name, m.sample_rate, m.samples_per_beam, lists(m.rx_angles))
     elif name == "SonarRanges":
         print(name, lists(m.ranges), [f.flag for f in m.flags], lists(m.intensities))
+    elif name == "SonarDetections":
+        print(name, lists(m.two_way_travel_times), [f.flag for f in m.flags], lists(m.tx_angles), lists(m.rx_angles))
     elif name == "PointCloud2":
         print(name, m.width, m.point_step, [f.name for f in m.fields])
     elif name == "LaserScan":
@@ -55,5 +57,5 @@ for number, type_name, type_hash in entries:
     messages.append((type_name.rsplit("/", 1)[1], message))
 
 print(len(messages), "messages as announced")
-for name, message in messages[-6:]:
+for name, message in messages[-7:]:
     show(name, message)

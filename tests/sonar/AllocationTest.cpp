@@ -75,8 +75,12 @@ struct Second {
 template <class Task>
 requires requires(Task& task) { task.soundings; }
 struct Second<Task> {
-    explicit Second(Task& task) { task.soundings.connectTo(reader.port, framework::ConnPolicy::data()); }
+    explicit Second(Task& task) {
+        task.soundings.connectTo(reader.port, framework::ConnPolicy::data());
+        task.detections.connectTo(beams.port, framework::ConnPolicy::data());
+    }
     test::Reader<types::PointCloudPtr> reader;
+    test::Reader<types::SonarDetectionsPtr> beams;
 };
 
 template <class Task, class Config>

@@ -101,6 +101,49 @@ TEST_F(ProfilerTaskTest, ABeamGivesItsStrongestReturnAndASilentBeamNone) {
     }
 }
 
+/** The soundings are where the travel times and angles of the detections are in the world. */
+TEST_F(ProfilerTaskTest, DetectionsAreTheSoundingsByBeam) {
+    test::Reader<types::SonarDetectionsPtr> reader;
+    task_.detections.connectTo(reader.port, framework::ConnPolicy::buffer(4));
+    ProfilerConfig config = profiler();
+    config.sonar.range = 14;
+    config.sonar.bin_count = 470;
+    config.sonar.speed_of_sound = 1480;
+    startWith(config);
+    for (const auto& [yaw, roll] : {std::pair{0.0, 0.0}, {35.0, -12.0}, {200.0, 15.0}}) {
+        types::Snapshot snapshot = above(sceneOf({ground(-10)}), {1, 2, 0}, yaw, roll);
+        snapshot.time = types::Time{1'000'000 + static_cast<int64_t>(1e6 * yaw)};
+        const types::Pose sonar = snapshot.sonar;
+        const auto cloud = soundingsOf(std::move(snapshot));
+        types::SonarDetectionsPtr found;
+        ASSERT_TRUE(cloud && reader.port.readNew(found)) << task_.lastError();
+        EXPECT_EQ(found->time, cloud->time);
+        EXPECT_EQ(found->speed_of_sound, 1480);
+        EXPECT_NEAR(found->beam_height.deg(), 1, 1e-9) << "along the track";
+        ASSERT_EQ(found->bearings.size(), 128u) << "every beam";
+        EXPECT_EQ(found->diagnostic(), nullptr);
+        size_t point = 0;
+        for (size_t beam = 0; beam < 128; ++beam) {
+            EXPECT_NEAR(found->bearings[beam].deg(), config.sonar.bearingDeg(static_cast<int>(beam)), 1e-9);
+            EXPECT_EQ(found->elevations[beam], 0);
+            const auto time = static_cast<double>(found->travel_times[beam]);
+            if (!std::isfinite(time)) {
+                EXPECT_EQ(found->intensities[beam], 0);
+                continue;
+            }
+            const double bearing = found->bearings[beam].rad;
+            const glm::dvec3 direction(std::cos(bearing), std::sin(bearing), 0);
+            const glm::dvec3 place = sonar.position + sonar.orientation * direction * (time * 1480 / 2);
+            ASSERT_LT(point, cloud->points.size());
+            EXPECT_NEAR(glm::distance(place, cloud->points[point]), 0, 1e-5) << beam;
+            EXPECT_EQ(found->intensities[beam], cloud->intensity(point++));
+        }
+        EXPECT_EQ(point, cloud->points.size());
+        EXPECT_GT(point, 50u);
+        EXPECT_LT(point, 128u) << "14 m do not reach the floor at the edges";
+    }
+}
+
 TEST_F(ProfilerTaskTest, GivesACloudWithoutPointsForNothingInRange) {
     startWith(profiler());
     const auto cloud = soundingsOf(above(sceneOf({ground(-100)}), {0, 0, 0}));

@@ -172,6 +172,37 @@ TEST_F(Sonar3dTaskTest, SoundingsAreTheSameInTheWorld) {
     }
 }
 
+TEST_F(Sonar3dTaskTest, DetectionsAreTheRangeImageByTravelTimes) {
+    test::Reader<types::SonarDetectionsPtr> reader;
+    task_.detections.connectTo(reader.port, framework::ConnPolicy::buffer(2));
+    startWith(grid());
+    const auto plate = test::quad({5, 1.5, 0.5}, {0, 1, 0}, {0, 0, 1});  // ahead, to port, above
+    const auto map = mapOf(test::snapshotOf(sceneOf({plate})));
+    types::SonarDetectionsPtr found;
+    ASSERT_TRUE(map && reader.port.readNew(found)) << task_.lastError();
+    ASSERT_EQ(found->travel_times.size(), map->distances.size());
+    EXPECT_NEAR(found->beam_height.deg(), grid().sonar.beam_height_deg, 1e-9) << "of one beam";
+    size_t seen = 0;
+    for (size_t cell = 0; cell < map->distances.size(); ++cell) {
+        const glm::dvec3 direction = map->direction(cell / 60, cell % 60);
+        const double bearing = found->bearings[cell].rad, elevation = static_cast<double>(found->elevations[cell]);
+        EXPECT_NEAR(std::cos(elevation) * std::cos(bearing), direction.x, 1e-6);
+        EXPECT_NEAR(std::cos(elevation) * std::sin(bearing), direction.y, 1e-6);
+        EXPECT_NEAR(std::sin(elevation), direction.z, 1e-6);
+        EXPECT_EQ(found->intensities[cell], map->remissions[cell]);
+        const float range = found->travel_times[cell] * found->speed_of_sound / 2;
+        if (!std::isfinite(map->distances[cell])) {
+            EXPECT_TRUE(std::isnan(range));
+            continue;
+        }
+        EXPECT_NEAR(range, map->distances[cell], 1e-5);
+        EXPECT_GT(bearing, 0) << "to port";
+        EXPECT_GT(elevation, 0) << "up";
+        ++seen;
+    }
+    EXPECT_GT(seen, 20u);
+}
+
 /** The energy of a fan of the whole height in each azimuth. */
 TEST_F(Sonar3dTaskTest, ThePingIsTheSumOverAllElevations) {
     test::Reader<types::SonarPtr> pings;

@@ -13,7 +13,8 @@ namespace insonify::device {
 namespace {
 
 constexpr double gains[] = {0.6, 1.8, 5.5, 12.9, 30.2, 66.1, 144};  ///< Factors of the amplitude.
-constexpr uint8_t max_gain = std::size(gains) - 1;
+constexpr uint8_t max_gain = ping1d_max_gain;
+static_assert(std::size(gains) == ping1d_max_gain + 1);
 constexpr uint32_t shortest_scan = 1000;                                ///< [mm]
 constexpr uint16_t voltage_mv = 5000, temperature_centicelsius = 2000;  // as measured on the simulated board
 constexpr size_t max_waiting = 64;
@@ -25,6 +26,8 @@ bool isMeasurement(uint16_t message) {
 }
 
 }  // namespace
+
+double ping1dGainDb(uint32_t setting) { return 20 * std::log10(gains[setting]); }
 
 Ping1dReturn ping1dReturn(std::span<const float> profile, size_t first) {
     first = std::min(first, profile.size());
@@ -162,7 +165,7 @@ void Ping1dEmulator::listen(types::Time now) {
     types::SonarSettings wanted;
     // Bins at least as long as samples, which begin where the scan does.
     wanted.bin_count = static_cast<uint32_t>(int64_t{config_.profile_samples} * (start_ + length_) / length_);
-    wanted.gain_db = 20 * std::log10(gains[gain_]);
+    wanted.gain_db = ping1dGainDb(gain_);
     Ping1dMeasurement& made = last_.measurement;
     made.start = start_;
     made.length = length_;

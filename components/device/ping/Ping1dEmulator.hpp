@@ -120,6 +120,10 @@ struct Ping1dConfig {
     }
 };
 
+inline constexpr uint32_t ping1d_max_gain = 6;
+/** Returns the receiver's gain at a gain setting of at most ping1d_max_gain [dB]. */
+double ping1dGainDb(uint32_t setting);
+
 /** The strongest return of a ping: its first bin near its maximum, and its confidence. */
 struct Ping1dReturn {
     size_t bin = 0;

@@ -121,7 +121,8 @@ size_t SampleWriter::add(size_t sample, const std::string& name, const Metadata&
                        {"insonify_frame", nameOf(config_.frame)},
                        {"insonify_world_frame", nameOf(config_.world_frame)}};
         const Options options = optionsOf(name, metadata);
-        if (std::is_same_v<Message, ros::ProjectedSonarImage>) texts.emplace(frame_id_key, options.frame_id);
+        if (std::is_same_v<Message, ros::ProjectedSonarImage> || std::is_same_v<Message, ros::SonarDetections>)
+            texts.emplace(frame_id_key, options.frame_id);
         number = declare(&schema, {0, topicOf(name), "cdr", std::move(texts)}, metadata);
         options_.resize(number + 1);
         options_[number] = options;

@@ -72,7 +72,7 @@ void Transforms::follow(uint16_t channel, const Metadata& stream) {
     if (declared.schema == 0) return;
     const std::string& schema = out_.schemas()[declared.schema - 1u].name;
     if (schema == ros::Odometry::type_name) poses_[channel].name = textOf(declared.metadata, "insonify_stream");
-    if (schema != ros::ProjectedSonarImage::type_name) return;
+    if (schema != ros::ProjectedSonarImage::type_name && schema != ros::SonarDetections::type_name) return;
     Pings& pings = pings_[channel];
     pings.frame = textOf(declared.metadata, frame_id_key);
     pings.body = textOf(stream, "insonify_body");

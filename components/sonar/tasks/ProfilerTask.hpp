@@ -3,6 +3,7 @@
 #include "components/sonar/bins/Detection.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
 #include "types/PointCloud.hpp"
+#include "types/SonarDetections.hpp"
 
 namespace insonify::sonar {
 
@@ -24,8 +25,8 @@ struct ProfilerConfig {
  *
  *  The fan is in the x-y plane of the sonar frame, about x: a mount with `pitch_deg: 90` looks straight down, with the
  *  fan across the track. In addition to the ping it writes `soundings`: points in the world, at most one for each beam,
- *  with the intensity of the strongest bin of the return. They are found in the noiseless ping, only while the port is
- *  connected. */
+ *  with the intensity of the strongest bin of the return; and `detections`: the same returns by beam and travel time.
+ *  They are found in the noiseless ping, only while one of the two ports is connected. */
 class ProfilerTask final : public PingTask {
 public:
     using PingTask::PingTask;
@@ -33,6 +34,8 @@ public:
     framework::Properties<ProfilerConfig> config{this};
     framework::OutputPort<types::PointCloudPtr> soundings{
         this, "soundings", "a point in the world for each beam that has a return, at the time of the ping"};
+    framework::OutputPort<types::SonarDetectionsPtr> detections{
+        this, "detections", "the same by beam: angles, two-way travel times and intensities, in the sonar's frame"};
 
     SonarConfig sonarConfig() const override { return config->sonar.fan(); }
 
@@ -42,6 +45,7 @@ protected:
 private:
     Detector detector_;
     framework::SamplePool<types::PointCloud> clouds_;
+    framework::SamplePool<types::SonarDetections> all_detections_;
 };
 
 }  // namespace insonify::sonar

@@ -188,6 +188,7 @@ void Sonar3dTask::writeMore(const types::Sonar& sample, const types::Pose& sonar
             if (range_truth.connected()) GridTruth::forget(cell, return_truth_);
         }
     if (soundings.connected()) writePoints(sample, sonar);
+    if (detections.connected()) writeDetections(sample);
     if (range_truth.connected()) writeReturnTruth();
     if (!range_image.connected()) return;
     const auto image = maps_.take();
@@ -212,6 +213,21 @@ void Sonar3dTask::writeReturnTruth() {
     *written = return_truth_;
     return_truths_.stock(*written);
     range_truth.write(written);
+}
+
+void Sonar3dTask::writeDetections(const types::Sonar& sample) {
+    const auto written = all_detections_.take();
+    written->copyPing(sample);
+    written->beam_height = types::Angle::fromDeg(config->sonar.beam_height_deg);  // the ping's is that of all rows
+    written->reserve(map_.distances.size());
+    for (size_t row = 0; row < map_.vertical_size; ++row)
+        for (size_t column = 0; column < map_.horizontal_size; ++column) {
+            const size_t cell = row * map_.horizontal_size + column;
+            written->add({map_.horizontal_interval[column]}, {-map_.vertical_interval[row]},
+                         static_cast<double>(map_.distances[cell]), map_.remissions[cell]);
+        }
+    all_detections_.stock(*written, [this](types::SonarDetections& other) { other.reserve(map_.distances.size()); });
+    detections.write(written);
 }
 
 void Sonar3dTask::writePoints(const types::Sonar& sample, const types::Pose& sonar) {

@@ -6,6 +6,7 @@
 #include "components/sonar/tasks/PingTask.hpp"
 #include "types/DepthMap.hpp"
 #include "types/PointCloud.hpp"
+#include "types/SonarDetections.hpp"
 
 namespace insonify::sonar {
 
@@ -60,8 +61,8 @@ private:
  * and 4.
  *
  *  It writes `range_image`: range and intensity of the strongest bin of each beam; `range_truth`: what that bin shows;
- *  `soundings`: the same returns as points in the world; `ping`: for each azimuth the sum over all elevations, with its
- *  `truth`. */
+ *  `soundings`: the same returns as points in the world; `detections`: the same by beam and travel time; `ping`: for
+ * each azimuth the sum over all elevations, with its `truth`. */
 class Sonar3dTask final : public PingTask {
 public:
     using PingTask::PingTask;
@@ -73,6 +74,9 @@ public:
         this, "range_truth",
         "what each beam's strongest return shows: one bin for each cell of `range_image`, in its order"};
     framework::OutputPort<types::PointCloudPtr> soundings{this, "soundings", "the same as points in the world"};
+    framework::OutputPort<types::SonarDetectionsPtr> detections{
+        this, "detections",
+        "the same by beam: angles, two-way travel times and intensities, in the order of `range_image`"};
 
     SonarConfig sonarConfig() const override { return config->upright(); }
     RenderedBeam renderedBeam(size_t beam) const override;
@@ -98,8 +102,11 @@ private:
     void addTo(types::Sonar& sample, int column, const SonarRenderer& renderer);
     void shape(types::Sonar& sample);
     void writePoints(const types::Sonar& sample, const types::Pose& sonar);
+    void writeDetections(const types::Sonar& sample);
     void writeReturnTruth();
-    bool wantsReturns() const { return range_image.connected() || soundings.connected() || range_truth.connected(); }
+    bool wantsReturns() const {
+        return range_image.connected() || soundings.connected() || range_truth.connected() || detections.connected();
+    }
 
     types::Sonar fan_;            ///< Beams of one azimuth.
     types::Sonar alike_;          ///< What all of these beams record alike.
@@ -113,6 +120,7 @@ private:
     types::SonarTruth return_truth_;  ///< One bin for each cell of the map.
     framework::SamplePool<types::DepthMap> maps_;
     framework::SamplePool<types::PointCloud> clouds_;
+    framework::SamplePool<types::SonarDetections> all_detections_;
     framework::SamplePool<types::SonarTruth> return_truths_;
 };
 
