@@ -52,6 +52,7 @@ void readMessages(const Input& input) {
     follow(input);
     readMessage<ros::Odometry, types::Pose>(input, ros::WorldFrame::Enu);
     readMessage<ros::PoseStamped, types::Pose>(input, ros::WorldFrame::Ned);
+    readMessage<ros::SonarDetections, types::SonarDetections>(input);
     for (const auto order : {ros::ImageOrder::RangeMajor, ros::ImageOrder::BeamMajor})
         readMessage<ros::ProjectedSonarImage, types::Sonar>(input, ros::ImageLayout{order, ros::SensorFrame::ZForward});
 }
