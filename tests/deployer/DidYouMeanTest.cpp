@@ -98,7 +98,7 @@ TEST(DidYouMeanTest, AMissingSceneIsReportedWithSearchedFoldersAndReadableFormat
     EXPECT_THAT(diagnostics, HasSubstr("wall.yml:11:24: tasks.scene.properties.file: "));
     EXPECT_THAT(diagnostics, HasSubstr("did you mean wall.gltf?"));
     EXPECT_THAT(diagnostics, HasSubstr("looked for at " + (folder / "wal.gltf").string()));
-    EXPECT_THAT(diagnostics, HasSubstr(".gltf, .glb, .world, .sdf or .urdf"));
+    EXPECT_THAT(diagnostics, HasSubstr(".gltf, .glb, .world, .sdf, .urdf, .dae, .obj, .stl or .ply"));
 }
 
 TEST(DidYouMeanTest, AWordThatIsNoCommandIsReportedWithTheCommands) {

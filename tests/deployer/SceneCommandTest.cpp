@@ -139,6 +139,6 @@ TEST(SceneCommandTest, AFileThatIsNotASceneIsAnErrorThatNamesTheFormats) {
     const TestFolder folder;
     writeFile(folder / "wall.blend", "BLENDER");
     EXPECT_THAT(callInsonify(folder, {"scene", "wall.blend"}),
-                isRefused(HasSubstr("may be .gltf, .glb, .world, .sdf or .urdf")));
+                isRefused(HasSubstr("may be .gltf, .glb, .world, .sdf, .urdf, .dae, .obj, .stl or .ply")));
     EXPECT_EQ(callInsonify(folder, {"scene", "nowhere.glb"}).code, 2);
 }
