@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "components/acoustics/SoundSpeed.hpp"
-#include "components/acoustics/Validity.hpp"
 
 namespace insonify::acoustics {
 namespace {

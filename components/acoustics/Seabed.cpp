@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "components/acoustics/Validity.hpp"
+#include "components/acoustics/SoundSpeed.hpp"
 
 namespace insonify::acoustics {
 namespace {

@@ -1,12 +1,12 @@
 #include "components/acoustics/SoundSpeed.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <numbers>
-
-#include "components/acoustics/Validity.hpp"
 
 namespace insonify::acoustics {
 namespace {
@@ -264,6 +264,15 @@ void traceRay(const SoundProfile& profile, double depth, double elevation, std::
         now = times[i];
         points[i] = ray.point();
     }
+}
+
+std::string outside(std::initializer_list<Limit> limits) {
+    std::string text;
+    for (const Limit& limit : limits)
+        if (!(limit.value >= limit.min && limit.value <= limit.max))
+            text += fmt::format("{}{:.6g} {} ({:g} to {:g})", text.empty() ? "" : ", ", limit.value, limit.unit,
+                                limit.min, limit.max);
+    return text;
 }
 
 }  // namespace insonify::acoustics

@@ -1,4 +1,5 @@
 #pragma once
+#include <initializer_list>
 #include <span>
 #include <string>
 
@@ -73,5 +74,15 @@ struct RayPoint {
  *  Jensen et al. 2011. */
 void traceRay(const SoundProfile& profile, double depth, double elevation, std::span<const double> times,
               std::span<RayPoint> points);
+
+/** An input of a formula and the range for which the formula was made, ends included; all in `unit`. */
+struct Limit {
+    const char* unit;
+    double value, min, max;
+};
+
+/** Returns the values outside their ranges, such as "1500 kHz (0.2 to 1000), 5 psu (30 to 35)"; empty when all are
+ *  inside. */
+std::string outside(std::initializer_list<Limit> limits);
 
 }  // namespace insonify::acoustics

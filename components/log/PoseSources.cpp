@@ -329,6 +329,11 @@ types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream) {
 
 }  // namespace
 
+bool isSourceOf(const PoseSource& poses, const Stream& stream) {
+    return poses.source == stream.name || poses.source == stream.topic ||
+           (stream.message == ros::TFMessage::type_name && poses.source.find(arrow) != std::string::npos);
+}
+
 std::string FoundPoses::text() const {
     const std::string frames =
         (parent.empty() && child.empty()) || source.find(arrow) != source.npos

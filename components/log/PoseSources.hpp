@@ -30,6 +30,9 @@ struct PoseSource {
     }
 };
 
+/** Whether poses are made from a stream. */
+bool isSourceOf(const PoseSource& poses, const Stream& stream);
+
 /** A stream, or two frames of tf, that could be the poses of a body. */
 struct FoundPoses {
     std::string source;         ///< For PoseSource: "/odom", "vehicle.pose", "map->base_link".

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -82,26 +83,31 @@ std::string packageName(const path& folder) {
     return first == std::string::npos ? folder.filename().string() : name.substr(first, last - first + 1);
 }
 
-/** Adds the ROS packages and the folders of models at and below a folder, but not in hidden folders. The first of a
- * name stays. */
-void findNamed(const path& folder, int depth, size_t& left, std::map<std::string, path>& named) {
+/** Adds the ROS packages and the folders of models at and below a folder. The nearest of a name stays, so that the
+ * limit of `left` entries cuts what is deepest. Links are followed, once each; hidden folders and those that a build
+ * made are not searched. */
+void findNamed(const path& root, size_t& left, std::map<std::string, path>& named) {
     constexpr int deepest = 8;
-    if (depth > deepest || left == 0) return;
-    if (isThere(folder / "package.xml")) named.try_emplace(packageName(folder), folder);
-    if (isThere(folder / "model.config")) {
-        named.try_emplace(folder.filename().string(), folder);
-        return;
-    }
     std::error_code error;
-    std::vector<path> below;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-        if (left == 0) return;
-        --left;
-        if (entry.is_directory(error) && !entry.is_symlink(error) && !entry.path().filename().string().starts_with('.'))
-            below.push_back(entry.path());
+    std::set<path> seen;
+    std::vector<path> level = {root};
+    for (int depth = 0; depth <= deepest && !level.empty(); ++depth) {
+        std::vector<path> below;
+        for (const path& folder : level) {
+            if (!seen.insert(std::filesystem::weakly_canonical(folder, error)).second) continue;
+            if (isThere(folder / "package.xml")) named.try_emplace(packageName(folder), folder);
+            if (isThere(folder / "model.config")) named.try_emplace(folder.filename().string(), folder);
+            if (isThere(folder / "CMakeCache.txt")) continue;
+            for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+                if (left == 0) return;
+                --left;
+                if (entry.is_directory(error) && !entry.path().filename().string().starts_with('.'))
+                    below.push_back(entry.path());
+            }
+        }
+        std::ranges::sort(below);
+        level = std::move(below);
     }
-    std::ranges::sort(below);
-    for (const path& each : below) findNamed(each, depth + 1, left, named);
 }
 
 /** A model of Fuel: https://HOST/1.0/OWNER/models/NAME/VERSION/files/FILE. */
@@ -232,8 +238,8 @@ std::optional<path> ModelPaths::findByName(const path& place) const {
     if (!named_) {
         named_.emplace();
         size_t left = 50'000;  // entries of folders
-        for (const path& folder : foldersIn("ROS_PACKAGE_PATH")) findNamed(folder, 0, left, *named_);
-        if (!root_.empty()) findNamed(root_, 0, left, *named_);
+        for (const path& folder : foldersIn("ROS_PACKAGE_PATH")) findNamed(folder, left, *named_);
+        if (!root_.empty()) findNamed(root_, left, *named_);
     }
     const auto found = named_->find(name.string());
     if (found == named_->end()) return {};

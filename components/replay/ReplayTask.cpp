@@ -31,13 +31,6 @@ std::string gapText(const std::vector<log::SampleRef>& samples, const log::Logge
         gap.seconds(), after.seconds());
 }
 
-/** Whether poses are made from this stream. */
-bool isSourceOf(const log::PoseSource& poses, const log::Stream& stream) {
-    const bool has_frames = stream.message == "tf2_msgs/msg/TFMessage";
-    return poses.source == stream.name || poses.source == stream.topic ||
-           (has_frames && poses.source.find("->") != std::string::npos);
-}
-
 /** Whether a stream has Rock's beams or scans, which are also pings. */
 bool isOlderPing(const log::Stream& stream) { return log::holdsPings(stream) && !stream.holds<types::Sonar>(); }
 
@@ -123,7 +116,7 @@ types::Notices ReplayTask::notices() const {
         notices.push_back(log_->path().string() + ": " + log_->diagnostic() + "; played up to there");
     for (size_t i = 0; i < by_stream_.size(); ++i) {
         const log::Stream& stream = log_->streams()[i];
-        const auto is_source = [&](const log::PoseSource& poses) { return isSourceOf(poses, stream); };
+        const auto is_source = [&](const log::PoseSource& poses) { return log::isSourceOf(poses, stream); };
         if (!by_stream_[i] && stream.count > 0 && std::ranges::none_of(config->poses, is_source))
             notices.push_back("stream " + stream.name + " (" + stream.type + ") is not replayed");
     }

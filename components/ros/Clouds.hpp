@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <optional>
 
+#include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
 #include "types/DepthMap.hpp"

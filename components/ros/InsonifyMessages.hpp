@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "types/SonarElements.hpp"
 #include "types/SonarReturns.hpp"

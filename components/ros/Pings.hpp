@@ -2,6 +2,7 @@
 // Conversions of a ping to ROS 2 messages and back. The memory of outputs is reused. Conversions to messages throw
 // std::invalid_argument for a ping whose lists do not match its counts, and std::out_of_range for a time that ROS
 // cannot represent.
+#include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
 #include "types/Sonar.hpp"

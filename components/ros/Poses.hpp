@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <string>
 
+#include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
 #include "types/Dvl.hpp"

@@ -6,6 +6,7 @@
 
 #include "components/ros/Clouds.hpp"
 #include "components/ros/InsonifyMessages.hpp"
+#include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
 #include "components/ros/Pings.hpp"

@@ -426,7 +426,7 @@ std::string missingIn(const types::Diagnostic& diagnostic) {
 /** What is tried in turn until libsdformat reads a file. */
 struct Reading {
     Reading(const std::filesystem::path& file, meshes::WorldBuilder& builder, const std::string& given)
-        : text(given), file_(file), builder_(builder), given_(given.empty() ? textOf(file) : given) {}
+        : text(given), file_(file), builder_(builder), given_(given) {}
 
     /** Mends the models that libsdformat refused, or omits those that cannot be mended. Returns whether the next
      * reading differs. */
@@ -449,8 +449,11 @@ struct Reading {
     }
     /** Mends the file itself, then also its names. Throws types::ConfigError with the diagnostics of the file as it is
      *  where nothing is left to try. */
-    bool mends(const types::Diagnostics& diagnostics) {
-        if (form_ == AsGiven) first_ = diagnostics;
+    void mend(const types::Diagnostics& diagnostics) {
+        if (form_ == AsGiven) {
+            first_ = diagnostics;
+            if (given_.empty()) given_ = textOf(file_);
+        }
         const auto folder = std::filesystem::absolute(file_).parent_path();
         for (text.clear(); text.empty();) {
             form_ = static_cast<Form>(form_ + 1);
@@ -458,7 +461,6 @@ struct Reading {
             if (form_ == Renamed) text = MendedModels::mended(withoutColons(given_), folder);
             if (form_ == Refused) refuse(file_, builder_.paths(), first_);
         }
-        return true;
     }
     /** Notes what was tried with success. */
     void note() const {
@@ -542,7 +544,10 @@ std::string CerrCapture::take() {
         add(console.take(), errors, diagnostics);
         const bool is_read = failure.empty() && (root.WorldCount() > 0 || root.Model());
         if (reading.replaces(diagnostics)) continue;
-        if (!is_read && reading.mends(diagnostics)) continue;
+        if (!is_read) {
+            reading.mend(diagnostics);
+            continue;
+        }
         reading.note();
         noteDiagnostics(diagnostics, builder);
         return root;

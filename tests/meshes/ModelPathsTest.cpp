@@ -104,6 +104,21 @@ TEST_F(ModelPathsTest, AWorldInARepositoryFindsItsModelsAndPackages) {
     EXPECT_EQ(found("model://worlds_"), "");
 }
 
+TEST_F(ModelPathsTest, PackagesThatAreLinkedIntoAWorkspaceAreFoundAndBuildFoldersAreNotSearched) {
+    write("elsewhere/hull/package.xml", "<name>hull</name>");
+    write("elsewhere/hull/a.dae", "");
+    write("ws/build/CMakeCache.txt", "");
+    write("ws/build/copy/package.xml", "<name>keel</name>");
+    write("ws/build/copy/b.dae", "");
+    write("ws/src/deep/keel/package.xml", "<name>keel</name>");
+    write("ws/src/deep/keel/b.dae", "");
+    std::filesystem::create_directory_symlink(folder_ / "elsewhere/hull", folder_ / "ws/src/hull");
+    std::filesystem::create_directory_symlink(folder_ / "ws", folder_ / "ws/src/circle");
+    const Variable ros("ROS_PACKAGE_PATH", at("ws"));
+    EXPECT_EQ(find("package://hull/a.dae"), "ws/src/hull/a.dae");
+    EXPECT_EQ(find("package://keel/b.dae"), "ws/src/deep/keel/b.dae");
+}
+
 TEST_F(ModelPathsTest, ModelsOfFuelAreTakenFromGazebosCaches) {
     const Variable home("HOME", at("home"));
     const std::string cache = "home/.gz/fuel/fuel.gazebosim.org/openrobotics/models/";
@@ -119,6 +134,9 @@ TEST_F(ModelPathsTest, ModelsOfFuelAreTakenFromGazebosCaches) {
     EXPECT_EQ(find("https://fuel.gazebosim.org/1.0/Someone/models/Old"),
               "home/.ignition/fuel/fuel.ignitionrobotics.org/someone/models/old/1")
         << "from the cache of its former host";
+    EXPECT_EQ(find("https://app.gazebosim.org/OpenRobotics/fuel/models/Cave%20Circle%2001"),
+              cache + "cave circle 01/10")
+        << "as the page of the model has it";
     for (const char* uri :
          {"https://", "https://a/models", "https://a/b/models/", "https://fuel.gazebosim.org/1.0/x/models/y",
           "http://a/b/c/d/e", "https://a/../../models/b"})
