@@ -133,17 +133,9 @@ Json warningsOf(const std::string& file, const types::Geometry& geometry, const 
 
 std::string axesOf(const std::string& file, const scene::Scene& scene) {
     const scene::SceneFormat& format = *scene::findSceneFormat(file);
-    if (scene.z_up_from_file == glm::dmat4(1))
-        return fmt::format("{}, z up{}: x, y, z of the file are those of the world", format.name,
-                           format.component == "meshes" ? " unless placement.up says otherwise, in metres" : "");
-    const glm::dmat4& turn = scene.z_up_from_file;
-    const auto from = [&](int row) {  // the axis of the file that is this one of the world
-        for (int axis = 0; axis < 3; ++axis)
-            if (std::abs(turn[axis][row]) > 0.5) return std::string(turn[axis][row] < 0 ? "-" : "") + "xyz"[axis];
-        return std::string("?");
-    };
-    return fmt::format("{}, {} up in the file; turned to z up: (x, y, z) of the file is ({}, {}, {}) of the world",
-                       format.name, from(2), from(0), from(1), from(2));
+    return fmt::format("{}{}: {}", format.name,
+                       format.component == "meshes" ? ", unless placement.up and scale say otherwise" : "",
+                       scene::layOf(scene, {}, types::WorldFrame::AsIs));
 }
 
 /** Returns the animations of a scene: [{name, duration_s, channels}]. */

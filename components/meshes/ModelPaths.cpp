@@ -174,24 +174,22 @@ std::optional<path> findInFuel(const FuelUrl& url) {
 }  // namespace
 
 ModelPaths::ModelPaths(const path& world) {
-    for (const char* variable : model_variables)
-        for (const path& folder : foldersIn(variable)) folders_.push_back(folder);
+    const auto add = [this](const path& folder) {
+        if (std::ranges::find(folders_, folder) == folders_.end()) folders_.push_back(folder);
+    };
+    for (const char* variable : model_variables) std::ranges::for_each(foldersIn(variable), add);
     const path folder = std::filesystem::absolute(world).lexically_normal().parent_path();
-    folders_.push_back(folder);
-    if (isThere(folder / "model.config")) folders_.push_back(folder.parent_path());
+    add(folder);
+    if (isThere(folder / "model.config")) add(folder.parent_path());
     root_ = rootAbove(folder);
     for (path at = folder; !root_.empty(); at = at.parent_path()) {
-        if (at != folder) folders_.push_back(at);
-        if (isThere(at / "models")) folders_.push_back(at / "models");
+        add(at);
+        if (isThere(at / "models")) add(at / "models");
         if (at == root_) break;
     }
     for (const path& own :
          {home() / ".gazebo/models", path("/usr/share/gazebo-11/models"), path("/usr/share/gazebo-11")})
-        if (isThere(own)) folders_.push_back(own);
-    std::vector<path> once;
-    for (const path& each : folders_)
-        if (std::ranges::find(once, each) == once.end()) once.push_back(each);
-    folders_ = std::move(once);
+        if (isThere(own)) add(own);
 }
 
 std::optional<path> ModelPaths::find(const std::string& uri, const path& named_in) const {

@@ -3,6 +3,7 @@
 
 #include "components/log/Reader.hpp"
 #include "components/ros/Cdr.hpp"
+#include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "tests/deployer/Wall.hpp"
 
