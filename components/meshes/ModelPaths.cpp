@@ -1,5 +1,7 @@
 #include "components/meshes/ModelPaths.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
@@ -16,10 +18,7 @@ namespace {
 
 using std::filesystem::path;
 
-bool isThere(const path& place) {
-    std::error_code error;
-    return std::filesystem::exists(place, error);
-}
+bool isThere(const path& place) { return access(place.c_str(), F_OK) == 0; }
 
 std::optional<path> ifThere(path place) { return isThere(place) ? std::optional(std::move(place)) : std::nullopt; }
 
@@ -95,12 +94,11 @@ void findNamed(const path& root, size_t& left, std::map<std::string, path>& name
         std::vector<path> below;
         for (const path& folder : level) {
             if (!seen.insert(std::filesystem::weakly_canonical(folder, error)).second) continue;
+            if (isThere(folder / "CMakeCache.txt")) continue;
             if (isThere(folder / "package.xml")) named.try_emplace(packageName(folder), folder);
             if (isThere(folder / "model.config")) named.try_emplace(folder.filename().string(), folder);
-            if (isThere(folder / "CMakeCache.txt")) continue;
             for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-                if (left == 0) return;
-                --left;
+                if (left-- == 0) return void(left = 0);
                 if (entry.is_directory(error) && !entry.path().filename().string().starts_with('.'))
                     below.push_back(entry.path());
             }
