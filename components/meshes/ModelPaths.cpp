@@ -32,10 +32,7 @@ std::vector<path> foldersIn(const char* variable) {
     return folders;
 }
 
-path home() {
-    const char* const folder = std::getenv("HOME");
-    return folder ? folder : "";
-}
+path home() { return std::getenv("HOME") ? std::getenv("HOME") : ""; }
 
 constexpr const char* model_variables[] = {"INSONIFY_MODEL_PATH",  "GAZEBO_MODEL_PATH",        "SDF_PATH",
                                            "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_RESOURCE_PATH"};
