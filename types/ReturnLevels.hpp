@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "types/RangeBins.hpp"
+#include "types/samples/RangeBins.hpp"
 
 namespace insonify::types {
 

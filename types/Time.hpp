@@ -3,7 +3,7 @@
 #include <compare>
 #include <cstdint>
 
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::types {
 

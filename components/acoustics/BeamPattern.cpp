@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::acoustics {
 namespace {

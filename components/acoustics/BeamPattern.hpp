@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "components/acoustics/Curve.hpp"
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::acoustics {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "types/Csv.hpp"
+#include "types/text/Csv.hpp"
 
 namespace insonify::acoustics {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::acoustics {
 

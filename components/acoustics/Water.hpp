@@ -2,7 +2,7 @@
 #include <optional>
 #include <string>
 
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::acoustics {
 

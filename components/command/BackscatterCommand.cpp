@@ -18,7 +18,7 @@
 #include "components/console/Console.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/scene/Acoustics.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::command {
 

@@ -12,7 +12,7 @@
 #include "components/framework/Deployment.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::command {
 

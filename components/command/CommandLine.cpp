@@ -10,11 +10,11 @@
 #include <sstream>
 
 #include "components/console/Console.hpp"
-#include "components/framework/ConfigReader.hpp"
-#include "components/framework/YamlText.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/YamlText.hpp"
 #include "components/loader/ComponentLibrary.hpp"
-#include "types/ConfigError.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::command {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/console/Action.hpp"
-#include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 
 namespace insonify::command {
 

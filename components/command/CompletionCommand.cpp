@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "components/command/CommandLine.hpp"
-#include "components/command/Starter.hpp"
+#include "components/command/init/Starter.hpp"
 #include "components/console/Console.hpp"
 #include "components/deployer/Tasks.hpp"
 

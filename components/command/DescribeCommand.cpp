@@ -10,7 +10,7 @@
 #include "components/console/Console.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Tasks.hpp"
-#include "components/framework/ConfigReader.hpp"
+#include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"

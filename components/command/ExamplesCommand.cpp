@@ -7,7 +7,7 @@
 #include "components/command/CommandLine.hpp"
 #include "components/console/Console.hpp"
 #include "components/loader/ComponentLibrary.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::command {
 

@@ -22,8 +22,8 @@
 #include "components/framework/Port.hpp"
 #include "components/sonar/renderer/BinExplanation.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
-#include "types/Angle.hpp"
-#include "types/ConfigError.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::command {
 

@@ -8,7 +8,7 @@
 #include "components/console/Console.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
-#include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/output/PictureFiles.hpp"
 #include "components/scene/Scene.hpp"

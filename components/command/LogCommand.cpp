@@ -12,17 +12,17 @@
 #include "components/command/CommandLine.hpp"
 #include "components/console/Console.hpp"
 #include "components/deployer/DeploymentFile.hpp"
-#include "components/deployer/Export.hpp"
-#include "components/deployer/Import.hpp"
+#include "components/deployer/log/Export.hpp"
+#include "components/deployer/log/Import.hpp"
 #include "components/deployer/Json.hpp"
-#include "components/deployer/RecordedSettings.hpp"
-#include "components/deployer/StreamMeaning.hpp"
+#include "components/deployer/log/RecordedSettings.hpp"
+#include "components/deployer/log/StreamMeaning.hpp"
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/Export.hpp"
 #include "components/log/PoseSources.hpp"
 #include "components/recordings/RecordingReader.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::command {
 

@@ -13,15 +13,15 @@
 #include "components/command/CommandLine.hpp"
 #include "components/command/RunCommand.hpp"
 #include "components/console/Console.hpp"
-#include "components/deployer/RecordedSettings.hpp"
-#include "components/deployer/ReplaySpec.hpp"
-#include "components/deployer/Score.hpp"
+#include "components/deployer/log/RecordedSettings.hpp"
+#include "components/deployer/log/ReplaySpec.hpp"
+#include "components/deployer/log/Score.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/log/LoggerClock.hpp"
 #include "components/log/PoseSources.hpp"
 #include "components/log/Reader.hpp"
 #include "components/recordings/RecordingReader.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::command {
 

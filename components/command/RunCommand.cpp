@@ -21,9 +21,9 @@
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Offers.hpp"
-#include "components/framework/YamlText.hpp"
+#include "components/framework/config/YamlText.hpp"
 #include "components/pose/TrajectoryTask.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::command {
 

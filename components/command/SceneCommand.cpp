@@ -19,7 +19,7 @@
 #include "components/scene/Drawings.hpp"
 #include "components/scene/Placement.hpp"
 #include "components/scene/Scene.hpp"
-#include "types/Extent.hpp"
+#include "types/geometry/Extent.hpp"
 
 namespace insonify::command {
 

@@ -11,9 +11,9 @@
 #include "components/deployer/ShardFolder.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Tasks.hpp"
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Offers.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::command {
 

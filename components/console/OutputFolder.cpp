@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::console {
 namespace fs = std::filesystem;

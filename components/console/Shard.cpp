@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::console {
 namespace {

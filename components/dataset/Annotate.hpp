@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "components/dataset/Classes.hpp"
-#include "components/output/PlainPicture.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarTruth.hpp"
+#include "components/output/pictures/PlainPicture.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarTruth.hpp"
 
 namespace insonify::dataset {
 

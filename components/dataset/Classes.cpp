@@ -4,7 +4,7 @@
 #include <set>
 
 #include "components/dataset/Samples.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 

@@ -11,7 +11,7 @@
 #include "components/console/Sha256.hpp"
 #include "components/dataset/SampleFiles.hpp"
 #include "components/dataset/StatisticsPage.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {

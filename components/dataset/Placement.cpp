@@ -7,9 +7,9 @@
 #include <limits>
 #include <numeric>
 
-#include "types/ConfigError.hpp"
-#include "types/Hash.hpp"
-#include "types/Mount.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/Hash.hpp"
+#include "types/geometry/Mount.hpp"
 
 namespace insonify::dataset {
 namespace {

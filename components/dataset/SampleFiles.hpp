@@ -7,9 +7,9 @@
 #include "components/dataset/Annotate.hpp"
 #include "components/dataset/Samples.hpp"
 #include "components/dataset/Store.hpp"
-#include "types/DepthMap.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarTruth.hpp"
+#include "types/samples/DepthMap.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarTruth.hpp"
 
 namespace insonify::dataset {
 

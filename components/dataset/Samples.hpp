@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "components/dataset/Sweep.hpp"
-#include "types/Extent.hpp"
-#include "types/Pose.hpp"
+#include "types/geometry/Extent.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::dataset {
 

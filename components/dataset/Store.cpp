@@ -13,7 +13,7 @@
 
 #include "components/console/Json.hpp"
 #include "components/console/Sha256.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::dataset {
 namespace {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "components/output/PlainPicture.hpp"
+#include "components/output/pictures/PlainPicture.hpp"
 #include "components/pose/SeaMotion.hpp"
 #include "components/pose/Trajectory.hpp"
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::dataset {
 

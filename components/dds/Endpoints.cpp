@@ -2,7 +2,7 @@
 
 #include <dds/dds.h>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dds {
 namespace {

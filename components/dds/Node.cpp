@@ -16,8 +16,8 @@
 
 #include "components/dds/Endpoints.hpp"
 #include "components/ros/Cdr.hpp"
-#include "types/ConfigError.hpp"
-#include "types/RosNames.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/RosNames.hpp"
 
 namespace insonify::dds {
 namespace {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "components/ros/Options.hpp"
-#include "types/ConfigError.hpp"
-#include "types/Describe.hpp"
-#include "types/RosNames.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/Describe.hpp"
+#include "types/text/RosNames.hpp"
 struct ddsi_sertype;
 
 namespace insonify::dds {

@@ -10,8 +10,8 @@
 #include <set>
 
 #include "components/ros/Cdr.hpp"
-#include "types/Ascii.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/Ascii.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::dds {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "components/dds/Endpoints.hpp"
-#include "types/DeploymentControl.hpp"
-#include "types/Describe.hpp"
+#include "types/samples/DeploymentControl.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::dds {
 

@@ -13,8 +13,8 @@
 #include "components/ros/Samples.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/Check.hpp"
-#include "types/ConfigError.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::dds {
 

@@ -5,11 +5,11 @@
 
 #include "components/dds/SubscriberTask.hpp"
 #include "components/dds/TransformTask.hpp"
-#include "components/framework/Timing.hpp"
+#include "components/framework/execution/Timing.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dds {
 namespace {

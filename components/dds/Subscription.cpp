@@ -11,7 +11,7 @@
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/Elapsed.hpp"
-#include "types/Quaternion.hpp"
+#include "types/geometry/Quaternion.hpp"
 
 namespace insonify::dds {
 namespace {

@@ -9,8 +9,8 @@
 #include "components/dds/Endpoints.hpp"
 #include "components/dds/Node.hpp"
 #include "components/ros/Messages.hpp"
-#include "types/Pose.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::dds {
 

@@ -10,7 +10,7 @@
 #include "components/pose/ListenerTask.hpp"
 #include "components/ros/TransformTree.hpp"
 #include "types/Elapsed.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::dds {
 

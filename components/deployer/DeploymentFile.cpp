@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "components/loader/ComponentLibrary.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;

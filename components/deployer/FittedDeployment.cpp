@@ -5,7 +5,7 @@
 
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/framework/YamlText.hpp"
+#include "components/framework/config/YamlText.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/scene/SceneTask.hpp"

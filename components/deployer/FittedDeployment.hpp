@@ -6,8 +6,8 @@
 #include "components/noise/Noise.hpp"
 #include "components/receiver/Receiver.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
-#include "types/Mount.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Mount.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::deployer {
 

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "components/console/Json.hpp"
-#include "components/framework/YamlText.hpp"
-#include "types/ConfigError.hpp"
-#include "types/Plan.hpp"
+#include "components/framework/config/YamlText.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/samples/Plan.hpp"
 
 namespace insonify::deployer {
 

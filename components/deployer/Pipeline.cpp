@@ -10,8 +10,8 @@
 #include "components/framework/Port.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
-#include "types/ConfigError.hpp"
-#include "types/Sonar.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::deployer {
 namespace {

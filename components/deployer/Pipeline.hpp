@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "components/framework/Deployment.hpp"
-#include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
-#include "types/Snapshot.hpp"
-#include "types/Sonar.hpp"
+#include "types/geometry/Snapshot.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::deployer {
 

@@ -6,11 +6,11 @@
 #include <map>
 #include <vector>
 
-#include "components/framework/StreamNames.hpp"
+#include "components/framework/config/StreamNames.hpp"
 #include "components/log/Reader.hpp"
 #include "components/output/PictureFiles.hpp"
-#include "types/Ascii.hpp"
-#include "types/Sonar.hpp"
+#include "types/text/Ascii.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;

@@ -14,7 +14,7 @@
 
 #include "components/console/Console.hpp"
 #include "components/console/Sha256.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;

@@ -17,10 +17,10 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "types/DepthMap.hpp"
-#include "types/Pose.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarTruth.hpp"
+#include "types/samples/DepthMap.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarTruth.hpp"
 
 namespace insonify::deployer {
 

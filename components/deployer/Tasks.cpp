@@ -5,7 +5,7 @@
 #include "components/console/Console.hpp"
 #include "components/logger/LoggerTask.hpp"
 #include "components/noise/NoiseTask.hpp"
-#include "components/output/PictureTask.hpp"
+#include "components/output/tasks/PictureTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/replay/ReplayTask.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::device {
 

@@ -10,7 +10,7 @@
 #include "components/device/ping/Ping1dTask.hpp"
 #include "components/device/ping/Ping360Task.hpp"
 #include "components/device/sonar3d/Sonar3dTask.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {

@@ -9,9 +9,9 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "types/Describe.hpp"
-#include "types/SonarSettings.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/text/Describe.hpp"
+#include "types/samples/SonarSettings.hpp"
+#include "types/text/ThrottledWarning.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::device {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "types/Angle.hpp"
-#include "types/BeamArc.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/geometry/BeamArc.hpp"
 
 namespace insonify::device {
 namespace {

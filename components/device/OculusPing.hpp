@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/device/oculus/OculusMessages.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::device {
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "components/device/OculusPing.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {

@@ -8,7 +8,7 @@
 #include <ctime>
 
 #include "components/sonars/Sonars.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {

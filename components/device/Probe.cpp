@@ -13,7 +13,7 @@
 #include "components/device/micron/SeaNet.hpp"
 #include "components/device/oculus/OculusEmulator.hpp"
 #include "components/device/ping/PingProtocol.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {

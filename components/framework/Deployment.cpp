@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "components/framework/LockstepExecutor.hpp"
+#include "components/framework/execution/LockstepExecutor.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Properties.hpp"
-#include "components/framework/RealtimeExecutor.hpp"
+#include "components/framework/execution/RealtimeExecutor.hpp"
 #include "components/framework/Wiring.hpp"
 
 namespace insonify::framework {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/DeploymentSpec.hpp"
-#include "components/framework/Executor.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
+#include "components/framework/execution/Executor.hpp"
 #include "components/framework/Graph.hpp"
 #include "components/framework/Registry.hpp"
 #include "types/OwnProcess.hpp"

@@ -20,7 +20,7 @@
 #include <variant>
 
 #include "components/framework/Port.hpp"
-#include "types/Samples.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::framework {
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "components/framework/TaskContext.hpp"
-#include "types/DeploymentControl.hpp"
-#include "types/Plan.hpp"
+#include "types/samples/DeploymentControl.hpp"
+#include "types/samples/Plan.hpp"
 #include "types/ReturnLevels.hpp"
 #include "types/Time.hpp"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "components/framework/ConfigReader.hpp"
+#include "components/framework/config/ConfigReader.hpp"
 
 namespace insonify::framework {
 

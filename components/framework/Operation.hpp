@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/framework/ValueType.hpp"
+#include "components/framework/config/ValueType.hpp"
 
 namespace insonify::framework {
 

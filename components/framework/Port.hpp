@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-#include "components/framework/Activity.hpp"
-#include "components/framework/ConnPolicy.hpp"
+#include "components/framework/execution/Activity.hpp"
+#include "components/framework/config/ConnPolicy.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "types/Thread.hpp"
-#include "types/TypeName.hpp"
+#include "types/text/TypeName.hpp"
 
 namespace insonify::framework {
 

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "components/framework/Activity.hpp"
-#include "components/framework/ConfigReader.hpp"
-#include "types/Ascii.hpp"
+#include "components/framework/execution/Activity.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "types/text/Ascii.hpp"
 
 namespace insonify::framework {
 namespace {

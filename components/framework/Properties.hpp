@@ -8,7 +8,7 @@
 
 #include "components/framework/Operation.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/framework/ValueType.hpp"
+#include "components/framework/config/ValueType.hpp"
 
 namespace insonify::framework {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/framework/TaskContext.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::loader {
 class ComponentLibrary;

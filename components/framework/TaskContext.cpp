@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <chrono>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::framework {
 namespace {

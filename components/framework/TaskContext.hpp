@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/Timing.hpp"
-#include "types/ConfigError.hpp"
-#include "types/DeploymentControl.hpp"
-#include "types/Plan.hpp"
-#include "types/RosNames.hpp"
-#include "types/TaskRecord.hpp"
+#include "components/framework/execution/Timing.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/samples/DeploymentControl.hpp"
+#include "types/samples/Plan.hpp"
+#include "types/text/RosNames.hpp"
+#include "types/samples/TaskRecord.hpp"
 #include "types/Thread.hpp"
 #include "types/Time.hpp"
 

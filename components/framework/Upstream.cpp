@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "components/framework/ConfigReader.hpp"
-#include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
-#include "components/framework/YamlText.hpp"
+#include "components/framework/config/YamlText.hpp"
 
 namespace insonify::framework {
 namespace {

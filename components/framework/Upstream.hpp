@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "components/framework/Port.hpp"
-#include "types/Mount.hpp"
+#include "types/geometry/Mount.hpp"
 #include "types/ReturnLevels.hpp"
-#include "types/TaskRecord.hpp"
+#include "types/samples/TaskRecord.hpp"
 
 namespace insonify::framework {
 

@@ -8,7 +8,7 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::framework {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/Graph.hpp"
 #include "components/framework/Registry.hpp"
 

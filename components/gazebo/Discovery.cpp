@@ -13,7 +13,7 @@
 
 #include "components/gazebo/Multicast.hpp"
 #include "components/gazebo/TransportOptions.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

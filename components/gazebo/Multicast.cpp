@@ -12,7 +12,7 @@
 #include <array>
 #include <cstring>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/Elapsed.hpp"
 
 namespace insonify::gazebo {

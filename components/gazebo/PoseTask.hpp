@@ -8,7 +8,7 @@
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/pose/ListenerTask.hpp"
 #include "types/SenderClock.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::gazebo {
 

@@ -19,7 +19,7 @@
 #include "components/gazebo/Discovery.hpp"
 #include "components/gazebo/Multicast.hpp"
 #include "components/gazebo/World.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::gazebo {

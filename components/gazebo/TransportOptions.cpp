@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

@@ -16,7 +16,7 @@
 #include "components/gazebo/TransportOptions.hpp"
 #include "components/meshes/WorldBuilder.hpp"
 #include "components/scene/Acoustics.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "components/loader/Interface.hpp"
-#include "types/Ascii.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/Ascii.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::loader {
 namespace {

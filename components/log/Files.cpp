@@ -14,7 +14,7 @@
 
 #include "components/log/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::log {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "components/log/Stream.hpp"
-#include "types/WorldFrame.hpp"
+#include "types/geometry/WorldFrame.hpp"
 
 namespace insonify::log {
 

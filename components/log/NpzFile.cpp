@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "types/Check.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::log {
 namespace {

@@ -11,8 +11,8 @@
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
 #include "components/ros/TransformTree.hpp"
-#include "types/ConfigError.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::log {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "components/log/Reader.hpp"
-#include "types/Datum.hpp"
-#include "types/Notice.hpp"
-#include "types/WorldFrame.hpp"
+#include "types/geometry/Datum.hpp"
+#include "types/text/Notice.hpp"
+#include "types/geometry/WorldFrame.hpp"
 
 namespace insonify::log {
 

@@ -10,7 +10,7 @@
 #include "components/log/mcap/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "types/Check.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::log {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "components/log/Stream.hpp"
-#include "types/WorldFrame.hpp"
+#include "types/geometry/WorldFrame.hpp"
 
 namespace insonify::log {
 

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <type_traits>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/Elapsed.hpp"
 
 namespace insonify::log {

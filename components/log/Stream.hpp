@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "types/Samples.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::log {
 

@@ -8,7 +8,7 @@
 #include "components/log/Reader.hpp"
 #include "components/log/Stream.hpp"
 #include "components/ros/Options.hpp"
-#include "types/RosNames.hpp"
+#include "types/text/RosNames.hpp"
 
 namespace insonify::log {
 

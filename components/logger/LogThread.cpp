@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "components/log/Files.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/Elapsed.hpp"
 #include "types/Thread.hpp"
 

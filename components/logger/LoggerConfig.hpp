@@ -7,7 +7,7 @@
 
 #include "components/log/Reader.hpp"
 #include "components/log/Writer.hpp"
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::logger {
 

@@ -9,7 +9,7 @@
 
 #include "components/framework/Upstream.hpp"
 #include "components/log/Stream.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::logger {
 

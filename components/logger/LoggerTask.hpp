@@ -9,7 +9,7 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
-#include "components/framework/StreamNames.hpp"
+#include "components/framework/config/StreamNames.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerConfig.hpp"
@@ -20,7 +20,7 @@ namespace insonify::logger {
 /** Writes the samples of its connected ports to a pocolog file for Rock's tools or, when the file's name ends in .mcap,
  *  as ROS 2 messages to an MCAP file with metadata.yaml next to it for `ros2 bag`: see log/mcap/SampleWriter.hpp.
  *
- *  Ports: an input for each connection that names one, of any name and of any type in types/Samples.hpp; give it a
+ *  Ports: an input for each connection that names one, of any name and of any type in types/samples/Samples.hpp; give it a
  *  buffer. A stream is named after its source, `task.port`, or the source's alias; a replayed stream keeps its recorded
  *  name. A sample has the time at which it was true and the time at which it reached this task. Metadata of every
  *  stream: the seed of the run, and the plans of the tasks at the stream's first sample, with which it is declared. The

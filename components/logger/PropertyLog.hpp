@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "components/log/Writer.hpp"
-#include "types/TaskRecord.hpp"
+#include "types/samples/TaskRecord.hpp"
 
 namespace insonify::logger {
 

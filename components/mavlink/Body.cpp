@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "types/WorldFrame.hpp"
+#include "types/geometry/WorldFrame.hpp"
 
 namespace insonify::mavlink {
 namespace {

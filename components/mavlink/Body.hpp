@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "components/mavlink/Frame.hpp"
-#include "types/ConfigError.hpp"
-#include "types/Describe.hpp"
-#include "types/Pose.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/Describe.hpp"
+#include "types/samples/Pose.hpp"
 #include "types/SenderClock.hpp"
 
 namespace insonify::mavlink {

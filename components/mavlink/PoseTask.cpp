@@ -1,6 +1,6 @@
 #include "components/mavlink/PoseTask.hpp"
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::mavlink {
 namespace {

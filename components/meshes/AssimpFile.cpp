@@ -16,7 +16,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "components/scene/Gltf.hpp"
+#include "components/scene/gltf/Gltf.hpp"
 
 namespace insonify::meshes {
 

@@ -6,7 +6,7 @@
 
 #include "components/meshes/FileMeshes.hpp"
 #include "components/scene/Scene.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::meshes {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "types/Ascii.hpp"
+#include "types/text/Ascii.hpp"
 
 namespace insonify::meshes {
 namespace {

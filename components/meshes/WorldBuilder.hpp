@@ -15,7 +15,7 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/Surface.hpp"
 #include "components/scene/UniqueNames.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::meshes {
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "components/nav/ErrorModel.hpp"
-#include "types/Angle.hpp"
-#include "types/MeshRays.hpp"
-#include "types/PosedMesh.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/geometry/MeshRays.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::nav {
 namespace {

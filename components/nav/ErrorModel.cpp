@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::nav {
 namespace {

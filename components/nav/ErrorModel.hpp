@@ -6,8 +6,8 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
-#include "types/Angle.hpp"
-#include "types/Mount.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/geometry/Mount.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::nav {

@@ -5,7 +5,7 @@
 #include <glm/matrix.hpp>
 
 #include "components/nav/ErrorModel.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::nav {
 namespace {

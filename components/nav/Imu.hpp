@@ -5,7 +5,7 @@
 
 #include "components/nav/ErrorModel.hpp"
 #include "components/nav/Motion.hpp"
-#include "types/Imu.hpp"
+#include "types/samples/Imu.hpp"
 
 namespace insonify::nav {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "types/Mount.hpp"
-#include "types/Pose.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::nav {
 

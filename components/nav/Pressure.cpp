@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "components/nav/ErrorModel.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::nav {
 namespace {

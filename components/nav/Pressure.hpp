@@ -2,8 +2,8 @@
 #include <optional>
 
 #include "components/nav/ErrorModel.hpp"
-#include "types/Pose.hpp"
-#include "types/Pressure.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Pressure.hpp"
 
 namespace insonify::nav {
 

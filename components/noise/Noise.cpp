@@ -11,7 +11,7 @@
 
 #include "components/acoustics/AmbientNoise.hpp"
 #include "components/noise/Random.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::noise {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "components/noise/Random.hpp"
-#include "types/BeamArc.hpp"
-#include "types/Describe.hpp"
-#include "types/Sonar.hpp"
+#include "types/geometry/BeamArc.hpp"
+#include "types/text/Describe.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::noise {
 

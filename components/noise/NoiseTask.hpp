@@ -9,8 +9,8 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/noise/Noise.hpp"
-#include "types/Sonar.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::noise {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::noise {
 

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::output {

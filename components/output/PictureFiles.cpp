@@ -9,7 +9,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "types/DidYouMean.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::output {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "components/output/PictureConfig.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
 #include "components/output/VideoFile.hpp"
-#include "types/Image.hpp"
+#include "types/samples/Image.hpp"
 
 namespace insonify::output {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "components/output/PictureFiles.hpp"
-#include "types/Notice.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::output {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "components/loader/ComponentLibrary.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::output {
 namespace {

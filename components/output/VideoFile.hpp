@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
-#include "types/Image.hpp"
+#include "types/samples/Image.hpp"
 
 namespace insonify::output {
 

@@ -6,7 +6,7 @@
 #include "components/framework/DynamicPorts.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "types/Pose.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::pose {
 

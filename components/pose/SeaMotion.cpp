@@ -5,8 +5,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
-#include "types/Angle.hpp"
-#include "types/Hash.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::pose {
 namespace {

@@ -3,8 +3,8 @@
 #include <string_view>
 #include <vector>
 
-#include "types/Describe.hpp"
-#include "types/Pose.hpp"
+#include "types/text/Describe.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::pose {
 

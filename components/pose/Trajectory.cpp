@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "types/Angle.hpp"
-#include "types/Csv.hpp"
-#include "types/Quaternion.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/Csv.hpp"
+#include "types/geometry/Quaternion.hpp"
 
 namespace insonify::pose {
 namespace {

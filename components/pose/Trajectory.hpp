@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "components/pose/SeaMotion.hpp"
-#include "types/Pose.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::pose {
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <string_view>
 
-#include "components/framework/Activity.hpp"
-#include "types/ConfigError.hpp"
+#include "components/framework/execution/Activity.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::pose {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "components/deployer/Json.hpp"
 #include "components/deployer/SimulationBatch.hpp"
-#include "components/framework/ConfigReader.hpp"
+#include "components/framework/config/ConfigReader.hpp"
 #include "components/python/Samples.hpp"
 #include "components/recordings/RecordingReader.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/OwnProcess.hpp"
 
 namespace insonify::python {

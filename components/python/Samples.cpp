@@ -9,10 +9,10 @@
 #include <utility>
 #include <variant>
 
-#include "components/output/FanImage.hpp"
-#include "types/Image.hpp"
-#include "types/Pose.hpp"
-#include "types/Samples.hpp"
+#include "components/output/pictures/FanImage.hpp"
+#include "types/samples/Image.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::python {
 namespace {

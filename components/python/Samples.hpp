@@ -2,10 +2,10 @@
 #include <memory>
 
 #include "components/log/Reader.hpp"
-#include "components/output/PictureConfig.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
 #include "components/python/Handle.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarTruth.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarTruth.hpp"
 
 namespace insonify::python {
 

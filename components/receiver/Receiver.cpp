@@ -7,8 +7,8 @@
 #include <limits>
 #include <span>
 
-#include "types/Geometry.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/Geometry.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::receiver {
 namespace {

@@ -8,9 +8,9 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/receiver/Receiver.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarSettings.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarSettings.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::receiver {
 

@@ -11,9 +11,9 @@
 #include "components/recordings/GlfFile.hpp"
 #include "components/recordings/JsfFile.hpp"
 #include "components/recordings/XtfFile.hpp"
-#include "types/BeamArc.hpp"
-#include "types/ConfigError.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/geometry/BeamArc.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::recordings {
 

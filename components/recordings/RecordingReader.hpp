@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "components/receiver/Receiver.hpp"
-#include "types/Angle.hpp"
-#include "types/Pose.hpp"
-#include "types/Sonar.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::recordings {
 

@@ -10,10 +10,10 @@
 #include <stdexcept>
 
 #include "components/recordings/XtfLayout.hpp"
-#include "types/Angle.hpp"
-#include "types/BeamArc.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/geometry/BeamArc.hpp"
 #include "types/Check.hpp"
-#include "types/Quaternion.hpp"
+#include "types/geometry/Quaternion.hpp"
 
 namespace insonify::recordings {
 namespace {

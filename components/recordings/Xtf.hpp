@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "types/Describe.hpp"
-#include "types/Pose.hpp"
-#include "types/Sonar.hpp"
+#include "types/text/Describe.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::recordings {
 

@@ -7,7 +7,7 @@
 #include <ctime>
 
 #include "components/recordings/XtfLayout.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::recordings {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "components/recordings/RecordingReader.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::recordings {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/log/Reader.hpp"
 
 namespace insonify::replay {

@@ -13,12 +13,12 @@
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
-#include "components/framework/StreamNames.hpp"
+#include "components/framework/config/StreamNames.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/log/LoggerClock.hpp"
 #include "components/log/PoseSources.hpp"
 #include "components/log/Reader.hpp"
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::replay {
 

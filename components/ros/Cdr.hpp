@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::ros {
 

@@ -7,10 +7,10 @@
 #include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
-#include "types/DepthMap.hpp"
-#include "types/PointCloud.hpp"
-#include "types/Range.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/DepthMap.hpp"
+#include "types/samples/PointCloud.hpp"
+#include "types/samples/Range.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::ros {
 

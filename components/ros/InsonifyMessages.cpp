@@ -4,7 +4,7 @@
 
 #include "components/ros/Stamps.hpp"
 #include "types/Check.hpp"
-#include "types/Samples.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::ros {
 namespace {

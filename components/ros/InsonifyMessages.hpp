@@ -5,10 +5,10 @@
 
 #include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
-#include "types/SonarElements.hpp"
-#include "types/SonarReturns.hpp"
-#include "types/SonarSettings.hpp"
-#include "types/SonarTruth.hpp"
+#include "types/samples/SonarElements.hpp"
+#include "types/samples/SonarReturns.hpp"
+#include "types/samples/SonarSettings.hpp"
+#include "types/samples/SonarTruth.hpp"
 
 namespace insonify::ros {
 

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::ros {
 
 // ROS 2 messages of builtin_interfaces, std_msgs, rosgraph_msgs, geometry_msgs, nav_msgs, tf2_msgs and sensor_msgs,
 // field for field.
 //
-// Each message is described once (see types/Describe.hpp); its CDR bytes and its schema text follow from the
+// Each message is described once (see types/text/Describe.hpp); its CDR bytes and its schema text follow from the
 // description. `type_hash` is the RIHS01 hash of the type, as ROS 2 announces it to other nodes.
 struct Time {
     static constexpr const char* type_name = "builtin_interfaces/msg/Time";

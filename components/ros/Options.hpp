@@ -3,9 +3,9 @@
 #include <string>
 #include <string_view>
 
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 #include "types/ReturnLevels.hpp"
-#include "types/WorldFrame.hpp"
+#include "types/geometry/WorldFrame.hpp"
 
 namespace insonify::ros {
 

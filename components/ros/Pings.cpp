@@ -8,8 +8,8 @@
 
 #include "components/ros/Clouds.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/BeamArc.hpp"
-#include "types/Samples.hpp"
+#include "types/geometry/BeamArc.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::ros {
 namespace {

@@ -5,8 +5,8 @@
 #include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarDetections.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarDetections.hpp"
 
 namespace insonify::ros {
 

@@ -8,11 +8,11 @@
 #include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
-#include "types/Dvl.hpp"
-#include "types/Imu.hpp"
-#include "types/Mount.hpp"
-#include "types/Pose.hpp"
-#include "types/Pressure.hpp"
+#include "types/samples/Dvl.hpp"
+#include "types/samples/Imu.hpp"
+#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Pressure.hpp"
 
 namespace insonify::ros {
 

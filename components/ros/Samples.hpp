@@ -12,8 +12,8 @@
 #include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/Image.hpp"
-#include "types/Samples.hpp"
+#include "types/samples/Image.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::ros {
 

@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "types/Elapsed.hpp"
-#include "types/Pose.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::ros {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/Seabed.hpp"
-#include "types/Ascii.hpp"
-#include "types/ConfigError.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/text/Ascii.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {

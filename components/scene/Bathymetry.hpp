@@ -15,7 +15,7 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "components/scene/Surface.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::scene {

@@ -11,8 +11,8 @@
 #include <span>
 #include <utility>
 
-#include "types/PosedMesh.hpp"
-#include "types/Weld.hpp"
+#include "types/geometry/PosedMesh.hpp"
+#include "types/geometry/Weld.hpp"
 
 namespace insonify::scene {
 namespace {

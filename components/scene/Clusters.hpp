@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::scene {
 

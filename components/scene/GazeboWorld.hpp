@@ -4,8 +4,8 @@
 #include <string>
 
 #include "components/scene/Scene.hpp"
-#include "types/ConfigError.hpp"
-#include "types/Describe.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::scene {
 

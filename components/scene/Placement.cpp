@@ -6,11 +6,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
-#include "components/scene/Animator.hpp"
-#include "components/scene/Gltf.hpp"
-#include "types/Angle.hpp"
-#include "types/DidYouMean.hpp"
-#include "types/Extent.hpp"
+#include "components/scene/motion/Animator.hpp"
+#include "components/scene/gltf/Gltf.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/DidYouMean.hpp"
+#include "types/geometry/Extent.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "components/scene/Scene.hpp"
-#include "types/Describe.hpp"
-#include "types/WorldFrame.hpp"
+#include "types/text/Describe.hpp"
+#include "types/geometry/WorldFrame.hpp"
 
 namespace insonify::scene {
 

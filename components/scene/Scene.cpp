@@ -17,11 +17,11 @@
 #include <vector>
 
 #include "components/loader/ComponentLibrary.hpp"
-#include "components/scene/Gltf.hpp"
-#include "types/Angle.hpp"
-#include "types/Ascii.hpp"
-#include "types/ConfigError.hpp"
-#include "types/DidYouMean.hpp"
+#include "components/scene/gltf/Gltf.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/Ascii.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {

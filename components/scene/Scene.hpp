@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "components/scene/Animation.hpp"
-#include "types/Geometry.hpp"
-#include "types/Plan.hpp"
+#include "components/scene/motion/Animation.hpp"
+#include "types/geometry/Geometry.hpp"
+#include "types/samples/Plan.hpp"
 
 namespace insonify::scene {
 

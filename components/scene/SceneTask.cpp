@@ -12,13 +12,13 @@
 #include <utility>
 #include <variant>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/text/DidYouMean.hpp"
 #include "types/Elapsed.hpp"
-#include "types/Quaternion.hpp"
+#include "types/geometry/Quaternion.hpp"
 
 namespace insonify::scene {
 namespace {

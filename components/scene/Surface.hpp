@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::scene {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "components/scene/Acoustics.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "types/Describe.hpp"
-#include "types/Geometry.hpp"
+#include "types/text/Describe.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::scene {
 

@@ -36,8 +36,8 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/Surface.hpp"
 #include "components/sdf/SdfFile.hpp"
-#include "types/Ascii.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/Ascii.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::sdf {
 namespace {

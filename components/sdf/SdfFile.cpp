@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "components/scene/Scene.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::sdf {
 namespace {

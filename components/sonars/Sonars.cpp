@@ -6,10 +6,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "components/framework/ConfigReader.hpp"
-#include "components/framework/Embed.hpp"
-#include "components/framework/YamlText.hpp"
-#include "types/Ascii.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/Embed.hpp"
+#include "components/framework/config/YamlText.hpp"
+#include "types/text/Ascii.hpp"
 
 INSONIFY_EMBED(insonify_sonars, INSONIFY_SONARS)
 

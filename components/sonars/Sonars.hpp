@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::sonars {
 

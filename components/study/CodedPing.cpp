@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "components/recordings/RecordingReader.hpp"
-#include "types/BeamArc.hpp"
-#include "types/ConfigError.hpp"
-#include "types/Quaternion.hpp"
+#include "types/geometry/BeamArc.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/geometry/Quaternion.hpp"
 
 namespace insonify::study {
 namespace {

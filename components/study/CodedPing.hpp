@@ -7,8 +7,8 @@
 
 #include "components/receiver/Receiver.hpp"
 #include "components/recordings/RecordingReader.hpp"
-#include "types/Pose.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::study {
 

@@ -6,7 +6,7 @@
 
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/stability/StabilityStudy.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::study {
 

@@ -10,7 +10,7 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/oracles/EmbreeTracer.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

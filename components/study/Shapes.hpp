@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/scene/Clusters.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::study {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::study {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/study/CodedPing.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::study {
 

@@ -15,7 +15,7 @@
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/SpeckleStatistics.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

@@ -7,7 +7,7 @@
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/SpeckleStatistics.hpp"
 #include "components/study/error/ErrorAnalysis.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::study {
 

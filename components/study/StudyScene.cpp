@@ -12,8 +12,8 @@
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
-#include "types/Angle.hpp"
-#include "types/Hash.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::study {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/oracles/Truth.hpp"
-#include "types/Geometry.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Geometry.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::study {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "components/sonar/config/SonarConfig.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::study {
 

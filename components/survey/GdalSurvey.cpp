@@ -12,7 +12,7 @@
 #include <mutex>
 
 #include "components/scene/Scene.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::survey {
 namespace {

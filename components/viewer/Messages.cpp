@@ -9,8 +9,8 @@
 #include "components/ros/Clouds.hpp"
 #include "components/ros/Stamps.hpp"
 #include "components/viewer/PingPicture.hpp"
-#include "types/BeamArc.hpp"
-#include "types/SonarScan.hpp"
+#include "types/geometry/BeamArc.hpp"
+#include "types/samples/SonarScan.hpp"
 
 namespace insonify::viewer {
 namespace {

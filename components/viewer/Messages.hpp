@@ -13,8 +13,8 @@
 #include "components/viewer/FoxgloveMessages.hpp"
 #include "components/viewer/Frame.hpp"
 #include "components/viewer/SceneUpdates.hpp"
-#include "types/Snapshot.hpp"
-#include "types/Sonar.hpp"
+#include "types/geometry/Snapshot.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::viewer {
 

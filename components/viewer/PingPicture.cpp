@@ -6,7 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "types/BeamArc.hpp"
+#include "types/geometry/BeamArc.hpp"
 
 namespace insonify::viewer {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "components/ros/Options.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::viewer {
 

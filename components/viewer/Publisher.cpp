@@ -12,7 +12,7 @@
 #include "components/console/Json.hpp"
 #include "components/viewer/SceneMesh.hpp"
 #include "components/viewer/Server.hpp"
-#include "types/Ascii.hpp"
+#include "types/text/Ascii.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::viewer {

@@ -15,8 +15,8 @@
 #include "components/viewer/Messages.hpp"
 #include "components/viewer/PingPicture.hpp"
 #include "components/viewer/Server.hpp"
-#include "types/DeploymentControl.hpp"
-#include "types/Describe.hpp"
+#include "types/samples/DeploymentControl.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::viewer {
 

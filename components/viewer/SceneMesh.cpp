@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "components/viewer/PingPicture.hpp"
-#include "types/PosedMesh.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::viewer {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "types/Pose.hpp"
-#include "types/Snapshot.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::viewer {
 

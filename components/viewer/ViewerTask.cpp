@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::viewer {
 

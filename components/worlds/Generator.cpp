@@ -16,7 +16,7 @@
 #include "components/console/Console.hpp"
 #include "components/console/Sha256.hpp"
 #include "components/loader/ComponentLibrary.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::worlds {
 namespace {

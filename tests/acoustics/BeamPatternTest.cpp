@@ -9,7 +9,7 @@
 #include "tests/support/Folder.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Weightings.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::acoustics {
 namespace {

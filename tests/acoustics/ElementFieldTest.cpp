@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "components/acoustics/BeamPattern.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::acoustics {
 namespace {

@@ -8,7 +8,7 @@
 #include "components/acoustics/SoundSpeed.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::acoustics {
 namespace {

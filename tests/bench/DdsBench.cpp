@@ -14,7 +14,7 @@
 #include "components/framework/Port.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 using namespace insonify;
 using Clock = std::chrono::steady_clock;

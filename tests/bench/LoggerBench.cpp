@@ -10,7 +10,7 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/logger/LoggerTask.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify {
 namespace {

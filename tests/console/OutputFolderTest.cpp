@@ -6,7 +6,7 @@
 
 #include "components/console/OutputFolder.hpp"
 #include "tests/support/Folder.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::console {
 namespace {

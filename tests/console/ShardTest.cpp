@@ -7,7 +7,7 @@
 #include "components/console/Shard.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::console {
 namespace {

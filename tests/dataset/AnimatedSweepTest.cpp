@@ -4,11 +4,11 @@
 #include <glm/geometric.hpp>
 #include <set>
 
-#include "components/scene/Animator.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "tests/dataset/HarbourDeployment.hpp"
 #include "tests/deployer/Command.hpp"
 #include "tests/scene/AnimatedFiles.hpp"
-#include "types/PosedMesh.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::dataset {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "components/dataset/Classes.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {

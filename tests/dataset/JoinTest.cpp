@@ -12,7 +12,7 @@
 #include "components/dataset/Collection.hpp"
 #include "components/dataset/SampleFiles.hpp"
 #include "tests/support/Folder.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "components/dataset/Samples.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {

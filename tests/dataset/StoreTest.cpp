@@ -5,7 +5,7 @@
 
 #include "components/dataset/Store.hpp"
 #include "tests/support/Folder.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {

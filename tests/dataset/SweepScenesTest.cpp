@@ -5,7 +5,7 @@
 
 #include "components/dataset/commands/SweepFile.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "components/dataset/Sweep.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::dataset {
 namespace {

@@ -6,7 +6,7 @@
 #include "components/ros/Messages.hpp"
 #include "tests/dds/Loopback.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 using namespace insonify;
 using namespace insonify::dds;

@@ -3,10 +3,10 @@
 
 #include "components/dds/PublisherTask.hpp"
 #include "components/dds/SubscriberTask.hpp"
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "tests/dds/Loopback.hpp"
 #include "tests/support/Ports.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::dds {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 
-#include "components/output/SideScanImage.hpp"
+#include "components/output/pictures/SideScanImage.hpp"
 #include "components/recordings/Xtf.hpp"
 #include "components/recordings/XtfFile.hpp"
 #include "tests/deployer/Command.hpp"

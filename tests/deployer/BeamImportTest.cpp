@@ -8,9 +8,9 @@
 #include "components/log/Reader.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/PingViewerRecording.hpp"
-#include "types/Range.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarSettings.hpp"
+#include "types/samples/Range.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarSettings.hpp"
 
 using namespace insonify::deployer;
 using namespace insonify;

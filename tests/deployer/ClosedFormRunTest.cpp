@@ -4,7 +4,7 @@
 #include "tests/deployer/SceneRun.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/Scenes.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 using namespace insonify::deployer;
 using namespace insonify::test;

@@ -11,8 +11,8 @@
 #include "tests/support/ArisRecording.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/GlfRecording.hpp"
-#include "types/Pose.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Sonar.hpp"
 
 using namespace insonify::deployer;
 using namespace insonify;

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "components/command/Starter.hpp"
+#include "components/command/init/Starter.hpp"
 #include "tests/deployer/Command.hpp"
 
 using namespace insonify::command;

@@ -9,7 +9,7 @@
 #include "tests/support/MicronDriver.hpp"
 #include "tests/support/Needs.hpp"
 #include "tests/support/Wire.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::device {
 namespace {

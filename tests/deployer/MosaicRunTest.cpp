@@ -3,7 +3,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "components/output/FanShape.hpp"
+#include "components/output/pictures/FanShape.hpp"
 #include "tests/deployer/Command.hpp"
 #include "tests/output/Room.hpp"
 #include "tests/support/Paths.hpp"

@@ -11,7 +11,7 @@
 #include "tests/deployer/Growing.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Paths.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 using namespace insonify::deployer;
 using namespace insonify;

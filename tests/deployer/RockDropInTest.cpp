@@ -5,7 +5,7 @@
 #include "tests/deployer/SceneRun.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 using namespace insonify;
 using namespace insonify::deployer;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "tests/deployer/Wall.hpp"
-#include "types/Geometry.hpp"
-#include "types/Sonar.hpp"
+#include "types/geometry/Geometry.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::deployer {
 

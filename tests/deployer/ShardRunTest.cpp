@@ -9,7 +9,7 @@
 #include "components/log/pocolog/Reader.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Folder.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 using namespace insonify::deployer;
 using insonify::console::Json;

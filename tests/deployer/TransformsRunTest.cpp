@@ -6,7 +6,7 @@
 #include "components/log/Reader.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Python.hpp"
-#include "types/Mount.hpp"
+#include "types/geometry/Mount.hpp"
 
 using namespace insonify;
 using namespace insonify::deployer;

@@ -8,8 +8,8 @@
 #include "tests/support/OculusMessage.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/Angle.hpp"
-#include "types/ConfigError.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {

@@ -10,7 +10,7 @@
 #include "tests/support/OculusMessage.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {

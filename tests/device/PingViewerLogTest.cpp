@@ -13,7 +13,7 @@
 #include "tests/support/PingViewerRecording.hpp"
 #include "tests/support/Python.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {

@@ -16,7 +16,7 @@
 #include "tests/device/ByteStrings.hpp"
 #include "tests/support/OculusDriver.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {

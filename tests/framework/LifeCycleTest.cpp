@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Ports.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <thread>
 
-#include "components/framework/LockstepExecutor.hpp"
+#include "components/framework/execution/LockstepExecutor.hpp"
 #include "tests/framework/Tasks.hpp"
 
 namespace insonify::framework {

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Port.hpp"
 #include "tests/support/Ports.hpp"
-#include "types/Pose.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::framework {
 namespace {

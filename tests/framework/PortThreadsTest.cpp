@@ -3,7 +3,7 @@
 
 #include <future>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/Properties.hpp"
 
 namespace insonify {

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Refused.hpp"

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/framework/ConfigReader.hpp"
-#include "components/framework/Quantity.hpp"
-#include "components/framework/YamlText.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/Quantity.hpp"
+#include "components/framework/config/YamlText.hpp"
 
 namespace insonify::framework {
 namespace {

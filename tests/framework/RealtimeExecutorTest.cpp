@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "components/framework/Offers.hpp"
-#include "components/framework/RealtimeExecutor.hpp"
+#include "components/framework/execution/RealtimeExecutor.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"

@@ -6,8 +6,8 @@
 #include <functional>
 #include <thread>
 
-#include "components/framework/Activity.hpp"
-#include "components/framework/RealtimeExecutor.hpp"
+#include "components/framework/execution/Activity.hpp"
+#include "components/framework/execution/RealtimeExecutor.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Priorities.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/framework/Timing.hpp"
+#include "components/framework/execution/Timing.hpp"
 
 namespace insonify::framework {
 namespace {

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 
-#include "components/framework/StreamAligner.hpp"
+#include "components/framework/execution/StreamAligner.hpp"
 #include "tests/support/Ports.hpp"
-#include "types/Pose.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::framework {
 namespace {

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/framework/StreamNames.hpp"
+#include "components/framework/config/StreamNames.hpp"
 #include "components/framework/Upstream.hpp"
 #include "tests/framework/Tasks.hpp"
 

@@ -3,10 +3,10 @@
 
 #include <thread>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Waiting.hpp"
-#include "types/Pose.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::framework {
 namespace {

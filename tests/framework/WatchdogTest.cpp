@@ -2,8 +2,8 @@
 
 #include <thread>
 
-#include "components/framework/Activity.hpp"
-#include "components/framework/RealtimeExecutor.hpp"
+#include "components/framework/execution/Activity.hpp"
+#include "components/framework/execution/RealtimeExecutor.hpp"
 #include "tests/framework/Tasks.hpp"
 
 namespace insonify::framework {

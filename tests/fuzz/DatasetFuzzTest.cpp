@@ -5,7 +5,7 @@
 #include "components/dataset/Collection.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Fuzz.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::fuzz {
 namespace {

@@ -2,12 +2,12 @@
 
 #include "components/framework/Deployment.hpp"
 #include "components/noise/NoiseTask.hpp"
-#include "components/output/PictureTask.hpp"
+#include "components/output/tasks/PictureTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/support/Fuzz.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::fuzz {
 namespace {

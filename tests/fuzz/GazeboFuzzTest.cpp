@@ -6,7 +6,7 @@
 #include "components/gazebo/World.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Fuzz.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::fuzz {
 namespace {

@@ -4,7 +4,7 @@
 #include "components/log/Copy.hpp"
 #include "components/log/PoseSources.hpp"
 #include "tests/support/Fuzz.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::fuzz {
 namespace {

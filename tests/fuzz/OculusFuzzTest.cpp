@@ -8,7 +8,7 @@
 #include "components/device/OculusRecording.hpp"
 #include "components/device/oculus/OculusEmulator.hpp"
 #include "tests/support/Fuzz.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::fuzz {
 namespace {

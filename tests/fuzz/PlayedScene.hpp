@@ -1,8 +1,8 @@
 #pragma once
 // Scenes at times of their animations.
-#include "components/scene/Animator.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "tests/scene/SceneFiles.hpp"
-#include "types/PosedMesh.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::fuzz {
 

@@ -7,7 +7,7 @@
 #include "components/recordings/JsfFile.hpp"
 #include "components/recordings/XtfFile.hpp"
 #include "tests/support/Fuzz.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::fuzz {
 namespace {

@@ -10,7 +10,7 @@
 #include "tests/gazebo/Partition.hpp"
 #include "tests/gazebo/Recordings.hpp"
 #include "tests/support/Listening.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

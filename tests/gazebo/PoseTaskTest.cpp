@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/gazebo/PoseTask.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/gazebo/FortressWorld.hpp"

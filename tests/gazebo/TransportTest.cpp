@@ -5,7 +5,7 @@
 #include "components/gazebo/TransportOptions.hpp"
 #include "tests/gazebo/Recordings.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

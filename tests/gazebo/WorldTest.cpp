@@ -11,7 +11,7 @@
 #include "tests/gazebo/Recordings.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

@@ -39,7 +39,7 @@ install(TARGETS vehicle)
     writeFile(folder / "main.cpp", R"(#include <cstdio>
 
 #include "components/acoustics/SoundSpeed.hpp"
-#include "types/Extent.hpp"
+#include "types/geometry/Extent.hpp"
 
 int main() {
     std::puts("linked");

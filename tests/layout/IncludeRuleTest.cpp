@@ -150,8 +150,8 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/noise/Speckle.hpp", "components/framework/Port.hpp"));
     EXPECT_FALSE(allowed("components/noise/NoiseTask.hpp", "components/sonar/Plan.hpp"));
     EXPECT_FALSE(allowed("components/noise/Speckle.cpp", "components/noise/NoiseTask.hpp"));
-    EXPECT_FALSE(allowed("types/Sonar.hpp", "components/gpu/Context.hpp"));
-    EXPECT_FALSE(allowed("components/gpu/Context.hpp", "types/Sonar.hpp"));
+    EXPECT_FALSE(allowed("types/samples/Sonar.hpp", "components/gpu/Context.hpp"));
+    EXPECT_FALSE(allowed("components/gpu/Context.hpp", "types/samples/Sonar.hpp"));
     EXPECT_TRUE(allowed("components/gpu/Context.cpp", "types/Thread.hpp"));
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/log/Reader.hpp"));
     EXPECT_FALSE(allowed("components/study/error/ErrorStudy.cpp", "components/sonar/tasks/SonarTask.hpp"));
@@ -171,13 +171,13 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/logger/LoggerTask.cpp", "components/log/pocolog/Writer.hpp"));
     EXPECT_FALSE(allowed("components/command/LogCommand.cpp", "components/log/mcap/Reader.hpp"));
     EXPECT_FALSE(allowed("components/python/Interface.cpp", "components/command/RunCommand.hpp"));
-    EXPECT_FALSE(allowed("components/deployer/Import.cpp", "components/command/Summary.hpp"));
+    EXPECT_FALSE(allowed("components/deployer/log/Import.cpp", "components/command/Summary.hpp"));
     EXPECT_FALSE(allowed("components/log/mcap/Reader.cpp", "components/log/pocolog/Wire.hpp"));
     EXPECT_TRUE(allowed("components/log/Reader.cpp", "components/log/pocolog/Reader.hpp"));
     EXPECT_TRUE(allowed("components/log/pocolog/Reader.cpp", "components/log/Reader.hpp"));
     EXPECT_FALSE(allowed("components/viewer/Server.cpp", "components/framework/Port.hpp"));
     EXPECT_TRUE(allowed("components/dataset/Store.cpp", "components/console/Json.hpp"));
-    EXPECT_FALSE(allowed("components/dataset/Samples.cpp", "components/framework/ConfigReader.hpp"));
+    EXPECT_FALSE(allowed("components/dataset/Samples.cpp", "components/framework/config/ConfigReader.hpp"));
     EXPECT_FALSE(allowed("components/dataset/SampleFiles.cpp", "components/output/FanImageTask.hpp"));
     EXPECT_TRUE(allowed("components/viewer/Messages.cpp", "components/ros/Cdr.hpp"));
     EXPECT_TRUE(allowed("components/logger/LoggerTask.cpp", "components/log/Writer.hpp"));

@@ -145,7 +145,7 @@ TEST(LayerTest, ChecksAreInSourceFiles) {
 /** A text says no kind, so that no code decides by a text. */
 TEST(LayerTest, OnlyTheKindOfANoticeMakesItAWarning) {
     for (const Source& source : product())
-        for (size_t line = 0; line < source.lines.size() && source.path != "types/Notice.hpp"; ++line)
+        for (size_t line = 0; line < source.lines.size() && source.path != "types/text/Notice.hpp"; ++line)
             EXPECT_EQ(source.lines[line].find("\"Warning: "), std::string::npos) << source.path << ":" << line + 1;
 }
 

@@ -8,7 +8,7 @@
 #include "components/log/Copy.hpp"
 #include "components/log/PoseSources.hpp"
 #include "tests/support/Bag.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::log {
 namespace {

@@ -9,7 +9,7 @@
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
 #include "tests/support/Bag.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::log {
 namespace {

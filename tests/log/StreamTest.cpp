@@ -2,7 +2,7 @@
 
 #include "components/log/Stream.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::log {
 namespace {

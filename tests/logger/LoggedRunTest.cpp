@@ -13,7 +13,7 @@
 #include "components/logger/LoggerTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Waiting.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::logger {
 namespace {

@@ -9,7 +9,7 @@
 #include "tests/support/Ports.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Waiting.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::logger {
 namespace {

@@ -12,7 +12,7 @@
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/Mount.hpp"
+#include "types/geometry/Mount.hpp"
 
 namespace insonify::logger {
 namespace {

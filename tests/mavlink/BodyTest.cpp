@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "components/mavlink/Body.hpp"
-#include "types/Mount.hpp"
+#include "types/geometry/Mount.hpp"
 
 namespace insonify::mavlink {
 namespace {

@@ -8,7 +8,7 @@
 #include "tests/mavlink/Vehicle.hpp"
 #include "tests/support/Listening.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/Mount.hpp"
+#include "types/geometry/Mount.hpp"
 
 using namespace insonify;
 using namespace insonify::mavlink;

@@ -10,7 +10,7 @@
 
 #include "components/meshes/AssimpFile.hpp"
 #include "components/meshes/MeshFile.hpp"
-#include "components/scene/Gltf.hpp"
+#include "components/scene/gltf/Gltf.hpp"
 #include "tests/meshes/Dae.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 #include "tests/support/Paths.hpp"

@@ -7,7 +7,7 @@
 #include "components/nav/Dvl.hpp"
 #include "tests/support/Deformed.hpp"
 #include "tests/support/Surfaces.hpp"
-#include "types/Extent.hpp"
+#include "types/geometry/Extent.hpp"
 
 namespace insonify::nav {
 namespace {

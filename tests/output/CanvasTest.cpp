@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/output/Canvas.hpp"
+#include "components/output/pictures/Canvas.hpp"
 
 namespace insonify::output {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "components/output/FanImage.hpp"
-#include "components/output/Overlay.hpp"
+#include "components/output/pictures/FanImage.hpp"
+#include "components/output/pictures/Overlay.hpp"
 #include "tests/output/Pixels.hpp"
 
 namespace insonify::output {

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "components/output/FanShape.hpp"
+#include "components/output/pictures/FanShape.hpp"
 #include "tests/output/Pixels.hpp"
 
 namespace insonify::output {

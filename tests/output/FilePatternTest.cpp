@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/output/PictureConfig.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
 #include "components/output/PictureFiles.hpp"
 #include "tests/support/Refused.hpp"
 

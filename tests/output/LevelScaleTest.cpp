@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "components/output/LevelScale.hpp"
+#include "components/output/pictures/LevelScale.hpp"
 #include "tests/support/Refused.hpp"
 
 namespace insonify::output {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/Ports.hpp"
-#include "types/Image.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Image.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::test {
 

@@ -3,7 +3,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "components/output/FanImage.hpp"
+#include "components/output/pictures/FanImage.hpp"
 #include "components/output/PictureFiles.hpp"
 #include "components/output/PictureWriter.hpp"
 #include "tests/output/Pixels.hpp"

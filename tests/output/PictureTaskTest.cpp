@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/output/PictureTask.hpp"
+#include "components/output/tasks/PictureTask.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Ports.hpp"
 

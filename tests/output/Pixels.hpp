@@ -4,10 +4,10 @@
 
 #include <opencv2/core.hpp>
 
-#include "components/output/PictureConfig.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Pings.hpp"
-#include "types/Image.hpp"
+#include "types/samples/Image.hpp"
 
 namespace insonify::test {
 

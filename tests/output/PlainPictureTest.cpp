@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "components/output/PlainPicture.hpp"
+#include "components/output/pictures/PlainPicture.hpp"
 #include "tests/support/Pings.hpp"
 
 namespace insonify::output {

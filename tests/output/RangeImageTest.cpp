@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/output/SamplePictureTask.hpp"
+#include "components/output/tasks/SamplePictureTask.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Ports.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/output/Pixels.hpp"
-#include "types/Pose.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::test {
 

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/output/ScanMosaic.hpp"
+#include "components/output/maps/ScanMosaic.hpp"
 #include "tests/output/Room.hpp"
 
 namespace insonify::output {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/output/SideScanImageTask.hpp"
+#include "components/output/tasks/SideScanImageTask.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Ports.hpp"
 

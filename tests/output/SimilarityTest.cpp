@@ -1,6 +1,6 @@
 #include <random>
 
-#include "components/output/Similarity.hpp"
+#include "components/output/maps/Similarity.hpp"
 #include "tests/output/Pixels.hpp"
 
 namespace insonify::output {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "components/output/SamplePictureTask.hpp"
+#include "components/output/tasks/SamplePictureTask.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Ports.hpp"
 

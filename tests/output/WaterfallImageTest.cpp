@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/output/WaterfallImage.hpp"
+#include "components/output/pictures/WaterfallImage.hpp"
 #include "tests/output/Pixels.hpp"
 
 namespace insonify::output {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "components/output/XtfTask.hpp"
+#include "components/output/tasks/XtfTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"

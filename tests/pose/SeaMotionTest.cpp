@@ -10,7 +10,7 @@
 #include "components/pose/SeaMotion.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::pose {
 namespace {

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <memory>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"

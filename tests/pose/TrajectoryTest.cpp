@@ -11,7 +11,7 @@
 #include "components/pose/Trajectory.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::pose {
 namespace {

@@ -9,7 +9,7 @@
 #include "components/log/Stream.hpp"
 #include "components/log/Writer.hpp"
 #include "components/log/pocolog/Wire.hpp"
-#include "components/output/FanShape.hpp"
+#include "components/output/pictures/FanShape.hpp"
 #include "components/recordings/RecordingReader.hpp"
 #include "components/recordings/Xtf.hpp"
 #include "components/ros/Pings.hpp"
@@ -17,7 +17,7 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Scenes.hpp"
-#include "types/SonarReturns.hpp"
+#include "types/samples/SonarReturns.hpp"
 
 namespace insonify {
 namespace {

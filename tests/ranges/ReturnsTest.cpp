@@ -1,7 +1,7 @@
 // Detection in the water of the open sea, with a ring-down.
 #include <gtest/gtest.h>
 
-#include "components/output/SideScanImage.hpp"
+#include "components/output/pictures/SideScanImage.hpp"
 #include "components/ros/Clouds.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/sonar/tasks/AltimeterTask.hpp"

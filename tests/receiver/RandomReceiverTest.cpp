@@ -14,7 +14,7 @@
 #include "components/receiver/ReceiverTask.hpp"
 #include "tests/support/Draw.hpp"
 #include "tests/support/Pings.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::receiver {
 namespace {

@@ -6,8 +6,8 @@
 #include "components/receiver/Receiver.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/Geometry.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/Geometry.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::receiver {
 namespace {

@@ -2,7 +2,7 @@
 #include "components/recordings/Xtf.hpp"
 #include "tests/recordings/RecordedFileTest.hpp"
 #include "tests/support/Pings.hpp"
-#include "types/Ascii.hpp"
+#include "types/text/Ascii.hpp"
 
 namespace insonify::recordings {
 namespace {

@@ -8,7 +8,7 @@
 #include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/RecordedBytes.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::recordings {
 namespace {

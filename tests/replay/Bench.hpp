@@ -6,7 +6,7 @@
 #include "components/replay/ReplayTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::replay {
 

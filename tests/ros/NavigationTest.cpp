@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "components/ros/Poses.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::ros {
 namespace {

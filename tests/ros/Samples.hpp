@@ -1,8 +1,8 @@
 #pragma once
 
 #include "components/ros/Samples.hpp"
-#include "types/Pose.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::ros {
 

@@ -1,8 +1,8 @@
 // Animations, skins and morph targets of files: what they move, and what is refused.
-#include "components/scene/Animator.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "components/scene/Placement.hpp"
 #include "tests/scene/AnimatedFiles.hpp"
-#include "types/PosedMesh.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::scene {
 namespace {

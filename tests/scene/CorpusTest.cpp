@@ -2,10 +2,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 
-#include "components/scene/Animator.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Paths.hpp"
-#include "types/PosedMesh.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "components/scene/Animation.hpp"
+#include "components/scene/motion/Animation.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "tests/scene/SceneTaskFiles.hpp"
-#include "types/Pose.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -14,7 +14,7 @@
 #include "components/scene/Scene.hpp"
 #include "tests/support/Base64.hpp"
 #include "tests/support/Folder.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::scene {
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/scene/SceneTaskFiles.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/scene/SceneTaskFiles.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
 #include "components/sonar/tasks/AltimeterTask.hpp"
 #include "tests/support/Hills.hpp"

@@ -4,7 +4,7 @@
 
 #include "components/sonar/beams/Directivity.hpp"
 #include "components/sonar/bins/Beamformer.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

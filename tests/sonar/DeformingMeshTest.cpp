@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include "components/scene/Animator.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "components/sonar/raster/SurfaceScene.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/surfaces/DeformedMeshes.hpp"
@@ -16,7 +16,7 @@
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
-#include "types/PosedMesh.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::sonar {
 namespace {

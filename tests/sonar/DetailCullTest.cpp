@@ -8,7 +8,7 @@
 #include "components/sonar/raster/Culler.hpp"
 #include "components/study/StudyScene.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

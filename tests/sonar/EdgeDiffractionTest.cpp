@@ -7,8 +7,8 @@
 #include <random>
 
 #include "components/acoustics/Wedge.hpp"
-#include "components/framework/ConfigReader.hpp"
-#include "components/framework/YamlText.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/YamlText.hpp"
 #include "components/sonar/multipath/EdgeEchoes.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/surfaces/StraightEdges.hpp"
@@ -17,7 +17,7 @@
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Weightings.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -8,8 +8,8 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "tests/support/Tables.hpp"
-#include "types/Angle.hpp"
-#include "types/SonarReturns.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/samples/SonarReturns.hpp"
 
 namespace insonify::sonar {
 namespace {

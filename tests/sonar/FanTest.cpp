@@ -4,7 +4,7 @@
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/beams/Fan.hpp"
 #include "tests/support/Tables.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <map>
 
-#include "components/framework/ConfigReader.hpp"
-#include "components/framework/YamlText.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/YamlText.hpp"
 #include "components/pose/Trajectory.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/Paths.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"

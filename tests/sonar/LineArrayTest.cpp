@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "components/sonar/bins/LineArray.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::sonar {
 namespace {

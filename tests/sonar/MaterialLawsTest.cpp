@@ -7,7 +7,7 @@
 #include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/Seabed.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -18,7 +18,7 @@
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/TaskBench.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -10,8 +10,8 @@
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
-#include "types/Angle.hpp"
-#include "types/SonarReturns.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/samples/SonarReturns.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

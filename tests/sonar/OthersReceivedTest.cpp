@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "components/sonar/multipath/OtherSonars.hpp"
-#include "types/Transmission.hpp"
+#include "types/samples/Transmission.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -10,7 +10,7 @@
 #include "tests/support/Deformed.hpp"
 #include "tests/support/Hills.hpp"
 #include "tests/support/Ports.hpp"
-#include "types/Extent.hpp"
+#include "types/geometry/Extent.hpp"
 
 namespace insonify::sonar {
 namespace {

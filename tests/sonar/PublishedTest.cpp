@@ -6,7 +6,7 @@
 
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

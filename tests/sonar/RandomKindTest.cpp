@@ -8,7 +8,7 @@
 #include "tests/support/Pings.hpp"
 #include "tests/support/RandomSonars.hpp"
 #include "tests/support/Sonars.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -12,8 +12,8 @@
 #include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Scenes.hpp"
-#include "types/Angle.hpp"
-#include "types/ConfigError.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -5,7 +5,7 @@
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/TaskBench.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

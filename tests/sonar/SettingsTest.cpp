@@ -8,7 +8,7 @@
 #include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

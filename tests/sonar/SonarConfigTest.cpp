@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
-#include "components/framework/ConfigReader.hpp"
-#include "components/framework/YamlText.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/YamlText.hpp"
 #include "components/sonar/beams/HeadScan.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/tasks/AltimeterTask.hpp"

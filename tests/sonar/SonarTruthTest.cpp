@@ -12,7 +12,7 @@
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
-#include "types/SonarReturns.hpp"
+#include "types/samples/SonarReturns.hpp"
 
 namespace insonify::sonar {
 namespace {

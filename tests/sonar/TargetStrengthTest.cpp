@@ -12,7 +12,7 @@
 #include "components/study/Shapes.hpp"
 #include "components/study/TargetShapes.hpp"
 #include "tests/support/EveryWay.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

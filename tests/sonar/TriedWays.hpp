@@ -7,7 +7,7 @@
 
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/multipath/TargetPaths.hpp"
-#include "types/MeshRays.hpp"
+#include "types/geometry/MeshRays.hpp"
 
 namespace insonify::sonar {
 

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "components/sonar/config/SonarConfig.hpp"
-#include "types/Snapshot.hpp"
-#include "types/Sonar.hpp"
+#include "types/geometry/Snapshot.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::sonar {
 

@@ -9,7 +9,7 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 #include "tests/support/Pings.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
 
-#include "components/command/Starter.hpp"
+#include "components/command/init/Starter.hpp"
 #include "components/device/oculus/OculusEmulator.hpp"
 #include "components/device/ping/Ping1dEmulator.hpp"
 #include "components/device/sonar3d/Sonar3dEmulator.hpp"

@@ -8,7 +8,7 @@
 #include "components/study/likeness/Likeness.hpp"
 #include "tests/study/FitBench.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {

@@ -6,7 +6,7 @@
 #include "components/study/Probe.hpp"
 #include "tests/study/FitBench.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {

@@ -12,7 +12,7 @@
 #include "components/study/Shapes.hpp"
 #include "components/study/oracles/RayTree.hpp"
 #include "tests/support/Sonars.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

@@ -7,7 +7,7 @@
 #include "components/device/OculusRecording.hpp"
 #include "components/study/likeness/Likeness.hpp"
 #include "tests/support/Paths.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::study {
 namespace {

@@ -12,7 +12,7 @@
 #include "components/study/StudyScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

@@ -17,7 +17,7 @@
 #include "tests/support/Draw.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Surfaces.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

@@ -14,7 +14,7 @@
 #include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

@@ -11,7 +11,7 @@
 #include "components/study/SpeckleStatistics.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::study {
 namespace {

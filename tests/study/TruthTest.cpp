@@ -3,7 +3,7 @@
 
 #include "components/study/StudyScene.hpp"
 #include "tests/support/ClosedForms.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

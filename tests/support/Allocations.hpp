@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/framework/TaskContext.hpp"
 
 namespace insonify::test {

@@ -9,7 +9,7 @@
 #include <ostream>
 #include <vector>
 
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::test {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "types/PosedMesh.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::test {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"
-#include "types/Pose.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::test {
 

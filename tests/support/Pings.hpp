@@ -6,9 +6,9 @@
 #include <numeric>
 #include <span>
 
-#include "types/Angle.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarTruth.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarTruth.hpp"
 
 namespace insonify::test {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/support/OculusMessage.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::test {
 

@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "types/Angle.hpp"
-#include "types/ConfigError.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::types {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "tests/support/Folder.hpp"
-#include "types/Ascii.hpp"
-#include "types/RosNames.hpp"
+#include "types/text/Ascii.hpp"
+#include "types/text/RosNames.hpp"
 
 namespace insonify::types {
 namespace {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "tests/support/Fans.hpp"
-#include "types/BeamArc.hpp"
+#include "types/geometry/BeamArc.hpp"
 
 namespace insonify::types {
 namespace {

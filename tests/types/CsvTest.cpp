@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
 #include "tests/support/Folder.hpp"
-#include "types/ConfigError.hpp"
-#include "types/Csv.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/Csv.hpp"
 
 namespace insonify::types {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "types/DidYouMean.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::types {
 namespace {

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "tests/support/Deformed.hpp"
-#include "types/Extent.hpp"
+#include "types/geometry/Extent.hpp"
 
 namespace insonify::types {
 namespace {

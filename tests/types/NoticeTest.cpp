@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "types/Notice.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::types {
 namespace {

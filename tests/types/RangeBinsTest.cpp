@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "types/SonarScan.hpp"
-#include "types/SonarTruth.hpp"
+#include "types/samples/SonarScan.hpp"
+#include "types/samples/SonarTruth.hpp"
 
 namespace insonify::types {
 namespace {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::types {
 namespace {

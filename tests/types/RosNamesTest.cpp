@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "types/RosNames.hpp"
+#include "types/text/RosNames.hpp"
 
 namespace insonify::types {
 namespace {

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "types/SonarScan.hpp"
+#include "types/samples/SonarScan.hpp"
 
 namespace insonify::types {
 namespace {

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "tests/support/Refused.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::types {
 namespace {

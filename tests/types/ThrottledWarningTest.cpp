@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "types/ThrottledWarning.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::types {
 namespace {

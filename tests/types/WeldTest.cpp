@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "types/Weld.hpp"
+#include "types/geometry/Weld.hpp"
 
 namespace insonify::types {
 namespace {

@@ -15,7 +15,7 @@
 #include "components/dataset/Collection.hpp"
 #include "components/dataset/commands/DatasetRun.hpp"
 #include "components/deployer/StopSignal.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {

@@ -19,10 +19,10 @@
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/Tasks.hpp"
-#include "components/framework/YamlText.hpp"
+#include "components/framework/config/YamlText.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/pose/Trajectory.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "components/console/Sha256.hpp"
-#include "components/framework/ConfigReader.hpp"
-#include "components/framework/YamlText.hpp"
-#include "types/ConfigError.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/YamlText.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 namespace {

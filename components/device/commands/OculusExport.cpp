@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "components/console/Json.hpp"
-#include "components/deployer/StreamMeaning.hpp"
+#include "components/deployer/log/StreamMeaning.hpp"
 #include "components/device/OculusPing.hpp"
 #include "components/device/OculusRecording.hpp"
 #include "components/log/Reader.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "components/device/DeviceBins.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::device {
 namespace {

@@ -9,8 +9,8 @@
 #include "components/device/micron/SeaNet.hpp"
 #include "components/device/wire/Network.hpp"
 #include "types/Elapsed.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarSettings.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarSettings.hpp"
 
 namespace insonify::device {
 

@@ -11,10 +11,10 @@
 #include "components/device/OculusPing.hpp"
 #include "components/device/oculus/OculusMessages.hpp"
 #include "components/sonars/Sonars.hpp"
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 #include "types/Elapsed.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarSettings.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarSettings.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::device {

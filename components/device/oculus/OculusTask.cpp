@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 

@@ -10,8 +10,8 @@
 #include "components/device/oculus/OculusEmulator.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/output/ByteFile.hpp"
-#include "types/Sonar.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::device {
 

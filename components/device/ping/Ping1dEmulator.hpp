@@ -2,7 +2,7 @@
 #include "components/device/ping/PingDevice.hpp"
 #include "components/device/ping/PingProtocol.hpp"
 #include "components/sonars/Sonars.hpp"
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::device {
 

@@ -3,8 +3,8 @@
 
 #include "components/device/ping/PingDevice.hpp"
 #include "components/device/ping/PingProtocol.hpp"
-#include "types/ConfigError.hpp"
-#include "types/Describe.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::device {
 

@@ -8,8 +8,8 @@
 #include "components/device/AskedPings.hpp"
 #include "components/device/ping/PingProtocol.hpp"
 #include "types/Elapsed.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarSettings.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarSettings.hpp"
 
 namespace insonify::device {
 

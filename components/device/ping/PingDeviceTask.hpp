@@ -4,7 +4,7 @@
 
 #include "components/device/DeviceTask.hpp"
 #include "components/device/ping/PingDevice.hpp"
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::device {
 

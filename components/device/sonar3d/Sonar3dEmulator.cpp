@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "components/console/Json.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::device {
 

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <map>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::log::db3 {
 namespace {

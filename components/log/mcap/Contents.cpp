@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::log::mcap {
 namespace {

@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "components/log/mcap/Transforms.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::log::mcap {
 namespace {

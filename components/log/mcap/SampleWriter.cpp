@@ -8,7 +8,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/Ascii.hpp"
+#include "types/text/Ascii.hpp"
 #include "types/Check.hpp"
 
 namespace insonify::log::mcap {

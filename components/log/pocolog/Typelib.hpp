@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/log/TypeNames.hpp"
-#include "types/Image.hpp"
+#include "types/samples/Image.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::log::pocolog {

@@ -8,7 +8,7 @@
 
 #include "components/log/Stream.hpp"
 #include "components/log/pocolog/Typelib.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::log::pocolog {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 

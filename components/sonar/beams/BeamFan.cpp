@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

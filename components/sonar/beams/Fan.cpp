@@ -4,7 +4,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "types/BeamArc.hpp"
+#include "types/geometry/BeamArc.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "types/Check.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -2,7 +2,7 @@
 #include <glm/vec3.hpp>
 
 #include "components/sonar/beams/BeamFan.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

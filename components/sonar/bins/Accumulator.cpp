@@ -6,7 +6,7 @@
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Check.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "components/sonar/base/ThreadPool.hpp"
 #include "components/sonar/plan/EchoRules.hpp"
-#include "types/Snapshot.hpp"
-#include "types/Sonar.hpp"
+#include "types/geometry/Snapshot.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::sonar {
 

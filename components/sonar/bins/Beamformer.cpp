@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "types/Check.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

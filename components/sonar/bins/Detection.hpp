@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/Describe.hpp"
+#include "types/text/Describe.hpp"
 #include "types/ReturnLevels.hpp"
-#include "types/Sonar.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::sonar {
 

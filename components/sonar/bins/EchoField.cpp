@@ -11,7 +11,7 @@
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "types/Check.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

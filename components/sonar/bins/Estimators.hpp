@@ -8,7 +8,7 @@
 #include "components/sonar/base/Interface.hpp"
 #include "components/sonar/bins/Cells.hpp"
 #include "components/sonar/plan/EchoRules.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 

@@ -6,7 +6,7 @@
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/sonar/bins/EchoField.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/SonarElements.hpp"
+#include "types/samples/SonarElements.hpp"
 
 namespace insonify::sonar {
 

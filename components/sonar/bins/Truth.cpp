@@ -9,7 +9,7 @@
 
 #include "components/sonar/plan/Effects.hpp"
 #include "types/Check.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -12,8 +12,8 @@
 #include "components/sonar/base/ThreadPool.hpp"
 #include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarTruth.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarTruth.hpp"
 
 namespace insonify::sonar {
 

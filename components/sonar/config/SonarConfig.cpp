@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "components/acoustics/SoundSpeed.hpp"
-#include "types/Angle.hpp"
-#include "types/BeamArc.hpp"
-#include "types/Hash.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/geometry/BeamArc.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::sonar {
 namespace {

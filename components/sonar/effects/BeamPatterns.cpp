@@ -4,7 +4,7 @@
 
 #include "components/sonar/beams/Directivity.hpp"
 #include "components/sonar/plan/Effect.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

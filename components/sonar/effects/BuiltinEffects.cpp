@@ -6,7 +6,7 @@
 #include "components/sonar/beams/RangeResponse.hpp"
 #include "components/sonar/plan/Effect.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

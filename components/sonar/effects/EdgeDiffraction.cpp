@@ -1,7 +1,7 @@
 #include "components/sonar/base/Counters.hpp"
 #include "components/sonar/multipath/EdgeEchoes.hpp"
 #include "components/sonar/plan/Effect.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "components/sonar/plan/Effect.hpp"
 #include "types/Check.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "components/sonar/plan/Effect.hpp"
-#include "types/Angle.hpp"
-#include "types/ConfigError.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -9,7 +9,7 @@
 #include "components/sonar/bins/Estimators.hpp"
 #include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/plan/Effect.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

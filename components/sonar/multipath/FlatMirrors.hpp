@@ -7,7 +7,7 @@
 
 #include "components/sonar/base/BoxTree.hpp"
 #include "components/sonar/multipath/Mirrors.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

@@ -4,7 +4,7 @@
 
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/rays/TileCells.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "components/sonar/beams/WaterView.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::sonar {
 namespace {

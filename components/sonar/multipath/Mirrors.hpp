@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -9,9 +9,9 @@
 #include "components/sonar/bins/EchoShape.hpp"
 #include "components/sonar/multipath/TargetPaths.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/Snapshot.hpp"
-#include "types/Sonar.hpp"
-#include "types/Transmission.hpp"
+#include "types/geometry/Snapshot.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/Transmission.hpp"
 
 namespace insonify::sonar {
 

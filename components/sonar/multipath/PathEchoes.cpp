@@ -16,9 +16,9 @@
 #include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileCells.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 #include "types/Check.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::sonar {
 namespace {

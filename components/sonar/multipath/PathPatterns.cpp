@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "components/sonar/beams/BeamFan.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "components/sonar/bins/EchoField.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 #include "types/Check.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::sonar {
 PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geometry)

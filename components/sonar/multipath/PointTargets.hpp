@@ -9,7 +9,7 @@
 #include "components/sonar/plan/Effect.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

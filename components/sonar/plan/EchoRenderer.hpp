@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/Geometry.hpp"
-#include "types/Snapshot.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarTruth.hpp"
+#include "types/geometry/Geometry.hpp"
+#include "types/geometry/Snapshot.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarTruth.hpp"
 
 namespace insonify::sonar {
 

@@ -8,7 +8,7 @@
 #include "components/sonar/beams/RangeResponse.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 #include "types/Check.hpp"
 
 namespace insonify::sonar {

@@ -11,7 +11,7 @@
 
 #include "components/sonar/plan/EchoRules.hpp"
 #include "types/Check.hpp"
-#include "types/DidYouMean.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::sonar {
 

@@ -4,8 +4,8 @@
 
 #include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/plan/Effects.hpp"
-#include "types/Angle.hpp"
-#include "types/Ascii.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/Ascii.hpp"
 
 namespace insonify::sonar {
 namespace {

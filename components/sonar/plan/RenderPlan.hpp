@@ -15,7 +15,7 @@
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
 #include "components/sonar/surfaces/ObjectPlacements.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 #include "types/ReturnLevels.hpp"
 
 namespace insonify::sonar {

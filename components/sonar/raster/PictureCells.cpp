@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

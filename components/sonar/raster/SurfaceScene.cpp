@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "components/sonar/surfaces/MeshFacts.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

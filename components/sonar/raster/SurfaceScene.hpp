@@ -8,7 +8,7 @@
 #include "components/sonar/surfaces/FacetLobes.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
 #include "components/sonar/surfaces/MeshFacts.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

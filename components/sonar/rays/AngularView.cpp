@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

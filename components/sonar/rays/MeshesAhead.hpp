@@ -4,7 +4,7 @@
 
 #include "components/sonar/base/MadeAhead.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

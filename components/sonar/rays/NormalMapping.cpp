@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "components/sonar/base/SharedValues.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "components/sonar/beams/WaterView.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

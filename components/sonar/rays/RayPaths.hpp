@@ -10,7 +10,7 @@
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/surfaces/Motion.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

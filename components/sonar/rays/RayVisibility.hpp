@@ -6,7 +6,7 @@
 
 #include "components/sonar/rays/AngularView.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 struct RTCRayHit16;
 

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "components/sonar/base/RandomFields.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
 #define INSONIFY_HAS_CLONES

@@ -11,7 +11,7 @@
 #include "components/sonar/base/MadeAhead.hpp"
 #include "components/sonar/base/SharedValues.hpp"
 #include "components/sonar/rays/Embree.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

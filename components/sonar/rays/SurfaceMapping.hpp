@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/sonar/rays/TileCells.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

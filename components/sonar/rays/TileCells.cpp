@@ -7,7 +7,7 @@
 
 #include "components/sonar/base/Counters.hpp"
 #include "types/Check.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "components/sonar/rays/Scatterers.hpp"
 #include "components/sonar/rays/TileCells.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

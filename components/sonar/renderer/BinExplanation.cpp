@@ -15,7 +15,7 @@
 #include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

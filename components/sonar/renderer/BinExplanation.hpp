@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/sonar/config/SonarConfig.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

@@ -15,8 +15,8 @@
 #include "components/sonar/beams/WaterView.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/plan/Effects.hpp"
-#include "types/Angle.hpp"
-#include "types/Extent.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/geometry/Extent.hpp"
 
 namespace insonify::sonar {
 namespace {

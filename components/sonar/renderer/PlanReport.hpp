@@ -7,9 +7,9 @@
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/surfaces/Sightlines.hpp"
-#include "types/Plan.hpp"
-#include "types/Snapshot.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/samples/Plan.hpp"
+#include "types/geometry/Snapshot.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::sonar {
 

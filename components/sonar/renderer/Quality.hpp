@@ -4,7 +4,7 @@
 
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

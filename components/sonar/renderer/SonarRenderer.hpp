@@ -5,10 +5,10 @@
 
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/plan/EchoRenderer.hpp"
-#include "types/Plan.hpp"
-#include "types/Snapshot.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarElements.hpp"
+#include "types/samples/Plan.hpp"
+#include "types/geometry/Snapshot.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarElements.hpp"
 
 namespace insonify::sonar {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "types/PosedMesh.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::sonar {
 

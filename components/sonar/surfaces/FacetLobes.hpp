@@ -5,7 +5,7 @@
 #include "components/sonar/base/Interface.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
 #include "components/sonar/surfaces/StraightEdges.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

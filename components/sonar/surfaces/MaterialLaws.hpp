@@ -7,7 +7,7 @@
 #include "components/sonar/base/Interface.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/surfaces/WallLaws.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

@@ -9,7 +9,7 @@
 
 #include "components/sonar/surfaces/FacetLobes.hpp"
 #include "components/sonar/surfaces/NearestPoint.hpp"
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -7,7 +7,7 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
-#include "types/PosedMesh.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/sonar/surfaces/MeshFacts.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "types/VectorMath.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

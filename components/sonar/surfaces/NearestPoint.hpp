@@ -2,7 +2,7 @@
 #include <glm/mat4x4.hpp>
 #include <vector>
 
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

@@ -10,7 +10,7 @@
 
 #include "components/sonar/surfaces/NearestPoint.hpp"
 #include "components/sonar/surfaces/ObjectPlacements.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 #include "types/Check.hpp"
 
 namespace insonify::sonar {

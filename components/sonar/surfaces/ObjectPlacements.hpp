@@ -5,7 +5,7 @@
 
 #include "components/sonar/base/Interface.hpp"
 #include "components/sonar/surfaces/MeshFacts.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 

@@ -7,7 +7,7 @@
 #include <glm/vector_relational.hpp>
 #include <limits>
 
-#include "types/MeshRays.hpp"
+#include "types/geometry/MeshRays.hpp"
 
 namespace insonify::sonar {
 namespace {

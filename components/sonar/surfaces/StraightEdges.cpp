@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-#include "types/Weld.hpp"
+#include "types/geometry/Weld.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

@@ -7,7 +7,7 @@
 
 #include "components/acoustics/Curve.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
-#include "types/Geometry.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

@@ -2,7 +2,7 @@
 #include "components/framework/Properties.hpp"
 #include "components/sonar/bins/Detection.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
-#include "types/Range.hpp"
+#include "types/samples/Range.hpp"
 
 namespace insonify::sonar {
 

@@ -11,12 +11,12 @@
 
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/SoundSpeed.hpp"
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/renderer/BinExplanation.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::sonar {

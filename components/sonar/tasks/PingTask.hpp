@@ -18,11 +18,11 @@
 #include "components/sonar/renderer/QualityKeeper.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/tasks/TriggeredTask.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarElements.hpp"
-#include "types/SonarReturns.hpp"
-#include "types/SonarTruth.hpp"
-#include "types/Transmission.hpp"
+#include "types/samples/Sonar.hpp"
+#include "types/samples/SonarElements.hpp"
+#include "types/samples/SonarReturns.hpp"
+#include "types/samples/SonarTruth.hpp"
+#include "types/samples/Transmission.hpp"
 
 namespace insonify::sonar {
 

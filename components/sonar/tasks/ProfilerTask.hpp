@@ -2,8 +2,8 @@
 #include "components/framework/Properties.hpp"
 #include "components/sonar/bins/Detection.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
-#include "types/PointCloud.hpp"
-#include "types/SonarDetections.hpp"
+#include "types/samples/PointCloud.hpp"
+#include "types/samples/SonarDetections.hpp"
 
 namespace insonify::sonar {
 

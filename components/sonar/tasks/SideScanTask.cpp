@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

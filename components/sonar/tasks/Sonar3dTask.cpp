@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "components/sonar/beams/Directivity.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

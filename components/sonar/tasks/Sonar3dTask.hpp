@@ -4,9 +4,9 @@
 #include "components/sonar/bins/Detection.hpp"
 #include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
-#include "types/DepthMap.hpp"
-#include "types/PointCloud.hpp"
-#include "types/SonarDetections.hpp"
+#include "types/samples/DepthMap.hpp"
+#include "types/samples/PointCloud.hpp"
+#include "types/samples/SonarDetections.hpp"
 
 namespace insonify::sonar {
 

@@ -7,10 +7,10 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Properties.hpp"
-#include "types/Pose.hpp"
-#include "types/PosedMesh.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -10,9 +10,9 @@
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/renderer/QualityKeeper.hpp"
-#include "types/Snapshot.hpp"
-#include "types/SonarSettings.hpp"
-#include "types/ThrottledWarning.hpp"
+#include "types/geometry/Snapshot.hpp"
+#include "types/samples/SonarSettings.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::sonar {
 

@@ -15,8 +15,8 @@
 #include "components/study/commands/StudyCommand.hpp"
 #include "components/study/error/ErrorAnalysis.hpp"
 #include "components/study/error/ErrorStudy.hpp"
-#include "types/Ascii.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/Ascii.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {

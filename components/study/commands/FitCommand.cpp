@@ -11,7 +11,7 @@
 #include "components/study/commands/StudyCommand.hpp"
 #include "components/study/fit/FitReport.hpp"
 #include "components/study/fit/RecordingFit.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {

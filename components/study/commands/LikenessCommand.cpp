@@ -11,7 +11,7 @@
 #include "components/study/CodedPing.hpp"
 #include "components/study/commands/StudyCommand.hpp"
 #include "components/study/likeness/Likeness.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {

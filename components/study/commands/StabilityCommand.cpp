@@ -9,7 +9,7 @@
 #include "components/console/ProgressLine.hpp"
 #include "components/study/commands/StudyCommand.hpp"
 #include "components/study/stability/StabilityStudy.hpp"
-#include "types/ConfigError.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {

@@ -1,7 +1,7 @@
 // insonify study error|likeness|multipath|omission|speckle|stability
 #include "components/study/commands/StudyCommand.hpp"
 
-#include "components/deployer/CodedLog.hpp"
+#include "components/deployer/log/CodedLog.hpp"
 #include "components/deployer/FittedDeployment.hpp"
 
 namespace insonify::study {

@@ -19,7 +19,7 @@
 #include "components/study/oracles/EmbreeTracer.hpp"
 #include "components/study/oracles/PathTracer.hpp"
 #include "components/study/oracles/PointTracer.hpp"
-#include "types/Hash.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::study {
 namespace {

@@ -9,8 +9,8 @@
 #include "components/receiver/Receiver.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "types/Angle.hpp"
-#include "types/ConfigError.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {

@@ -6,7 +6,7 @@
 #include "components/receiver/Receiver.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/CodedPing.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::study {
 

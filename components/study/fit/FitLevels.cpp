@@ -9,7 +9,7 @@
 
 #include "components/receiver/Receiver.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

@@ -11,9 +11,9 @@
 
 #include "components/output/PictureFiles.hpp"
 #include "components/study/likeness/Likeness.hpp"
-#include "types/Angle.hpp"
-#include "types/Describe.hpp"
-#include "types/Quaternion.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/Describe.hpp"
+#include "types/geometry/Quaternion.hpp"
 
 namespace insonify::study {
 namespace {

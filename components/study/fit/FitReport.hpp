@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "components/study/fit/RecordingFit.hpp"
-#include "types/Mount.hpp"
+#include "types/geometry/Mount.hpp"
 
 namespace insonify::study {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

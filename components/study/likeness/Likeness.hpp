@@ -6,7 +6,7 @@
 
 #include "components/study/CodedPing.hpp"
 #include "components/study/error/ErrorAnalysis.hpp"
-#include "types/Image.hpp"
+#include "types/samples/Image.hpp"
 
 namespace insonify::study {
 

@@ -11,7 +11,7 @@
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/study/oracles/RayTree.hpp"
 #include "components/study/oracles/Workers.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/sonar/config/SonarConfig.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::study {
 

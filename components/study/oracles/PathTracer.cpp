@@ -9,8 +9,8 @@
 
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
-#include "types/Angle.hpp"
-#include "types/Hash.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::study {
 namespace {

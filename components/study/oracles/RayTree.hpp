@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "components/sonar/surfaces/MaterialLaws.hpp"
-#include "types/Snapshot.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::study {
 

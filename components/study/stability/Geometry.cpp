@@ -9,7 +9,7 @@
 #include "components/study/Shapes.hpp"
 #include "components/study/TargetShapes.hpp"
 #include "components/study/stability/StabilityStudy.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

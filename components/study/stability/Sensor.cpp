@@ -11,7 +11,7 @@
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/stability/StabilityStudy.hpp"
-#include "types/Angle.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::study {
 namespace {

@@ -7,7 +7,7 @@
 #include "tests/log/mcap/SmallFile.hpp"
 #include "tests/support/CommaLocale.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/Image.hpp"
+#include "types/samples/Image.hpp"
 
 namespace insonify::log::mcap {
 namespace {

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "tests/log/pocolog/SmallLog.hpp"
-#include "types/Samples.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::log::pocolog {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/log/pocolog/Typelib.hpp"
-#include "types/Samples.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::log::pocolog {
 namespace {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "components/log/pocolog/Wire.hpp"
-#include "types/Samples.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::log::pocolog {
 namespace {

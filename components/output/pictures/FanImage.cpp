@@ -1,0 +1,112 @@
+#include "components/output/pictures/FanImage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <opencv2/imgproc.hpp>
+
+namespace insonify::output {
+namespace {
+
+const cv::Point colour_bar{14, FanLayout::title_height + 18};
+
+bool sameAngle(types::Angle a, types::Angle b) { return a.rad == b.rad || (a.isUnknown() && b.isUnknown()); }
+
+}  // namespace
+
+FanImage::FanImage(const DisplayConfig& config)
+    : config_(config), palette_(paletteOf(config.colour_map)), scale_(config) {}
+
+void FanImage::paint(const types::Sonar& ping, types::Image& picture) {
+    cv::Mat canvas = draw(ping, picture);
+    title_.draw(canvas, ping, scale_);
+}
+
+cv::Mat FanImage::draw(const types::Sonar& ping, types::Image& picture) {
+    if (!fits(ping)) build(ping);
+    cv::Mat canvas = openCanvas(picture, layout_->size(), ping.time);
+    ground_.copyTo(canvas);
+    if (!polar_.empty()) {
+        gather(ping);
+        scale_.apply(polar_, polar_levels_);
+        cv::remap(polar_levels_, levels_, source_, fraction_, cv::INTER_LINEAR, cv::BORDER_WRAP);
+        colour(canvas);
+    }
+    overlay_->blend(canvas);
+    return canvas;
+}
+
+bool FanImage::fits(const types::Sonar& ping) const {
+    return layout_ && shape_.bin_count == ping.bin_count && shape_.range == ping.binStart(ping.bin_count) &&
+           sameAngle(types::Angle{beam_width_}, ping.beam_width) &&
+           std::equal(bearings_.begin(), bearings_.end(), ping.bearings.begin(), ping.bearings.end(), sameAngle);
+}
+
+void FanImage::build(const types::Sonar& ping) {
+    bearings_ = ping.bearings;
+    beam_width_ = ping.beam_width.rad;
+    shape_ = FanShape::of(ping);
+    const double range = shape_.range > 0 ? shape_.range : 1;
+    layout_.emplace(static_cast<int>(config_.width), shape_.right, shape_.left, range);
+    const int again = shape_.fullCircle() ? 1 : 0;  // the first beam follows the last
+    const int rows = static_cast<int>(shape_.bearings.size()) + again, bins = static_cast<int>(shape_.bin_count);
+    columns_ = std::min(bins, std::max(1, static_cast<int>(layout_->radius())));
+    bins_.create(rows, bins, CV_32F);
+    polar_.create(rows, columns_, CV_32F);
+    buildTables();
+    buildGround();
+    ++tables_built_;
+}
+
+void FanImage::buildTables() {
+    const cv::Point2d origin = layout_->origin();
+    const double cells_per_pixel = columns_ / layout_->radius();
+    cv::Mat column(layout_->size(), CV_32F, cv::Scalar(0)), row(layout_->size(), CV_32F, cv::Scalar(0));
+    spans_.clear();
+    for (int y = 0; y < column.rows; ++y)
+        for (int x = 0; x < column.cols; ++x) {
+            const double ahead = origin.y - y, port = origin.x - x;
+            const double distance = std::hypot(ahead, port), bearing = std::atan2(port, ahead);
+            if (distance >= layout_->radius()) continue;
+            const std::optional<double> place = shape_.placeAt(bearing);
+            if (!place) continue;
+            if (spans_.empty() || spans_.back().row != y || spans_.back().end != x) spans_.push_back({y, x, x});
+            spans_.back().end = x + 1;
+            column.at<float>(y, x) =
+                static_cast<float>(std::clamp(distance * cells_per_pixel - 0.5, 0.0, columns_ - 1.0));
+            row.at<float>(y, x) = static_cast<float>(*place);
+        }
+    cv::convertMaps(column, row, source_, fraction_, CV_16SC2);
+}
+
+void FanImage::buildGround() {
+    ground_.create(layout_->size(), CV_8UC3);
+    const cv::Point bar = placeOfBar(*layout_, colour_bar);
+    paintBackground(ground_, palette_, bar);
+    overlay_.emplace(fanOverlay(*layout_, {bar, labelled_bar_size}));
+    addColourBar(*overlay_, bar, config_);
+    overlay_->finish();
+}
+
+/** Gathers the ping's beams in order of bearing, in a full circle with the first one again at the end, with at most one
+ * range cell per pixel. */
+void FanImage::gather(const types::Sonar& ping) {
+    const size_t count = shape_.bin_count;
+    for (size_t row = 0; row < static_cast<size_t>(bins_.rows); ++row)
+        std::memcpy(bins_.ptr(static_cast<int>(row)), &ping.bins[shape_.beams[row % shape_.beams.size()] * count],
+                    count * sizeof(float));
+    if (columns_ == bins_.cols)
+        bins_.copyTo(polar_);
+    else
+        cv::resize(bins_, polar_, polar_.size(), 0, 0, cv::INTER_AREA);
+}
+
+void FanImage::colour(cv::Mat& canvas) const {
+    for (const Span& span : spans_) {
+        const uint8_t* levels = levels_.ptr<uint8_t>(span.row);
+        std::transform(levels + span.begin, levels + span.end, canvas.ptr<cv::Vec3b>(span.row) + span.begin,
+                       [this](uint8_t level) { return palette_[level]; });
+    }
+}
+
+}  // namespace insonify::output

@@ -1,0 +1,165 @@
+#include "components/output/pictures/Overlay.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "components/output/pictures/Colours.hpp"
+#include "types/geometry/Angle.hpp"
+
+namespace insonify::output {
+namespace {
+
+constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
+constexpr double font_scale = 0.42;
+constexpr int full = 235, ring_opacity = 74, spoke_opacity = 44, outline_opacity = 140;
+constexpr int sub_pixel_bits = 4;
+
+cv::Point subPixel(cv::Point2d at) {
+    return {cvRound(at.x * (1 << sub_pixel_bits)), cvRound(at.y * (1 << sub_pixel_bits))};
+}
+
+/** Returns the degrees between spokes, so that their labels fit on the outer arc. */
+double spokeStep(double radius) {
+    for (const double step : {1, 2, 5, 10, 15, 30, 45})
+        if (types::radians(step) * radius > 56) return step;
+    return 90;
+}
+
+void addRings(Overlay& overlay, const FanLayout& layout) {
+    const double metres_per_pixel = layout.range() / layout.radius();
+    const double step = roundStep(64 * metres_per_pixel);
+    const bool half_plane = layout.left() < std::numbers::pi / 2 && layout.right() > -std::numbers::pi / 2;
+    for (double range = step; range < layout.range() * (1 + 1e-9); range += step) {
+        const double radius = range / metres_per_pixel;
+        if (radius < layout.radius() - 1)
+            overlay.arc(layout.origin(), radius, layout.right(), layout.left(), ring_opacity);
+        // Next to the starboard edge of a fan within the half plane ahead, else ahead, or in the middle of a fan that
+        // is not ahead.
+        const bool ahead = layout.right() <= 0 && layout.left() >= 0;
+        const double bearing = half_plane ? layout.right() : ahead ? 0 : (layout.right() + layout.left()) / 2;
+        const cv::Point2d at = layout.pixel(range, bearing);
+        const cv::Point2d aside = half_plane ? cv::Point2d(8, 9 * std::sin(-bearing)) : cv::Point2d(5, 9);
+        if (half_plane || radius < layout.radius() - 12)
+            overlay.text(fmt::format("{:g} m", range), at + aside, Overlay::Anchor::Left);
+    }
+}
+
+void addSpokes(Overlay& overlay, const FanLayout& layout) {
+    const double step = spokeStep(layout.radius());
+    const double left = types::degrees(layout.left()), right = types::degrees(layout.right());
+    for (double degrees = std::ceil(right / step - 1e-6) * step; degrees < left + 1e-6; degrees += step) {
+        if (degrees + 360 < left + 1e-6) continue;  // drawn at the port edge
+        const double bearing = types::radians(degrees);
+        overlay.line(layout.pixel(layout.range() * 0.04, bearing), layout.pixel(layout.range(), bearing),
+                     spoke_opacity);
+        const cv::Point2d outward(-std::sin(bearing), -std::cos(bearing));
+        const cv::Point2d end = layout.pixel(layout.range(), bearing);
+        overlay.line(end, end + 5 * outward, full);
+        const double turn = degrees > 180 + 1e-6 ? -360 : degrees < -180 + 1e-6 ? 360 : 0, shown = degrees + turn;
+        overlay.text(fmt::format("{:g}", shown + 0.0), end + cv::Point2d(22 * outward.x, 15 * outward.y),
+                     Overlay::Anchor::Centre, true);
+    }
+}
+
+void addOutline(Overlay& overlay, const FanLayout& layout) {
+    overlay.arc(layout.origin(), layout.radius(), layout.right(), layout.left(), outline_opacity);
+    if (layout.left() - layout.right() > 2 * std::numbers::pi - 1e-6) return;
+    for (const double edge : {layout.left(), layout.right()})
+        overlay.line(layout.origin(), layout.pixel(layout.range(), edge), outline_opacity);
+}
+
+}  // namespace
+
+void Overlay::line(cv::Point2d from, cv::Point2d to, int opacity) {
+    cv::line(cover_, subPixel(from), subPixel(to), opacity, 1, cv::LINE_AA, sub_pixel_bits);
+}
+
+void Overlay::arc(cv::Point2d centre, double radius, double right, double left, int opacity) {
+    const int steps = std::max(8, static_cast<int>(radius * (left - right) / 4));
+    std::vector<cv::Point> points;
+    for (int i = 0; i <= steps; ++i) {
+        const double bearing = right + (left - right) * i / steps;
+        points.push_back(subPixel({centre.x - radius * std::sin(bearing), centre.y - radius * std::cos(bearing)}));
+    }
+    cv::polylines(cover_, points, false, opacity, 1, cv::LINE_AA, sub_pixel_bits);
+}
+
+void Overlay::text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees) {
+    constexpr int ring_width = 6, margin = 2;
+    int baseline = 0;
+    const cv::Size size = cv::getTextSize(text, font, font_scale, 1, &baseline);
+    const double back = anchor == Anchor::Left ? 0 : anchor == Anchor::Centre ? size.width / 2.0 : size.width;
+    const cv::Point start(cvRound(at.x - back), cvRound(at.y + size.height / 2.0));
+    const cv::Rect box(start.x - margin, start.y - size.height - margin,
+                       size.width + 2 * margin + (degrees ? ring_width : 0), size.height + baseline + 2 * margin);
+    if ((box & taken_).area() > 0) return;
+    cv::putText(cover_, text, start, font, font_scale, full, 1, cv::LINE_AA);
+    if (degrees)
+        cv::circle(cover_, subPixel({start.x + size.width + 2.0, start.y - size.height + 1.0}), 2 << sub_pixel_bits,
+                   full, 1, cv::LINE_AA, sub_pixel_bits);
+}
+
+void Overlay::finish() {
+    for (int row = 0; row < cover_.rows; ++row)
+        for (int column = 0; column < cover_.cols; ++column)
+            if (const uint8_t opacity = cover_.at<uint8_t>(row, column)) touched_.push_back({row, column, opacity});
+}
+
+void Overlay::blend(cv::Mat& picture) const {
+    for (const Touch& touch : touched_) {
+        cv::Vec3b& pixel = picture.at<cv::Vec3b>(touch.row, touch.column);
+        for (int channel = 0; channel < 3; ++channel)
+            pixel[channel] =
+                static_cast<uint8_t>(pixel[channel] + (ink[channel] - pixel[channel]) * touch.opacity / 255);
+    }
+}
+
+Overlay fanOverlay(const FanLayout& layout, const cv::Rect& taken) {
+    Overlay overlay(layout.size());
+    overlay.take(taken);
+    addRings(overlay, layout);
+    addSpokes(overlay, layout);
+    addOutline(overlay, layout);
+    overlay.take({});
+    return overlay;
+}
+
+cv::Point placeOfBar(const FanLayout& layout, cv::Point at) {
+    const bool fits = fitsColourBar(layout.size(), at) && !layout.reaches(cv::Rect(at, colour_bar_size));
+    return fits ? at : cv::Point(-labelled_bar_size.width, -labelled_bar_size.height);
+}
+
+bool fitsColourBar(cv::Size picture, cv::Point at) {
+    const cv::Rect bar(at, colour_bar_size);
+    return (bar & cv::Rect({}, picture)) == bar;
+}
+
+void addColourBar(Overlay& overlay, cv::Point at, const DisplayConfig& display) {
+    if (!fitsColourBar(overlay.size(), at)) return;
+    const auto label = [&](double share_below, const std::string& text) {
+        const double x = at.x + colour_bar_size.width, y = at.y + share_below * (colour_bar_size.height - 1);
+        overlay.line({x + 1, y}, {x + 4, y}, full);
+        overlay.text(text, {x + 8, y}, Overlay::Anchor::Left);
+    };
+    const bool codes = display.scale == BinScale::Code;
+    const double span = codes ? display.maxCode() : display.dynamic_range_db, step = roundStep(span / 4.5);
+    label(0, codes ? fmt::format("{:.0f}", span) : "0 dB");
+    if (codes)
+        for (double code = 0; code <= span - step / 2; code += step)
+            label(1 - code / span, fmt::format("{:.0f}", code));
+    else
+        for (double below = step; below < span * (1 + 1e-9); below += step)
+            label(below / span, fmt::format("{:g}", -below));
+}
+
+double roundStep(double minimum) {
+    const double power = std::pow(10, std::floor(std::log10(minimum)));
+    for (const double factor : {1, 2, 5})
+        if (factor * power >= minimum * (1 - 1e-9)) return factor * power;
+    return 10 * power;
+}
+
+}  // namespace insonify::output

@@ -1,0 +1,58 @@
+#pragma once
+#include <memory>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/SamplePool.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
+#include "components/output/pictures/RangeImage.hpp"
+#include "components/output/tasks/RecordingTask.hpp"
+#include "components/output/maps/SoundingMap.hpp"
+
+namespace insonify::output {
+
+struct SamplePictureConfig : RecordingConfig {
+    uint32_t every = 1;
+    uint32_t width = 1024;
+    ColourMap colour_map = ColourMap::Turbo;
+
+    static void describe(auto& self, auto& visit) {
+        RecordingConfig::describe(self, visit);
+        visit({"every", "1", "samples from one picture to the next, and in the first", 1, 1e6}, self.every);
+        visit({"width", "1", "width of the picture in pixels; an odd width is rounded up to even; the height follows",
+               256, 8192},
+              self.width);
+        visit({"colour_map", "", "colours from the deepest to the highest, or from the farthest to the nearest"},
+              self.colour_map);
+    }
+};
+
+/** Shows samples that are not pings, with a Picture.
+ *
+ *  In: a port named by Picture::port. Out: `image` and files, as in PictureTask; the first picture is made after
+ *  `every` samples. */
+template <class Picture>
+class SamplePictureTask final : public RecordingTask {
+public:
+    using RecordingTask::RecordingTask;
+    using Sample = typename Picture::Sample;
+
+    framework::Properties<SamplePictureConfig> config{this};
+    framework::InputPort<Sample> input{this, Picture::port, "samples to show"};
+    framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
+
+private:
+    bool configureHook() override;
+    bool startHook() override;
+    void updateHook() override;
+    void show();
+
+    std::unique_ptr<Picture> picture_;
+    framework::SamplePool<types::Image> pool_;
+    uint64_t samples_ = 0;
+};
+
+using SoundingMapTask = SamplePictureTask<SoundingMap>;
+using RangeImageTask = SamplePictureTask<RangeImage>;
+
+}  // namespace insonify::output

@@ -1,0 +1,173 @@
+#include "types/geometry/PosedMesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+
+namespace insonify::types {
+namespace {
+
+struct FloatBox {
+    glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+    void add(const glm::vec3& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+};
+
+/** Takes a box, rounded up, so that centre +- half holds all of it. */
+void setBox(auto& part, const FloatBox& box) {
+    part.centre = box.low + (box.high - box.low) / 2.0f;
+    const glm::vec3 half = glm::max(box.high - part.centre, part.centre - box.low);
+    for (int axis = 0; axis < 3; ++axis)
+        part.half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
+}
+
+/** A vertex before joints move it: what the file has plus its morph targets. */
+glm::dvec3 morphed(const auto& base, std::span<const MorphPose> morphs, const Deformation& deformation, size_t vertex,
+                   std::vector<glm::vec3> MorphTarget::*list) {
+    glm::dvec3 sum(base);
+    for (size_t k = 0; k < morphs.size(); ++k) {
+        const std::vector<glm::vec3>& added = deformation.targets[k].*list;
+        if (morphs[k].weight != 0 && !added.empty()) sum += morphs[k].weight * glm::dvec3(added[vertex]);
+    }
+    return sum;
+}
+
+std::span<const JointShare> sharesOf(const Deformation& deformation, size_t vertex) {
+    if (deformation.share_begin.empty()) return {};
+    const uint32_t begin = deformation.share_begin[vertex];
+    return std::span(deformation.shares).subspan(begin, deformation.share_begin[vertex + 1] - begin);
+}
+
+/** The matrix that turns and stretches a vertex's surroundings; identity without a skin. */
+glm::dmat3 linearOf(const MeshPose& pose, const Deformation& deformation, size_t vertex) {
+    const auto shares = sharesOf(deformation, vertex);
+    if (shares.empty()) return glm::dmat3(1);
+    glm::dmat3 sum(0);
+    for (const JointShare& share : shares)
+        sum += static_cast<double>(share.weight) * glm::dmat3(pose.joints[share.joint].mesh_from_bind);
+    return sum;
+}
+
+/** Squares of what is larger leave the range of float [m]. */
+constexpr float max_coordinate = 1e15f;
+
+bool isUsable(const glm::vec3& p) {
+    return std::abs(p.x) < max_coordinate && std::abs(p.y) < max_coordinate && std::abs(p.z) < max_coordinate;
+}
+
+glm::vec3 unitOr(const glm::dvec3& vector, const glm::vec3& otherwise) {
+    const double length = glm::length(vector);
+    return std::isfinite(length) && length > 1e-12 ? glm::vec3(vector / length) : otherwise;
+}
+
+void posePositions(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& positions) {
+    for (size_t i = 0; i < positions.size(); ++i) {
+        const glm::dvec3 p = morphed(deformation.positions[i], pose.morphs, deformation, i, &MorphTarget::positions);
+        const auto shares = sharesOf(deformation, i);
+        glm::dvec3 sum = shares.empty() ? p : glm::dvec3(0);
+        for (const JointShare& share : shares)
+            sum += static_cast<double>(share.weight) * (pose.joints[share.joint].mesh_from_bind * glm::dvec4(p, 1));
+        const glm::vec3 posed(sum);
+        positions[i] = isUsable(posed) ? posed : glm::vec3(0);
+    }
+}
+
+/** Turns the frames of normal maps. */
+void poseFrames(const MeshPose& pose, const Deformation& deformation, Mesh& mesh) {
+    for (size_t i = 0; i < mesh.normals.size(); ++i) {
+        const glm::dmat3 linear = linearOf(pose, deformation, i);
+        // Cofactors are the inverse transpose up to a factor, and are there for a flat matrix as well.
+        const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                                   glm::cross(linear[0], linear[1]));
+        const glm::dvec3 normal = morphed(deformation.normals[i], pose.morphs, deformation, i, &MorphTarget::normals);
+        mesh.normals[i] = unitOr(cofactors * normal, deformation.normals[i]);
+        if (mesh.tangents.empty()) continue;
+        const glm::vec4& rest = deformation.tangents[i];
+        const glm::dvec3 tangent = morphed(glm::vec3(rest), pose.morphs, deformation, i, &MorphTarget::tangents);
+        mesh.tangents[i] = glm::vec4(unitOr(linear * tangent, glm::vec3(rest)), rest.w);
+    }
+}
+
+}  // namespace
+
+MeshPose poseOf(const Snapshot& snapshot, const DeformedObject& deformed, const Deformation& deformation) {
+    return {std::span(snapshot.joints).subspan(deformed.first_joint, deformation.joint_count),
+            std::span(snapshot.morphs).subspan(deformed.first_morph, deformation.targets.size())};
+}
+
+bool deformsRightly(const Snapshot& snapshot) {
+    int64_t last = -1;
+    return std::ranges::all_of(snapshot.deformed, [&](const DeformedObject& one) {
+        if (one.object >= snapshot.geometry->objects.size() || one.object <= last) return false;
+        last = one.object;
+        const auto mesh = static_cast<size_t>(snapshot.geometry->objects[one.object].mesh);
+        const auto& deformation = snapshot.geometry->meshes[mesh].deformation;
+        return deformation && size_t{one.first_joint} + deformation->joint_count <= snapshot.joints.size() &&
+               one.first_morph + deformation->targets.size() <= snapshot.morphs.size();
+    });
+}
+
+void boundClusters(Mesh& mesh) {
+    for (Cluster& cluster : mesh.clusters) {
+        FloatBox box;
+        for (const uint32_t index : std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count))
+            box.add(mesh.positions[index]);
+        setBox(cluster, box);
+    }
+    for (ClusterNode& node : mesh.cluster_nodes) {
+        FloatBox box;
+        for (const Cluster& cluster : std::span(mesh.clusters).subspan(node.first_cluster, node.cluster_count)) {
+            box.add(cluster.centre - cluster.half);
+            box.add(cluster.centre + cluster.half);
+        }
+        setBox(node, box);
+    }
+}
+
+void poseMesh(const MeshPose& pose, Mesh& mesh) {
+    const Deformation& deformation = *mesh.deformation;
+    posePositions(pose, deformation, mesh.positions);
+    poseFrames(pose, deformation, mesh);
+    boundClusters(mesh);
+}
+
+void velocitiesOf(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& velocities) {
+    velocities.resize(deformation.positions.size());
+    for (size_t i = 0; i < velocities.size(); ++i) {
+        const glm::dvec3 p = morphed(deformation.positions[i], pose.morphs, deformation, i, &MorphTarget::positions);
+        glm::dvec3 rate(0);
+        for (size_t k = 0; k < pose.morphs.size(); ++k) {
+            const std::vector<glm::vec3>& added = deformation.targets[k].positions;
+            if (pose.morphs[k].rate != 0 && !added.empty()) rate += pose.morphs[k].rate * glm::dvec3(added[i]);
+        }
+        const auto shares = sharesOf(deformation, i);
+        glm::dvec3 sum = shares.empty() ? rate : glm::dvec3(0);
+        for (const JointShare& share : shares) {
+            const JointPose& joint = pose.joints[share.joint];
+            sum += static_cast<double>(share.weight) *
+                   (joint.rate * glm::dvec4(p, 1) + joint.mesh_from_bind * glm::dvec4(rate, 0));
+        }
+        velocities[i] = glm::vec3(sum);
+    }
+}
+
+GeometryPtr posedGeometry(const Snapshot& snapshot) {
+    if (snapshot.deformed.empty()) return snapshot.geometry;
+    auto geometry = std::make_shared<Geometry>(*snapshot.geometry);
+    for (const DeformedObject& deformed : snapshot.deformed) {
+        Object& object = geometry->objects[deformed.object];
+        Mesh mesh = snapshot.geometry->meshes[static_cast<size_t>(object.mesh)];
+        poseMesh(poseOf(snapshot, deformed, *mesh.deformation), mesh);
+        object.mesh = static_cast<int>(geometry->meshes.size());
+        geometry->meshes.push_back(std::move(mesh));
+    }
+    return geometry;
+}
+
+}  // namespace insonify::types

@@ -1,0 +1,37 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "types/geometry/Geometry.hpp"
+#include "types/geometry/Snapshot.hpp"
+
+namespace insonify::types {
+
+/** The pose of one mesh: a pose per joint of its skin, a weight per morph target. */
+struct MeshPose {
+    std::span<const JointPose> joints;
+    std::span<const MorphPose> morphs;
+};
+
+/** Returns the pose of an object, which is part of the snapshot. */
+MeshPose poseOf(const Snapshot& snapshot, const DeformedObject& deformed, const Deformation& deformation);
+
+/** Returns whether all objects that the snapshot deforms can deform, and have the joints and targets they need. */
+bool deformsRightly(const Snapshot& snapshot);
+
+/** Moves positions, normals, tangents and the boxes of clusters of a mesh that has a Deformation: first morph targets,
+ *  then joints, by glTF 2.0 (3.7.3, 3.7.2.2). Sums are in double precision. Positions that are not finite become the
+ *  origin. Allocates nothing. */
+void poseMesh(const MeshPose& pose, Mesh& mesh);
+
+/** Fills in the velocity of each vertex, in the axes of the mesh [m/s]. */
+void velocitiesOf(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& velocities);
+
+/** Returns the geometry of a snapshot with deformed objects in their shape, each with its own mesh after those of
+ *  the geometry. Returns the same geometry if no object is deformed. */
+GeometryPtr posedGeometry(const Snapshot& snapshot);
+
+/** Sets the boxes of clusters and their nodes to the bounds of their triangles. */
+void boundClusters(Mesh& mesh);
+
+}  // namespace insonify::types

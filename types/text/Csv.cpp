@@ -1,0 +1,190 @@
+#include "types/text/Csv.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <system_error>
+
+#include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
+
+namespace insonify::types {
+namespace {
+
+constexpr size_t max_diagnostics = 100;
+
+std::string_view trimmed(std::string_view text) {
+    const size_t first = text.find_first_not_of(" \t\r");
+    return first == text.npos ? text.substr(0, 0) : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::string headerOf(const std::vector<CsvColumn>& columns) {
+    std::string header;
+    for (const CsvColumn& column : columns) header += (header.empty() ? "" : ",") + column.name;
+    return header;
+}
+
+/** Returns "a finite number", or a text such as "a number from 0 to 90". */
+std::string wantedOf(const CsvColumn& column) {
+    if (std::isinf(column.min) && std::isinf(column.max)) return "a finite number";
+    char text[80];
+    std::snprintf(text, sizeof text, "a number from %g to %g", column.min, column.max);
+    return text;
+}
+
+/** Reads line by line and collects all errors. */
+class Reader {
+public:
+    Reader(std::string file, const TableForm& form, const CsvValidator& validate)
+        : file_(std::move(file)), form_(form), columns_(form.columns), validate_(validate) {
+        has_header_ = form.header == TableForm::Header::None;
+    }
+
+    std::vector<std::vector<double>> read(std::string_view text, size_t minimum) {
+        while (!text.empty() && diagnostics_.size() < max_diagnostics) {
+            const size_t end = std::min(text.find('\n'), text.size());
+            ++line_number_;
+            readLine(text.substr(0, end));
+            text.remove_prefix(std::min(end + 1, text.size()));
+        }
+        if (!has_header_)
+            report(1, "", "is empty; it must start with the header " + headerOf(columns_));
+        else if (rows_.size() < minimum && diagnostics_.empty())
+            report(1, "",
+                   "has " + std::to_string(rows_.size()) +
+                       (form_.header == TableForm::Header::None ? " lines of numbers" : " lines after its header") +
+                       "; it needs at least " + std::to_string(minimum));
+        if (!diagnostics_.empty()) throw ConfigError(std::move(diagnostics_));
+        return std::move(rows_);
+    }
+
+private:
+    void readLine(std::string_view line) {
+        if (trimmed(line).empty()) return;
+        const bool is_commented = form_.header != TableForm::Header::Line;
+        if (has_header_ && is_commented && trimmed(line).front() == '#') return;
+        if (has_header_) return readRow(line);
+        has_header_ = true;
+        const std::string wanted = headerOf(columns_);
+        if (is_commented ? namesIn(line).starts_with("#" + wanted) : trimmed(line) == wanted) return;
+        report(1, "",
+               "is '" + std::string(trimmed(line).substr(0, 80)) + "'; the header must " +
+                   (is_commented ? "begin with #" : "be ") + wanted);
+        throw ConfigError(std::move(diagnostics_));  // the lines have other columns: their errors would be consequences
+    }
+
+    void readRow(std::string_view line) {
+        std::vector<double> values(columns_.size());
+        std::vector<int> places(columns_.size());
+        if (!readFields(line, values, places)) return;
+        if (validate_)
+            for (const CsvDiagnostic& diagnostic : validate_(values, rows_.empty() ? nullptr : &rows_.back()))
+                report(places[diagnostic.column], columns_[diagnostic.column].name, diagnostic.message);
+        rows_.push_back(std::move(values));
+    }
+
+    bool readFields(std::string_view line, std::vector<double>& values, std::vector<int>& places) {
+        const size_t before = diagnostics_.size();
+        const std::string count = "a line has " + std::to_string(columns_.size());
+        size_t begin = 0;
+        for (size_t i = 0; i < columns_.size(); ++i) {
+            begin = skipped(line, begin);
+            if (begin > line.size()) {
+                report(static_cast<int>(line.size()) + 1, columns_[i].name, "is missing; " + count + " fields");
+                return false;
+            }
+            const size_t end = std::min(line.find_first_of(separators(), begin), line.size());
+            places[i] = static_cast<int>(begin) + 1;
+            readNumber(line.substr(begin, end - begin), places[i], columns_[i], values[i]);
+            begin = end + 1;
+        }
+        begin = skipped(line, begin);
+        if (begin <= line.size() && form_.header != TableForm::Header::Comment)
+            report(static_cast<int>(begin) + 1, "", "has too many fields; " + count);
+        return diagnostics_.size() == before;
+    }
+
+    const char* separators() const { return form_.separator == ' ' ? " \t\r" : ","; }
+
+    /** Returns where the next field begins; behind the line: there is none. */
+    size_t skipped(std::string_view line, size_t begin) const {
+        if (form_.separator != ' ' || begin > line.size()) return begin;
+        const size_t next = line.find_first_not_of(separators(), begin);
+        return next == line.npos ? line.size() + 1 : next;
+    }
+
+    /** Returns a header without spaces, and without the units in brackets. */
+    static std::string namesIn(std::string_view line) {
+        std::string names;
+        bool is_unit = false;
+        for (const char c : line) {
+            is_unit |= c == '[';
+            if (!is_unit && c != ' ' && c != '\t' && c != '\r') names += c;
+            is_unit &= c != ']';
+        }
+        return names;
+    }
+
+    void readNumber(std::string_view field, int place, const CsvColumn& column, double& value) {
+        const std::string_view text = trimmed(field);
+        const auto [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool is_number = code == std::errc() && stop == text.data() + text.size() && std::isfinite(value);
+        if (is_number && value >= column.min && value <= column.max) return;
+        report(place, column.name, "is '" + std::string(text.substr(0, 40)) + "'; it must be " + wantedOf(column));
+    }
+
+    void report(int place, std::string path, std::string message) {
+        diagnostics_.push_back({std::move(path), std::move(message), file_, line_number_, place});
+    }
+
+    std::string file_;
+    const TableForm& form_;
+    const std::vector<CsvColumn>& columns_;
+    const CsvValidator& validate_;
+    std::vector<std::vector<double>> rows_;  ///< Rows of valid numbers, with or without errors from `validate_`.
+    Diagnostics diagnostics_;
+    int line_number_ = 0;
+    bool has_header_ = false;
+};
+
+/** Returns the names of the CSV files in a file's folder, in order. */
+std::vector<std::string> csvFilesNextTo(const std::filesystem::path& file) {
+    std::vector<std::string> names;
+    std::error_code unreadable;
+    for (const auto& entry : std::filesystem::directory_iterator(
+             file.has_parent_path() ? file.parent_path() : std::filesystem::path("."), unreadable))
+        if (entry.path().extension() == ".csv") names.push_back(entry.path().filename().string());
+    std::ranges::sort(names);
+    return names;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> readTable(const std::filesystem::path& file,
+                                           const std::function<TableForm(std::string_view)>& form, size_t minimum,
+                                           const CsvValidator& validate) {
+    const auto wanted = [&] { return "must be a CSV file with header " + headerOf(form("").columns); };
+    std::ifstream stream(file, std::ios::binary);
+    if (std::error_code error; !stream && !std::filesystem::exists(file, error))
+        throw ConfigError(file.string(), "",
+                          "does not exist; " + didYouMean(file.filename().string(), csvFilesNextTo(file)) + wanted());
+    if (!stream || std::filesystem::is_directory(file))
+        throw ConfigError(file.string(), "", "cannot be read" + permissionReason(errno) + "; it " + wanted());
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string_view content = std::string_view(text).substr(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+    const TableForm written = form(content);
+    return Reader(file.string(), written, validate).read(content, minimum);
+}
+
+std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,
+                                         size_t minimum, const CsvValidator& validate) {
+    return readTable(
+        file, [&](std::string_view) { return TableForm{columns}; }, minimum, validate);
+}
+
+}  // namespace insonify::types

@@ -1,0 +1,38 @@
+#pragma once
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "types/text/Ascii.hpp"
+
+namespace insonify::types {
+
+/** Returns a text such as "did you mean range? " for a name that is close to a name in `known`, else empty. A name is
+ *  close if at most a third of its letters are missing, added, changed or swapped with a neighbour, ignoring case; a
+ * name of three letters or fewer must also begin with the same letter. A part of exactly one known name is close, too.
+ * The last part of a known name with a namespace is enough, also without "Task". */
+std::string didYouMean(std::string_view wrong, const std::vector<std::string>& known);
+
+/** Returns the choices as a message lists them: ".a, .b or .c". */
+std::string alternatives(const std::vector<std::string_view>& choices);
+
+/** Returns the endings of those formats of a table that are `listed`, as a message lists them. */
+template <class Format, size_t count, class Listed = decltype([](const Format&) { return true; })>
+std::string alternativeEndings(const Format (&formats)[count], Listed listed = {}) {
+    std::vector<std::string_view> endings;
+    for (const Format& format : formats)
+        if (listed(format)) endings.push_back(format.ending);
+    return alternatives(endings);
+}
+
+/** Returns the format of a file by its ending in any case of letters; null: the table has none. */
+template <class Format, size_t count>
+const Format* findFormat(const Format (&formats)[count], const std::filesystem::path& file) {
+    const auto* const found = std::ranges::find(formats, lowered(file.extension().string()), &Format::ending);
+    return found == std::end(formats) ? nullptr : found;
+}
+
+}  // namespace insonify::types
