@@ -11,8 +11,8 @@
 #include "components/deployer/ShardFolder.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Tasks.hpp"
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Offers.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::command {

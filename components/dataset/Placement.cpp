@@ -7,9 +7,9 @@
 #include <limits>
 #include <numeric>
 
+#include "types/geometry/Mount.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/Hash.hpp"
-#include "types/geometry/Mount.hpp"
 
 namespace insonify::dataset {
 namespace {

@@ -7,10 +7,10 @@
 #include <unordered_map>
 
 #include "components/dataset/Placement.hpp"
+#include "types/geometry/Mount.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/DidYouMean.hpp"
 #include "types/text/Hash.hpp"
-#include "types/geometry/Mount.hpp"
 
 namespace insonify::dataset {
 namespace {

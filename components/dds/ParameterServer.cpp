@@ -10,9 +10,9 @@
 #include <set>
 
 #include "components/ros/Cdr.hpp"
+#include "types/Thread.hpp"
 #include "types/text/Ascii.hpp"
 #include "types/text/ConfigError.hpp"
-#include "types/Thread.hpp"
 
 namespace insonify::dds {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "components/dds/SubscriberTask.hpp"
 #include "components/dds/TransformTask.hpp"
-#include "components/framework/execution/Timing.hpp"
 #include "components/framework/Upstream.hpp"
+#include "components/framework/execution/Timing.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/text/ConfigError.hpp"

@@ -18,9 +18,9 @@ namespace insonify::dds {
 /** Sends samples as ROS 2 messages.
  *
  *  Ports: an input for each connection to a port that `topics` names. Its samples may have any type of
- *  types/samples/Samples.hpp; `type` must be a message that this sample can become. A topic without readers costs nothing.
- *  Poses are converted to `world_frame`. With `tf_static`, the frames of pings are published by the mount of their
- *  scene, for late subscribers too. The frequency of a ping is its sonar's, unless a topic names another.
+ *  types/samples/Samples.hpp; `type` must be a message that this sample can become. A topic without readers costs
+ * nothing. Poses are converted to `world_frame`. With `tf_static`, the frames of pings are published by the mount of
+ * their scene, for late subscribers too. The frequency of a ping is its sonar's, unless a topic names another.
  *
  *  With `parameter_services` the node has the properties of all tasks as parameters: see ParameterServer.hpp.
  *

@@ -4,8 +4,8 @@
 
 #include "components/console/Json.hpp"
 #include "components/framework/config/YamlText.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/samples/Plan.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::deployer {
 

@@ -10,8 +10,8 @@
 #include "components/framework/Port.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/samples/Sonar.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::deployer {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "components/framework/Deployment.hpp"
-#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/Registry.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
 #include "types/geometry/Snapshot.hpp"

@@ -9,8 +9,8 @@
 #include "components/framework/config/StreamNames.hpp"
 #include "components/log/Reader.hpp"
 #include "components/output/PictureFiles.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/samples/Sonar.hpp"
+#include "types/text/Ascii.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;

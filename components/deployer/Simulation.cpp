@@ -9,12 +9,12 @@
 
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/log/ReplaySpec.hpp"
 #include "components/deployer/Tasks.hpp"
-#include "components/framework/execution/Activity.hpp"
+#include "components/deployer/log/ReplaySpec.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Wiring.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
 #include "types/text/ConfigError.hpp"
 

@@ -9,10 +9,10 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "types/text/Describe.hpp"
-#include "types/samples/SonarSettings.hpp"
-#include "types/text/ThrottledWarning.hpp"
 #include "types/Time.hpp"
+#include "types/samples/SonarSettings.hpp"
+#include "types/text/Describe.hpp"
+#include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::device {
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "components/framework/execution/LockstepExecutor.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Properties.hpp"
-#include "components/framework/execution/RealtimeExecutor.hpp"
 #include "components/framework/Wiring.hpp"
+#include "components/framework/execution/LockstepExecutor.hpp"
+#include "components/framework/execution/RealtimeExecutor.hpp"
 
 namespace insonify::framework {
 namespace {

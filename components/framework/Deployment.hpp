@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/config/DeploymentSpec.hpp"
-#include "components/framework/execution/Executor.hpp"
 #include "components/framework/Graph.hpp"
 #include "components/framework/Registry.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
+#include "components/framework/execution/Executor.hpp"
 #include "types/OwnProcess.hpp"
 
 namespace insonify::framework {

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "components/framework/TaskContext.hpp"
-#include "types/samples/DeploymentControl.hpp"
-#include "types/samples/Plan.hpp"
 #include "types/ReturnLevels.hpp"
 #include "types/Time.hpp"
+#include "types/samples/DeploymentControl.hpp"
+#include "types/samples/Plan.hpp"
 
 namespace insonify::framework {
 

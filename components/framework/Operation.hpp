@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/framework/config/ValueType.hpp"
+#include "components/framework/execution/Activity.hpp"
 
 namespace insonify::framework {
 

@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include "components/framework/execution/Activity.hpp"
-#include "components/framework/config/ConnPolicy.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/config/ConnPolicy.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "types/Thread.hpp"
 #include "types/text/TypeName.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "types/text/Ascii.hpp"
 
 namespace insonify::framework {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::framework {

@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "components/framework/execution/Timing.hpp"
-#include "types/text/ConfigError.hpp"
-#include "types/samples/DeploymentControl.hpp"
-#include "types/samples/Plan.hpp"
-#include "types/text/RosNames.hpp"
-#include "types/samples/TaskRecord.hpp"
 #include "types/Thread.hpp"
 #include "types/Time.hpp"
+#include "types/samples/DeploymentControl.hpp"
+#include "types/samples/Plan.hpp"
+#include "types/samples/TaskRecord.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/RosNames.hpp"
 
 namespace insonify::framework {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "components/framework/config/ConfigReader.hpp"
-#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/config/YamlText.hpp"
 
 namespace insonify::framework {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "components/framework/Port.hpp"
-#include "types/geometry/Mount.hpp"
 #include "types/ReturnLevels.hpp"
+#include "types/geometry/Mount.hpp"
 #include "types/samples/TaskRecord.hpp"
 
 namespace insonify::framework {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/Graph.hpp"
 #include "components/framework/Registry.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 
 namespace insonify::framework {
 

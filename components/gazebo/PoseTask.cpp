@@ -4,8 +4,8 @@
 #include <iterator>
 #include <utility>
 
-#include "types/text/ConfigError.hpp"
 #include "types/Elapsed.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

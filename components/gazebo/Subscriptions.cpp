@@ -19,8 +19,8 @@
 #include "components/gazebo/Discovery.hpp"
 #include "components/gazebo/Multicast.hpp"
 #include "components/gazebo/World.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/Thread.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
 namespace {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "components/gazebo/TransportOptions.hpp"
-#include "types/text/ConfigError.hpp"
-#include "types/text/Describe.hpp"
-#include "types/samples/Pose.hpp"
 #include "types/Time.hpp"
 #include "types/geometry/WorldFrame.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/text/ConfigError.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::gazebo {
 

@@ -6,8 +6,8 @@
 
 #include "components/log/Reader.hpp"
 #include "types/geometry/Datum.hpp"
-#include "types/text/Notice.hpp"
 #include "types/geometry/WorldFrame.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::log {
 

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <type_traits>
 
-#include "types/text/ConfigError.hpp"
 #include "types/Elapsed.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::log {
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "components/log/Files.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/Elapsed.hpp"
 #include "types/Thread.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::logger {
 namespace {

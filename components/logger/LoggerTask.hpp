@@ -9,8 +9,8 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
-#include "components/framework/config/StreamNames.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/config/StreamNames.hpp"
 #include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerConfig.hpp"
 #include "components/logger/PropertyLog.hpp"
@@ -20,15 +20,15 @@ namespace insonify::logger {
 /** Writes the samples of its connected ports to a pocolog file for Rock's tools or, when the file's name ends in .mcap,
  *  as ROS 2 messages to an MCAP file with metadata.yaml next to it for `ros2 bag`: see log/mcap/SampleWriter.hpp.
  *
- *  Ports: an input for each connection that names one, of any name and of any type in types/samples/Samples.hpp; give it a
- *  buffer. A stream is named after its source, `task.port`, or the source's alias; a replayed stream keeps its recorded
- *  name. A sample has the time at which it was true and the time at which it reached this task. Metadata of every
- *  stream: the seed of the run, and the plans of the tasks at the stream's first sample, with which it is declared. The
- *  first stream of the log also has the deployment. Streams without samples are declared at the end. Streams of truth
- *  have the names of the objects (`insonify_objects`, a JSON list). Streams of pings have the mount of their sonar in
- *  the body and the stream of the body's poses (`insonify_mount`, a JSON object, `insonify_body`). The properties of
- *  all tasks are written to `property_file` at each start; if several loggers name the same file, the first one writes
- *  it.
+ *  Ports: an input for each connection that names one, of any name and of any type in types/samples/Samples.hpp; give
+ * it a buffer. A stream is named after its source, `task.port`, or the source's alias; a replayed stream keeps its
+ * recorded name. A sample has the time at which it was true and the time at which it reached this task. Metadata of
+ * every stream: the seed of the run, and the plans of the tasks at the stream's first sample, with which it is
+ * declared. The first stream of the log also has the deployment. Streams without samples are declared at the end.
+ * Streams of truth have the names of the objects (`insonify_objects`, a JSON list). Streams of pings have the mount of
+ * their sonar in the body and the stream of the body's poses (`insonify_mount`, a JSON object, `insonify_body`). The
+ * properties of all tasks are written to `property_file` at each start; if several loggers name the same file, the
+ * first one writes it.
  *
  *  The log of a shard equals that of `log cut` from the whole run. It is not flushed before its end, because only a
  *  complete log is useful, and the places of flushes in an MCAP file depend on the speed of the run.

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "components/mavlink/Frame.hpp"
+#include "types/SenderClock.hpp"
+#include "types/samples/Pose.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/Describe.hpp"
-#include "types/samples/Pose.hpp"
-#include "types/SenderClock.hpp"
 
 namespace insonify::mavlink {
 

@@ -16,11 +16,11 @@
 
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Clusters.hpp"
-#include "components/scene/gltf/Gltf.hpp"
 #include "components/scene/Surface.hpp"
 #include "components/scene/UniqueNames.hpp"
-#include "types/text/ConfigError.hpp"
+#include "components/scene/gltf/Gltf.hpp"
 #include "types/geometry/Extent.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::meshes {
 

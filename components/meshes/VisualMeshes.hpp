@@ -9,9 +9,9 @@
 
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Surface.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/geometry/Extent.hpp"
 #include "types/geometry/Geometry.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::meshes {
 

@@ -7,8 +7,8 @@
 
 #include "components/nav/ErrorModel.hpp"
 #include "components/nav/Motion.hpp"
-#include "types/samples/Dvl.hpp"
 #include "types/geometry/Snapshot.hpp"
+#include "types/samples/Dvl.hpp"
 
 namespace insonify::nav {
 

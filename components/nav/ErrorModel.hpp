@@ -6,9 +6,9 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
+#include "types/Time.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/geometry/Mount.hpp"
-#include "types/Time.hpp"
 
 namespace insonify::nav {
 

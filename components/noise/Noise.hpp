@@ -8,8 +8,8 @@
 
 #include "components/noise/Random.hpp"
 #include "types/geometry/BeamArc.hpp"
-#include "types/text/Describe.hpp"
 #include "types/samples/Sonar.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::noise {
 

@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
-#include "types/text/ConfigError.hpp"
 #include "types/Thread.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::output {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "components/output/tasks/PictureConfig.hpp"
 #include "components/output/VideoFile.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
 #include "types/samples/Image.hpp"
 
 namespace insonify::output {

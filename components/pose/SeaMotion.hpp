@@ -3,8 +3,8 @@
 #include <string_view>
 #include <vector>
 
-#include "types/text/Describe.hpp"
 #include "types/samples/Pose.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::pose {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "types/geometry/Angle.hpp"
-#include "types/text/Csv.hpp"
 #include "types/geometry/Quaternion.hpp"
+#include "types/text/Csv.hpp"
 
 namespace insonify::pose {
 namespace {

@@ -13,8 +13,8 @@
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/python/Samples.hpp"
 #include "components/recordings/RecordingReader.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/OwnProcess.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::python {
 namespace {

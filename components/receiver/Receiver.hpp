@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "types/samples/Sonar.hpp"
 #include "types/text/Describe.hpp"
 #include "types/text/Notice.hpp"
-#include "types/samples/Sonar.hpp"
 
 namespace insonify::receiver {
 

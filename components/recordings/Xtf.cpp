@@ -10,9 +10,9 @@
 #include <stdexcept>
 
 #include "components/recordings/XtfLayout.hpp"
+#include "types/Check.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/geometry/BeamArc.hpp"
-#include "types/Check.hpp"
 #include "types/geometry/Quaternion.hpp"
 
 namespace insonify::recordings {

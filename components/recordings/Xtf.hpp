@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "types/text/Describe.hpp"
 #include "types/samples/Pose.hpp"
 #include "types/samples/Sonar.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::recordings {
 

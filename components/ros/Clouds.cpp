@@ -11,8 +11,8 @@
 #include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/samples/Samples.hpp"
 #include "types/geometry/WorldPlaces.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::ros {
 namespace {

@@ -3,9 +3,9 @@
 #include <string>
 #include <string_view>
 
-#include "types/text/Describe.hpp"
 #include "types/ReturnLevels.hpp"
 #include "types/geometry/WorldFrame.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::ros {
 

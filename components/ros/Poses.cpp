@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "components/ros/Stamps.hpp"
-#include "types/samples/Samples.hpp"
 #include "types/geometry/WorldFrame.hpp"
+#include "types/samples/Samples.hpp"
 
 namespace insonify::ros {
 namespace {

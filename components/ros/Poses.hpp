@@ -8,9 +8,9 @@
 #include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
+#include "types/geometry/Mount.hpp"
 #include "types/samples/Dvl.hpp"
 #include "types/samples/Imu.hpp"
-#include "types/geometry/Mount.hpp"
 #include "types/samples/Pose.hpp"
 #include "types/samples/Pressure.hpp"
 

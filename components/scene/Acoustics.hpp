@@ -10,8 +10,8 @@
 
 #include "components/acoustics/Matter.hpp"
 #include "components/scene/Scene.hpp"
-#include "types/text/Describe.hpp"
 #include "types/geometry/Geometry.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::scene {
 

@@ -12,8 +12,8 @@
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Clusters.hpp"
 #include "components/scene/SurfaceMaps.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/geometry/WorldPlaces.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::scene {
 namespace {

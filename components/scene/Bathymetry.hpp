@@ -15,8 +15,8 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "components/scene/Surface.hpp"
-#include "types/geometry/Geometry.hpp"
 #include "types/Thread.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::scene {
 

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "components/scene/Acoustics.hpp"
+#include "types/geometry/Extent.hpp"
 #include "types/text/Ascii.hpp"
 #include "types/text/DidYouMean.hpp"
-#include "types/geometry/Extent.hpp"
 
 namespace insonify::scene {
 namespace {

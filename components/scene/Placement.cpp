@@ -6,11 +6,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
-#include "components/scene/motion/Animator.hpp"
 #include "components/scene/gltf/Gltf.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "types/geometry/Angle.hpp"
-#include "types/text/DidYouMean.hpp"
 #include "types/geometry/Extent.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {

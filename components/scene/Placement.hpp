@@ -5,8 +5,8 @@
 #include <string>
 
 #include "components/scene/Scene.hpp"
-#include "types/text/Describe.hpp"
 #include "types/geometry/WorldFrame.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::scene {
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "components/scene/Acoustics.hpp"
-#include "components/scene/motion/Animator.hpp"
 #include "components/scene/GazeboWorld.hpp"
 #include "components/scene/Placement.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SurfaceMaps.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "types/geometry/Mount.hpp"
 
 namespace insonify::scene {

@@ -12,13 +12,13 @@
 #include <utility>
 #include <variant>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Upstream.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
-#include "types/text/DidYouMean.hpp"
 #include "types/Elapsed.hpp"
 #include "types/geometry/Quaternion.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -13,13 +13,13 @@
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/scene/motion/Animator.hpp"
 #include "components/scene/Bathymetry.hpp"
 #include "components/scene/Drawings.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
-#include "types/text/ConfigError.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "types/geometry/Snapshot.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::scene {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "types/text/Describe.hpp"
 #include "types/geometry/Geometry.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::scene {
 

@@ -8,8 +8,8 @@
 
 #include "components/recordings/RecordingReader.hpp"
 #include "types/geometry/BeamArc.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/geometry/Quaternion.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {

@@ -5,8 +5,8 @@
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/study/oracles/Truth.hpp"
 #include "components/study/stability/StabilityStudy.hpp"
-#include "types/samples/Plan.hpp"
 #include "types/geometry/Snapshot.hpp"
+#include "types/samples/Plan.hpp"
 #include "types/samples/Sonar.hpp"
 
 namespace insonify::study {

@@ -12,8 +12,8 @@
 #include "components/console/Json.hpp"
 #include "components/viewer/SceneMesh.hpp"
 #include "components/viewer/Server.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/Thread.hpp"
+#include "types/text/Ascii.hpp"
 
 namespace insonify::viewer {
 namespace {

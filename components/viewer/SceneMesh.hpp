@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "types/samples/Pose.hpp"
 #include "types/geometry/Snapshot.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::viewer {
 

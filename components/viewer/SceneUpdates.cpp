@@ -8,9 +8,9 @@
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
 #include "components/viewer/FoxgloveMessages.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/geometry/PosedMesh.hpp"
 #include "types/geometry/WorldPlaces.hpp"
+#include "types/text/Ascii.hpp"
 
 namespace insonify::viewer {
 namespace {

@@ -13,11 +13,11 @@ namespace insonify::viewer {
 
 /** Shows a deployment while it runs: a page at http://address:port/, and the same samples for Foxglove on that port.
  *
- *  Ports: an input for each connection, with any name, of any type in types/samples/Samples.hpp, and snapshots. The page shows
- *  pings as a fan, the scene and the sonar's pose from snapshots, the vehicle's path from poses, the tasks, losses of
- *  connections, and omissions. If `control` allows it, the page sets properties, calls operations and, in lockstep,
- *  pauses. Foxglove gets channels for each input, and the properties of tasks as parameters, which it can set if
- *  `control` allows it.
+ *  Ports: an input for each connection, with any name, of any type in types/samples/Samples.hpp, and snapshots. The
+ * page shows pings as a fan, the scene and the sonar's pose from snapshots, the vehicle's path from poses, the tasks,
+ * losses of connections, and omissions. If `control` allows it, the page sets properties, calls operations and, in
+ * lockstep, pauses. Foxglove gets channels for each input, and the properties of tasks as parameters, which it can set
+ * if `control` allows it.
  *
  *  configure opens the port, and fails if it is in use. Cycles only pass on the newest samples: no client delays them.
  *  Frames for slow clients are dropped and counted. Refused connections are counted, with a warning at most every ten

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/ThreadLimit.hpp"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Port.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "tests/support/Ports.hpp"
 #include "types/samples/Pose.hpp"
 

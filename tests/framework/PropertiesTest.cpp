@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 
 namespace insonify {
 namespace {

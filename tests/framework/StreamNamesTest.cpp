@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
-#include "components/framework/config/StreamNames.hpp"
 #include "components/framework/Upstream.hpp"
+#include "components/framework/config/StreamNames.hpp"
 #include "tests/framework/Tasks.hpp"
 
 namespace insonify::framework {

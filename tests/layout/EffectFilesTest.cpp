@@ -27,10 +27,10 @@ const std::multimap<std::string, std::string> other_meanings{
     {"volume", "components/acoustics/Seabed"},                    // Scattering within a sediment.
     {"volume", "components/command/BackscatterCommand.cpp"},      // The same.
     {"volume", "components/scene/Clusters.cpp"},                  // The inside of a mesh.
-    {"volume", "components/scene/gltf/GltfFile.cpp"},                  // An extension of glTF.
+    {"volume", "components/scene/gltf/GltfFile.cpp"},             // An extension of glTF.
     {"volume", "components/sonar/rays/Scatterers"},               // The space between the axes of a lattice.
     {"volume", "components/sonar/rays/RayVisibility.cpp"},        // The space between the axes of an object.
-    {"volume", "types/geometry/MeshRays.hpp"},                             // The space between a triangle and a ray.
+    {"volume", "types/geometry/MeshRays.hpp"},                    // The space between a triangle and a ray.
 };
 
 /** Code without its comments and includes, in lower case and without underscores: one spelling for all of an effect's

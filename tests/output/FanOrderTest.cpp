@@ -1,11 +1,11 @@
 // Pictures of fans whose beams have random bearings, in any order.
 #include <gmock/gmock.h>
 
+#include "components/output/maps/ScanMap.hpp"
+#include "components/output/maps/Similarity.hpp"
 #include "components/output/pictures/DiscImage.hpp"
 #include "components/output/pictures/FanImage.hpp"
 #include "components/output/pictures/PlainPicture.hpp"
-#include "components/output/maps/ScanMap.hpp"
-#include "components/output/maps/Similarity.hpp"
 #include "components/output/pictures/TruthImage.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Fans.hpp"

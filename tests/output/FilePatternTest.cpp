@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
-#include "components/output/tasks/PictureConfig.hpp"
 #include "components/output/PictureFiles.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
 #include "tests/support/Refused.hpp"
 
 namespace insonify::output {

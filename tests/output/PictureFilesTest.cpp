@@ -3,9 +3,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "components/output/pictures/FanImage.hpp"
 #include "components/output/PictureFiles.hpp"
 #include "components/output/PictureWriter.hpp"
+#include "components/output/pictures/FanImage.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Refused.hpp"
 

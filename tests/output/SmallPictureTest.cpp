@@ -1,11 +1,11 @@
 // Every kind of picture at every width from the min on, of fans and ranges of all sizes: none throws.
 #include <gtest/gtest.h>
 
+#include "components/output/maps/ScanMosaic.hpp"
 #include "components/output/pictures/DiscImage.hpp"
 #include "components/output/pictures/FanImage.hpp"
-#include "components/output/tasks/PictureTask.hpp"
-#include "components/output/maps/ScanMosaic.hpp"
 #include "components/output/pictures/WaterfallImage.hpp"
+#include "components/output/tasks/PictureTask.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Ports.hpp"
 

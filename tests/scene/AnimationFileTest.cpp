@@ -1,6 +1,6 @@
 // Animations, skins and morph targets of files: what they move, and what is refused.
-#include "components/scene/motion/Animator.hpp"
 #include "components/scene/Placement.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "tests/scene/AnimatedFiles.hpp"
 #include "types/geometry/PosedMesh.hpp"
 

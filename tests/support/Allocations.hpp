@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/execution/Activity.hpp"
 
 namespace insonify::test {
 

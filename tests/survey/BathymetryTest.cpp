@@ -15,8 +15,8 @@
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/geometry/Extent.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::survey {
 

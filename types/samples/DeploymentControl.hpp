@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "types/Time.hpp"
 #include "types/samples/Plan.hpp"
 #include "types/samples/TaskRecord.hpp"
-#include "types/Time.hpp"
 
 namespace insonify::types {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "types/geometry/Angle.hpp"
 #include "types/Time.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::types {
 

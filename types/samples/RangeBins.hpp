@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "types/text/Describe.hpp"
 #include "types/Time.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::types {
 

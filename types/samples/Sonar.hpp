@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "types/Time.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/samples/RangeBins.hpp"
-#include "types/Time.hpp"
 
 namespace insonify::types {
 

@@ -5,9 +5,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "types/Time.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/samples/Sonar.hpp"
-#include "types/Time.hpp"
 
 namespace insonify::types {
 

@@ -4,9 +4,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "types/Time.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/samples/SonarTruth.hpp"
-#include "types/Time.hpp"
 
 namespace insonify::types {
 

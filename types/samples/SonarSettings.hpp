@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <limits>
 
+#include "types/Time.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/text/Describe.hpp"
-#include "types/Time.hpp"
 
 namespace insonify::types {
 

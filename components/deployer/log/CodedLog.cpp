@@ -4,10 +4,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "components/deployer/log/LoggedTrack.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/log/StreamMeaning.hpp"
 #include "components/deployer/Tasks.hpp"
+#include "components/deployer/log/LoggedTrack.hpp"
+#include "components/deployer/log/StreamMeaning.hpp"
 #include "components/log/Reader.hpp"
 
 namespace insonify::deployer {

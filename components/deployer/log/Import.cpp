@@ -21,9 +21,9 @@
 #include "components/sonar/tasks/SideScanTask.hpp"
 #include "components/sonar/tasks/SonarTask.hpp"
 #include "types/geometry/BeamArc.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/samples/Range.hpp"
 #include "types/samples/SonarSettings.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::deployer {
 namespace {

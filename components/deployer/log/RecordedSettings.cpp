@@ -13,17 +13,17 @@
 
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
+#include "components/deployer/Tasks.hpp"
 #include "components/deployer/log/ReplaySpec.hpp"
 #include "components/deployer/log/StreamMeaning.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/config/YamlText.hpp"
 #include "components/log/LoggerClock.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/samples/TaskRecord.hpp"
+#include "types/text/Ascii.hpp"
 
 namespace insonify::deployer {
 namespace {

@@ -12,11 +12,11 @@
 
 #include "components/deployer/log/Export.hpp"
 #include "components/log/Stream.hpp"
+#include "components/output/PictureFiles.hpp"
+#include "components/output/maps/Similarity.hpp"
 #include "components/output/pictures/Canvas.hpp"
 #include "components/output/pictures/DiscImage.hpp"
 #include "components/output/pictures/FanImage.hpp"
-#include "components/output/PictureFiles.hpp"
-#include "components/output/maps/Similarity.hpp"
 
 namespace insonify::deployer {
 namespace {

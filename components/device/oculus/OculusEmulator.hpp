@@ -11,11 +11,11 @@
 #include "components/device/OculusPing.hpp"
 #include "components/device/oculus/OculusMessages.hpp"
 #include "components/sonars/Sonars.hpp"
-#include "types/text/Describe.hpp"
 #include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 #include "types/samples/Sonar.hpp"
 #include "types/samples/SonarSettings.hpp"
-#include "types/Time.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::device {
 

@@ -8,8 +8,8 @@
 #include "components/device/sonar3d/Rip2.hpp"
 #include "components/device/wire/Http.hpp"
 #include "components/sonars/Sonars.hpp"
-#include "types/samples/DepthMap.hpp"
 #include "types/Elapsed.hpp"
+#include "types/samples/DepthMap.hpp"
 #include "types/samples/SonarSettings.hpp"
 
 namespace insonify::device {

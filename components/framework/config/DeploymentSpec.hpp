@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/config/ConnPolicy.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "types/text/RosNames.hpp"
 
 namespace insonify::framework {

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "types/text/Describe.hpp"
 #include "types/samples/TaskRecord.hpp"
+#include "types/text/Describe.hpp"
 
 namespace YAML {
 class Node;

@@ -2,8 +2,8 @@
 #include <condition_variable>
 #include <limits>
 
-#include "components/framework/execution/Executor.hpp"
 #include "components/framework/Offers.hpp"
+#include "components/framework/execution/Executor.hpp"
 
 namespace insonify::framework {
 

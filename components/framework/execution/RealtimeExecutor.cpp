@@ -14,8 +14,8 @@
 #include <thread>
 #include <utility>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Offers.hpp"
+#include "components/framework/execution/Activity.hpp"
 
 namespace insonify::framework {
 namespace {

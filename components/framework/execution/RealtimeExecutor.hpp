@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
+#include "components/framework/TaskContext.hpp"
 #include "components/framework/execution/Activity.hpp"
 #include "components/framework/execution/Executor.hpp"
-#include "components/framework/TaskContext.hpp"
 
 namespace insonify::framework {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/execution/Activity.hpp"
 
 namespace insonify::framework {
 namespace {

@@ -8,8 +8,8 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/Check.hpp"
+#include "types/text/Ascii.hpp"
 
 namespace insonify::log::mcap {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "components/log/TypeNames.hpp"
-#include "types/samples/Image.hpp"
 #include "types/Time.hpp"
+#include "types/samples/Image.hpp"
 
 namespace insonify::log::pocolog {
 

@@ -2,8 +2,8 @@
 #include <optional>
 #include <string>
 
-#include "components/output/pictures/DiscImage.hpp"
 #include "components/output/maps/ScanMap.hpp"
+#include "components/output/pictures/DiscImage.hpp"
 
 namespace insonify::output {
 

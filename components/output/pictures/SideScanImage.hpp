@@ -1,10 +1,10 @@
 #pragma once
 #include <optional>
 
-#include "components/output/tasks/PictureConfig.hpp"
 #include "components/output/pictures/WaterfallImage.hpp"
-#include "types/samples/Range.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
 #include "types/ReturnLevels.hpp"
+#include "types/samples/Range.hpp"
 
 namespace insonify::output {
 

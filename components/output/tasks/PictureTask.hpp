@@ -11,9 +11,9 @@
 #include "components/output/pictures/DiscImage.hpp"
 #include "components/output/pictures/FanImage.hpp"
 #include "components/output/pictures/Painter.hpp"
+#include "components/output/pictures/WaterfallImage.hpp"
 #include "components/output/tasks/PictureConfig.hpp"
 #include "components/output/tasks/RecordingTask.hpp"
-#include "components/output/pictures/WaterfallImage.hpp"
 #include "types/samples/Image.hpp"
 #include "types/samples/Sonar.hpp"
 

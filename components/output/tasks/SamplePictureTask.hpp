@@ -4,10 +4,10 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/SamplePool.hpp"
-#include "components/output/tasks/PictureConfig.hpp"
-#include "components/output/pictures/RangeImage.hpp"
-#include "components/output/tasks/RecordingTask.hpp"
 #include "components/output/maps/SoundingMap.hpp"
+#include "components/output/pictures/RangeImage.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
+#include "components/output/tasks/RecordingTask.hpp"
 
 namespace insonify::output {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "components/output/tasks/PairPictureTask.hpp"
 #include "components/output/maps/ScanMosaic.hpp"
+#include "components/output/tasks/PairPictureTask.hpp"
 #include "types/geometry/Mount.hpp"
 #include "types/samples/Pose.hpp"
 

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "components/framework/Upstream.hpp"
-#include "components/output/tasks/PictureTask.hpp"
 #include "components/output/pictures/SideScanImage.hpp"
+#include "components/output/tasks/PictureTask.hpp"
 
 namespace insonify::output {
 

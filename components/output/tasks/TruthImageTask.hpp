@@ -1,6 +1,6 @@
 #pragma once
-#include "components/output/tasks/PairPictureTask.hpp"
 #include "components/output/pictures/TruthImage.hpp"
+#include "components/output/tasks/PairPictureTask.hpp"
 
 namespace insonify::output {
 

@@ -3,8 +3,8 @@
 
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
-#include "components/framework/execution/StreamAligner.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/execution/StreamAligner.hpp"
 #include "components/output/ByteFile.hpp"
 #include "components/recordings/Xtf.hpp"
 #include "types/samples/Range.hpp"

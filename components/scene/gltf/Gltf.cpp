@@ -12,13 +12,13 @@
 #include <set>
 #include <thread>
 
-#include "components/scene/motion/Animator.hpp"
 #include "components/scene/Clusters.hpp"
+#include "components/scene/UniqueNames.hpp"
 #include "components/scene/gltf/GltfAnimation.hpp"
 #include "components/scene/gltf/GltfFile.hpp"
 #include "components/scene/gltf/GltfMaterials.hpp"
 #include "components/scene/gltf/GltfMesh.hpp"
-#include "components/scene/UniqueNames.hpp"
+#include "components/scene/motion/Animator.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::scene {

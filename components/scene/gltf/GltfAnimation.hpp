@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "components/scene/motion/Animation.hpp"
 #include "components/scene/gltf/GltfFile.hpp"
+#include "components/scene/motion/Animation.hpp"
 #include "types/geometry/Geometry.hpp"
 
 namespace insonify::scene {

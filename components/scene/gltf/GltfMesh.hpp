@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "components/scene/Surface.hpp"
 #include "components/scene/gltf/GltfAnimation.hpp"
 #include "components/scene/gltf/GltfFile.hpp"
 #include "components/scene/gltf/GltfMaterials.hpp"
-#include "components/scene/Surface.hpp"
 #include "types/geometry/Geometry.hpp"
 
 namespace insonify::scene {

@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
-#include "types/text/DidYouMean.hpp"
 #include "types/geometry/PosedMesh.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {

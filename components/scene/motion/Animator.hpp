@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "components/scene/motion/Animation.hpp"
 #include "components/scene/Scene.hpp"
-#include "types/text/Describe.hpp"
+#include "components/scene/motion/Animation.hpp"
 #include "types/geometry/Snapshot.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::scene {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/text/Describe.hpp"
 #include "types/ReturnLevels.hpp"
 #include "types/samples/Sonar.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::sonar {
 

@@ -16,8 +16,8 @@
 #include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileCells.hpp"
-#include "types/geometry/Angle.hpp"
 #include "types/Check.hpp"
+#include "types/geometry/Angle.hpp"
 #include "types/text/Hash.hpp"
 
 namespace insonify::sonar {

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "components/sonar/bins/EchoField.hpp"
-#include "types/geometry/Angle.hpp"
 #include "types/Check.hpp"
+#include "types/geometry/Angle.hpp"
 #include "types/text/Hash.hpp"
 
 namespace insonify::sonar {

@@ -8,8 +8,8 @@
 #include "components/sonar/beams/RangeResponse.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "types/geometry/Angle.hpp"
 #include "types/Check.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -15,8 +15,8 @@
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
 #include "components/sonar/surfaces/ObjectPlacements.hpp"
-#include "types/geometry/Geometry.hpp"
 #include "types/ReturnLevels.hpp"
+#include "types/geometry/Geometry.hpp"
 
 namespace insonify::sonar {
 

@@ -16,8 +16,8 @@
 #include "components/sonar/rays/SceneTrees.hpp"
 #include "components/sonar/surfaces/MeshFacts.hpp"
 #include "types/Check.hpp"
-#include "types/text/Hash.hpp"
 #include "types/geometry/VectorMath.hpp"
+#include "types/text/Hash.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -7,8 +7,8 @@
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/surfaces/Sightlines.hpp"
-#include "types/samples/Plan.hpp"
 #include "types/geometry/Snapshot.hpp"
+#include "types/samples/Plan.hpp"
 #include "types/text/ThrottledWarning.hpp"
 
 namespace insonify::sonar {

@@ -5,8 +5,8 @@
 
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/plan/EchoRenderer.hpp"
-#include "types/samples/Plan.hpp"
 #include "types/geometry/Snapshot.hpp"
+#include "types/samples/Plan.hpp"
 #include "types/samples/Sonar.hpp"
 #include "types/samples/SonarElements.hpp"
 

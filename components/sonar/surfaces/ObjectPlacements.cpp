@@ -10,8 +10,8 @@
 
 #include "components/sonar/surfaces/NearestPoint.hpp"
 #include "components/sonar/surfaces/ObjectPlacements.hpp"
-#include "types/geometry/Angle.hpp"
 #include "types/Check.hpp"
+#include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {

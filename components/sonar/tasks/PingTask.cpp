@@ -16,8 +16,8 @@
 #include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/renderer/BinExplanation.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
-#include "types/text/ConfigError.hpp"
 #include "types/Thread.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -12,9 +12,9 @@
 #include "components/sonar/tasks/SideScanTask.hpp"
 #include "components/sonar/tasks/Sonar3dTask.hpp"
 #include "components/sonar/tasks/SonarTask.hpp"
+#include "types/Elapsed.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/text/ConfigError.hpp"
-#include "types/Elapsed.hpp"
 
 namespace insonify::sonar {
 

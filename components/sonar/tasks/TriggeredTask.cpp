@@ -7,10 +7,10 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "components/framework/execution/Activity.hpp"
 #include "components/framework/Properties.hpp"
-#include "types/samples/Pose.hpp"
+#include "components/framework/execution/Activity.hpp"
 #include "types/geometry/PosedMesh.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -1,8 +1,8 @@
 // insonify study error|likeness|multipath|omission|speckle|stability
 #include "components/study/commands/StudyCommand.hpp"
 
-#include "components/deployer/log/CodedLog.hpp"
 #include "components/deployer/FittedDeployment.hpp"
+#include "components/deployer/log/CodedLog.hpp"
 
 namespace insonify::study {
 

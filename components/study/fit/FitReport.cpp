@@ -12,8 +12,8 @@
 #include "components/output/PictureFiles.hpp"
 #include "components/study/likeness/Likeness.hpp"
 #include "types/geometry/Angle.hpp"
-#include "types/text/Describe.hpp"
 #include "types/geometry/Quaternion.hpp"
+#include "types/text/Describe.hpp"
 
 namespace insonify::study {
 namespace {
