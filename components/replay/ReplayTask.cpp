@@ -61,7 +61,7 @@ std::pair<std::unique_ptr<log::Reader>, types::Notices> ReplayTask::opened() con
     auto log = log::openLog(inputPath(config->file), log::AtDamage::Stop, config->world_frame);
     types::Notices notices;
     for (const log::PoseSource& source : config->poses)
-        for (types::Notice& notice : log::addPoses(*log, source, config->world_frame))
+        for (types::Notice& notice : log::addPoses(*log, source, config->world_frame, config->datum))
             notices.push_back(std::move(notice));
     return {std::move(log), std::move(notices)};
 }
