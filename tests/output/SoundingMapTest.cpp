@@ -53,7 +53,7 @@ TEST(SoundingMapTest, ForgetsOldPoints) {
 
 TEST(SoundingMapTest, MakesAPictureForEveryFewClouds) {
     SoundingMapTask task("chart");
-    SamplePictureConfig config;
+    SoundingMapConfig config;
     config.every = 3;
     config.width = 256;
     task.config.set(config);
