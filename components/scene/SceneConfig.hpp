@@ -21,9 +21,9 @@ using types::Mount;
 struct TargetConfig {
     std::string name;
     std::optional<glm::dvec3> position;
-    std::optional<types::Datum> geodetic;
     std::string attached_to;
     std::optional<double> strength_db;
+    std::optional<types::Datum> geodetic = {};
 
     static void describe(auto& self, auto& visit) {
         visit({"name", "", "of the target, unique"}, self.name);

@@ -162,7 +162,7 @@ TEST_F(EarthRunTest, SoundingsAsTextHaveTheirPlacesOnTheEarth) {
         EXPECT_EQ(on_map[i].count("latitude_deg"), 0u);
         EXPECT_EQ(on_map[i].at("intensity"), row.at("intensity"));
     }
-    EXPECT_TRUE(fs::exists(folder_ / "out/chart_000005.png"));
+    EXPECT_TRUE(fs::exists(folder_ / "out/chart_000002.png"));
     for (const auto& [stream, to] : {std::pair("sonar.soundings", "x.npz"), std::pair("vehicle.pose", "x.csv"),
                                      std::pair("sonar.soundings", "folder")})
         EXPECT_THAT(call({"log", "export", "out/x.0.log", "--stream", stream, "--to", to, "--utm"}),

@@ -90,7 +90,9 @@ TEST_F(TargetsTest, ReportsErrorsWithTheirPlace) {
 TEST_F(TargetsTest, APlaceOnTheEarthIsWhereTheDatumHasIt) {
     const types::Datum datum{54.5, 10.25, 40};
     if (!test::refused([&] { geodetic(datum, {}); }).empty()) GTEST_SKIP() << "this build has no GeographicLib";
-    TargetConfig wreck{.name = "wreck", .strength_db = -20};
+    TargetConfig wreck;
+    wreck.name = "wreck";
+    wreck.strength_db = -20;
     wreck.geodetic = geodetic(datum, {300, 1200, -25});
     config_.targets = {wreck};
     config_.datum = datum;
@@ -101,7 +103,9 @@ TEST_F(TargetsTest, APlaceOnTheEarthIsWhereTheDatumHasIt) {
 TEST_F(TargetsTest, PlacesOnTheEarthThatHaveNoMeaningAreRefused) {
     const types::Datum datum{54.5, 10.25, 40};
     if (!test::refused([&] { geodetic(datum, {}); }).empty()) GTEST_SKIP() << "this build has no GeographicLib";
-    TargetConfig wreck{.name = "wreck", .strength_db = -20};
+    TargetConfig wreck;
+    wreck.name = "wreck";
+    wreck.strength_db = -20;
     wreck.geodetic = datum;
     config_.targets = {wreck};
     EXPECT_THAT(diagnostic(), HasSubstr("targets[0].geodetic: needs the deployment's datum"));
