@@ -137,7 +137,7 @@ TEST_F(TypingTest, EveryFieldOfThePageTakesKeys) {
     for (const std::string task : {"source", "world", "viewer", "form"}) {
         choose("task", task);
         const json kinds = value(fields + ".map((one) => one.tagName === 'SELECT' ? 'select' : one.type)");
-        ASSERT_GT(kinds.size(), 9u) << kinds;
+        ASSERT_GT(kinds.size(), 8u) << kinds;
         for (size_t i = 0; i < kinds.size(); ++i) {
             if (task != "form" && !value(fields + "[" + std::to_string(i) + "].closest('#properties') !== null"))
                 continue;
@@ -173,7 +173,7 @@ TEST_F(TypingTest, TabReachesEveryControlAndShowsTheFocus) {
         EXPECT_TRUE(seen["focus"] && seen["ring"] && seen["seen"]) << i << " of " << count << ": " << seen;
     };
     value("document.activeElement.blur()");
-    browser->click("document.querySelector('header b')");
+    browser->click("document.querySelector('h1')");
     const auto go = [&](const std::string& key) {  // parts that scroll have the focus in between
         do browser->press(key);
         while (!value("document.activeElement.matches('button, input, select, body')"));

@@ -8,7 +8,7 @@ import {Link} from './link.js';
 import {History, Places, Scan, pingOf, strongLevel} from './ping.js';
 import {change, fillDialog, lengthText, onSettings, settings} from './settings.js';
 import {Rates, showStatus} from './status.js';
-import {Targets, savePicture} from './targets.js';
+import {Targets, datumOf, savePicture} from './targets.js';
 import {World, loadThree} from './world.js';
 
 const seconds = () => performance.now() / 1e3;
@@ -31,7 +31,7 @@ const properties = new Properties(link), controls = new Controls(link, byId('con
 const first = new First(link, byId('first')), timelines = new Timelines(link, byId('timelines'));
 const redraw = () => { needs_drawing = true; };
 const hands = new Hands(fan, redraw), explanation = new Explanation(link, byId('explained'));
-const targets = new Targets(byId('marked'), showTargets, () => properties.status?.datum ?? undefined);
+const targets = new Targets(byId('marked'), showTargets, () => datumOf(properties.status));
 
 const show = {
   interfaces(message) {

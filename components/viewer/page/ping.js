@@ -89,7 +89,7 @@ export class Places {
 }
 
 /** The last minute of pings as {ping, at}, oldest first. Where it would take more than `most_bytes`, every second ping
- *  of its older half is left out, so that it stays a minute. The newest ping always stays. */
+ *  of its older half is left out: it stays a minute, with fewer pings the older they are. The newest ping always stays. */
 export class History {
   constructor(seconds = 60, most_bytes = 256e6) {
     Object.assign(this, {seconds, most_bytes, entries: [], bytes: 0});
@@ -102,7 +102,7 @@ export class History {
     this.keep((_, i) => i >= gone);
     while (this.bytes > this.most_bytes && this.entries.length > 1) {
       const half = Math.ceil(this.entries.length / 2);
-      this.keep((_, i) => i >= half || i % 2);
+      this.keep((_, i) => i >= half || (half > 1 && i % 2 === 0));
     }
   }
   keep(wanted) {

@@ -20,10 +20,19 @@ export function placeOf(at, {position, orientation: [x, y, z, w]}) {
 }
 
 const equator = 6378137, flattening = 1 / 298.257223563, e2 = flattening * (2 - flattening);  // WGS 84
-/** Returns latitude, longitude [deg] and height [m] on WGS 84 of a position in the world of x north, y west, z up, whose
- *  origin is the datum {latitude, longitude, height}: by earth-centred coordinates, exact at any distance. */
-export function onEarth([north, west, up], {latitude, longitude, height = 0}) {
-  const [p, l] = [latitude / degrees, longitude / degrees], [sp, cp, sl, cl] = [Math.sin(p), Math.cos(p), Math.sin(l), Math.cos(l)];
+/** Returns the world's origin on the earth, {latitude_deg, longitude_deg, height_m} on WGS 84: the `datum` of a
+ *  deployment, which its tasks have; undefined: it has none. */
+export function datumOf(status) {
+  for (const {properties} of status?.tasks ?? []) {
+    let found = null;
+    try { found = JSON.parse(properties.datum); } catch { /* it has none */ }
+    if (Number.isFinite(found?.latitude_deg) && Number.isFinite(found.longitude_deg)) return found;
+  }
+}
+/** Returns latitude, longitude [deg] and height [m] on WGS 84 of a position in the world of x north, y west, z up, by
+ *  earth-centred coordinates, exact at any distance. */
+export function onEarth([north, west, up], {latitude_deg, longitude_deg, height_m: height = 0}) {
+  const [p, l] = [latitude_deg / degrees, longitude_deg / degrees], [sp, cp, sl, cl] = [Math.sin(p), Math.cos(p), Math.sin(l), Math.cos(l)];
   const radius = equator / Math.sqrt(1 - e2 * sp * sp), out = up * cp - north * sp;
   const x = (radius + height) * cp * cl + out * cl + west * sl, y = (radius + height) * cp * sl + out * sl - west * cl;
   const z = (radius * (1 - e2) + height) * sp + north * cp + up * sp, across = Math.hypot(x, y);
@@ -48,7 +57,7 @@ const rounded = (number, digits) => number === undefined || number === null ? ''
 const csvCell = (text) => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 
 /** Returns the table that other programs read: a line per target, empty where something was unknown.
- *  @param datum {latitude, longitude [deg], height [m]} of the world's origin; undefined: unknown */
+ *  @param datum that of datumOf(); undefined: unknown */
 export function csvOf(targets, datum) {
   const head = ['name', 'time', 'source', 'range_m', 'bearing_starboard_deg', 'sonar_heading_deg', 'bearing_true_deg', 'north_m', 'east_m', 'up_m', 'depth_m',
                 'latitude_deg', 'longitude_deg', 'height_m'];
@@ -75,7 +84,7 @@ export function geoJsonOf(targets, datum) {
 
 /** The targets that the operator has marked. They are remembered until they are removed. */
 export class Targets {
-  /** @param changed called when the list has changed  @param datum returns that of the deployment; undefined: none */
+  /** @param changed called when the list has changed  @param datum returns that of datumOf() */
   constructor(section, changed, datum) {
     Object.assign(this, {section, changed, datum});
     byId('csv').onclick = () => download('targets.csv', csvOf(this.list, this.datum()), 'text/csv');
