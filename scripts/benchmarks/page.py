@@ -1,5 +1,6 @@
 """The live page in a browser: frames a second of a large fan, and the picture of the page."""
 import json
+import os
 import re
 import statistics
 import subprocess
@@ -34,7 +35,8 @@ FRAMES = """new Promise((done) => {
 def python():
     """A python with websockets: that of scripts/setup, or Debian's."""
     for candidate in [ROOT / "build/venv/bin/python3", "/usr/bin/python3"]:
-        if subprocess.run([candidate, "-c", "import websockets"], stderr=subprocess.DEVNULL).returncode == 0:
+        if os.path.exists(candidate) and subprocess.run([candidate, "-c", "import websockets"],
+                                                        stderr=subprocess.DEVNULL).returncode == 0:
             return candidate
     raise SystemExit("scripts/bench: no python has websockets; scripts/setup installs one in build/venv")
 
@@ -46,12 +48,12 @@ def live_page(*settings):
     with tempfile.TemporaryDirectory() as folder:
         command = [INSONIFY, "run", ROOT / "deploy/live_view.yml", "--out", folder]
         command += [part for setting in settings for part in ("--set", setting)]
+        browse = [python(), ROOT / "tests/viewer/browse.py", CHROMIUM]
         run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         url = next((found[1] for line in run.stderr if (found := re.search(r"open (http://\S+)", line))), None)
         if url is None:
             fail("insonify run", run.wait())
-        browser = subprocess.Popen([python(), ROOT / "tests/viewer/browse.py", CHROMIUM, url], stdin=subprocess.PIPE,
-                                   stdout=subprocess.PIPE, text=True)
+        browser = subprocess.Popen([*browse, url], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
         def ask(**request):
             print(json.dumps(request), file=browser.stdin, flush=True)

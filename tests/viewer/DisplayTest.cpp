@@ -142,6 +142,25 @@ TEST_F(DisplayTest, PingsAreMissedAfterThreeOfTheirIntervals) {
             if (!lost.text.startsWith('no connection for 10 s') && !lost.text.startsWith('no connection for 9 s')) wrong.push([lost.text]);
             if (lost.is_known) wrong.push('known');
         }
+        // A silence is no interval; a slower sonar is, from its third ping on; a new connection begins with an old ping.
+        for (const interval of [0.1, 1, 4]) {
+            const watch = new Watch();
+            let now = 0;
+            for (let i = 0; i < 10; ++i) watch.ping(now += interval);
+            watch.ping(now += 300);
+            watch.ping(now += interval);
+            if (!watch.look(now + Math.max(2.1, 4 * interval)).is_silent) wrong.push(['after a silence', interval]);
+            for (let i = 0; i < 4; ++i) watch.ping(now += 5 * interval);
+            if (watch.look(now + 6 * interval).is_silent) wrong.push(['slower', interval]);
+            watch.connection(false, now);
+            watch.connection(true, now += 50);
+            watch.ping(now);
+            watch.status(now += 0.2, 70);
+            if (watch.look(now).text !== 'no ping for 70 s') wrong.push(['old', watch.look(now)]);
+            watch.ping(now += 0.1);
+            watch.status(now, 0.1);
+            if (watch.look(now).is_silent) wrong.push(['live again', interval]);
+        }
         const never = new Watch().look(1000);
         if (never.is_silent || never.rate !== 0 || never.age !== null) wrong.push('a page that has had no ping');
         return wrong;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/support/Folder.hpp"
@@ -41,7 +42,7 @@ TEST_F(OperatorTest, ATargetStaysWhereItIsWhileTheVehicleMoves) {
     EXPECT_NEAR(mark["range"], 12, 0.1);
     EXPECT_EQ(mark["depth"], 2) << "the sonar is 2 m deep and level";
     EXPECT_EQ(mark["source"], "source.ping");
-    EXPECT_THAT(text("targets"), AllOf(HasSubstr("12."), HasSubstr("depth"), HasSubstr("2.0 m")));
+    EXPECT_THAT(text("targets"), AllOf(HasSubstr("range m"), HasSubstr("12."), HasSubstr("depth"), HasSubstr("2.0")));
     // The vehicle moves north with 2 m/s: the mark comes nearer on the picture, and is drawn there.
     EXPECT_TRUE(becomes("insonify.fan.targets[0].range < " + mark["range"].dump() + " - 1"));
     EXPECT_NEAR(value("(() => { const {fan, snapshot, settings} = insonify; return fan.targets[0].range + "
@@ -230,7 +231,7 @@ TEST_F(OperatorTest, TheLastMinuteStaysAMinuteInLittleMemory) {
             }
             const {entries} = history, span = entries.at(-1).at - entries[0].at;
             if (entries.some((one, i) => i && one.at <= entries[i - 1].at)) wrong.push('order');
-            if (most / size > 20 && entries.at(-1).at > 100 && span < 30) wrong.push(['short', span, most / size, rate]);
+            if (most / size > 20 && entries.at(-1).at > 100 && span < 50) wrong.push(['short', span, most / size, rate]);
             const some = entries[Math.floor(random() * entries.length)];
             if (history.at(some.at) !== some || history.at(-1) !== entries[0]) wrong.push('at');
             if (history.beside(entries.at(-1), 1) || history.beside(entries[0], -1)) wrong.push('ends');
@@ -247,12 +248,26 @@ TEST_F(OperatorTest, TheLastMinuteStaysAMinuteInLittleMemory) {
 
 TEST_F(OperatorTest, RecordingShowsItsSizeAndTheTimeLeft) {
     EXPECT_EQ(value(byId("recorded") + ".hidden"), true);
+    const std::string places =
+        "JSON.stringify([...document.querySelectorAll('.picture')].map((one) => one.getBoundingClientRect()))";
+    std::map<int, json> before;
+    for (const int width : {390, 1920, 1280}) {
+        browser->size(width, 800);
+        nextFrame();
+        before[width] = value(places);
+    }
     click("● source");
     ASSERT_TRUE(becomes("/^REC [0-9.]+ MB, 50.0 GB free$/.test(" + byId("recorded") + ".textContent)"));
     // A megabyte each 10 ms: 50 GB last 500 s.
     EXPECT_TRUE(becomes("/^REC [0-9.]+ [MG]B, [0-9]+ min left$/.test(" + byId("recorded") + ".textContent)"))
         << text("recorded");
     EXPECT_EQ(value(byId("recorded") + ".title"), "dives/dive.3.log");
+    for (const int width : {390, 1920, 1280}) {
+        browser->size(width, 800);
+        nextFrame();
+        EXPECT_EQ(value(places), before[width]) << "it moves the pictures at " << width;
+        EXPECT_GT(value(byId("recorded") + ".getBoundingClientRect().width"), 60) << width;
+    }
     EXPECT_NE(value("getComputedStyle(document.getElementById('recorded')).backgroundColor"), "rgba(0, 0, 0, 0)");
     EXPECT_TRUE(value("[...document.querySelectorAll('#controls button')][0].getAttribute('aria-pressed') === 'true'"));
     click("● source");

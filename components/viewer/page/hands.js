@@ -78,8 +78,8 @@ export class Hands {
     this.tell();
     this.changed();
   }
-  /** Takes a tool, or puts it away. */
-  take(tool) {
+  /** Chooses a tool; empty: none. */
+  use(tool) {
     this.tool = tool;
     this.fan.marks = [];
     this.tell();

@@ -188,19 +188,28 @@ export class Watch {
   /** Starts again, as for another source. */
   forget() {
     this.arrivals = [];
-    this.interval = null;
+    this.intervals = [];
+    this.since_open = 0;  // pings since the connection was opened
   }
-  /** @param old for how long the ping had been waiting at the viewer, where that is known */
-  ping(now, old = 0) {
-    if (this.arrivals.length) this.interval = this.interval === null ? now - this.arrivals.at(-1) : 0.7 * this.interval + 0.3 * (now - this.arrivals.at(-1));
-    this.arrivals.push(now - old);
+  ping(now) {
+    if (this.arrivals.length) this.intervals = [...this.intervals.slice(-4), now - this.arrivals.at(-1)];
+    this.arrivals.push(now);
+    ++this.since_open;
     while (this.arrivals.length > 2 && this.arrivals[0] < now - Math.max(rate_window, 3 * this.interval)) this.arrivals.shift();
   }
-  status(now) { this.status_at = now; }
+  /** @param waited seconds since the viewer got the last ping, by the deployment's clock. A new connection begins with the
+   *  last ping there was, which may be old. */
+  status(now, waited = 0) {
+    this.status_at = now;
+    if (this.since_open === 1) this.arrivals[this.arrivals.length - 1] = Math.min(this.arrivals.at(-1), now - Math.max(0, waited));
+  }
   connection(is_open, now) {
+    if (is_open) this.since_open = 0;
     if (is_open) this.lost_at = null;
     else this.lost_at ??= now;
   }
+  /** Returns the middle of the last intervals, so that a silence is not taken for one; null: unknown. */
+  get interval() { return this.intervals.length ? [...this.intervals].sort((a, b) => a - b)[Math.floor(this.intervals.length / 2)] : null; }
   /** Returns the silence after which pings are missing: three of their intervals. */
   get patience() { return this.interval === null ? first_silence : Math.max(least_silence, Math.min(most_silence, 3 * this.interval)); }
   /** Returns the pings per second of the last seconds. They may arrive in bunches where the browser is slow. */

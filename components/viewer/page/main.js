@@ -41,7 +41,8 @@ const show = {
     for (const part of [properties, controls, first, timelines, explanation]) part.setInterfaces(message);
   },
   status(status) {
-    watch.status(seconds());
+    const ping = history.newest?.ping;
+    watch.status(seconds(), ping && (status.now_us - ping.time_us) * 1e-6 - ping.latency_s);
     rates.update(status);
     showStatus(status, rates, true);
     for (const part of [properties, controls, timelines]) part.update(status);
@@ -130,8 +131,7 @@ function choose(source) {
 }
 
 function tell(ping) {
-  const waited = watch.arrivals.length || !properties.status ? 0 : (properties.status.now_us - ping.time_us) * 1e-6 - ping.latency_s;
-  watch.ping(seconds(), Math.max(0, waited));
+  watch.ping(seconds());
   if (last_count !== null && ping.count > last_count) missed += ping.count - last_count - 1;
   last_count = ping.count;
   byId('time').textContent = ping.time_us > 1e15 ? new Date(ping.time_us / 1e3).toISOString().slice(11, 22) : `${(ping.time_us * 1e-6).toFixed(2)} s`;
@@ -250,8 +250,8 @@ function showSettings() {
   if (fan.ping) display(fan.ping);
 }
 
-function take_tool(tool) {
-  hands.take(hands.tool === tool ? '' : tool);
+function useTool(tool) {
+  hands.use(hands.tool === tool ? '' : tool);
   fan.line = null;
   for (const id of ['measure', 'target', 'line']) pressed(id, hands.tool === id);
   if (hands.tool) byId('fan').focus();
@@ -259,11 +259,11 @@ function take_tool(tool) {
 const actions = {
   ' ': () => goTo(moment ? null : history.newest), '.': () => goTo(null), '[': () => step(-1), ']': () => step(1), p: play,
   '+': () => zoom(1.25), '-': () => zoom(0.8), 0: () => hands.whole(), f: () => change({polar: !settings.polar}),
-  n: () => change({up: settings.up === 'north' ? 'heading' : 'north'}), m: () => take_tool('measure'), t: () => take_tool('target'), l: () => take_tool('line'),
+  n: () => change({up: settings.up === 'north' ? 'heading' : 'north'}), m: () => useTool('measure'), t: () => useTool('target'), l: () => useTool('line'),
   b: () => change({profile: !settings.profile}), g: () => change({rings: !settings.rings}), a: () => holdLevels(!settings.auto),
   c: () => change({map: names[(names.indexOf(settings.map) + 1) % names.length]}), s: () => savePicture(fan, shown_attitude), r: () => controls.recordFirst(),
   1: () => change({layout: 'both'}), 2: () => change({layout: 'fan'}), 3: () => change({layout: 'scene'}),
-  '?': () => byId('dialog').showModal(), Escape: () => take_tool(hands.tool),
+  '?': () => byId('dialog').showModal(), Escape: () => useTool(hands.tool),
 };
 /** Zooms the scene if it has the focus, else the fan. */
 function zoom(factor) {

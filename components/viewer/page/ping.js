@@ -88,8 +88,8 @@ export class Places {
   }
 }
 
-/** The last minute of pings as {ping, at}, oldest first. Where it would take more than `most_bytes`, every second ping
- *  of its older half is left out: it stays a minute, with fewer pings the older they are. The newest ping always stays. */
+/** The last minute of pings as {ping, at}, oldest first. Where it would take more than `most_bytes`, pings are left out
+ *  evenly before its newest quarter, so that it stays a minute. The newest ping always stays. */
 export class History {
   constructor(seconds = 60, most_bytes = 256e6) {
     Object.assign(this, {seconds, most_bytes, entries: [], bytes: 0});
@@ -98,18 +98,16 @@ export class History {
   add(ping, at) {
     this.entries.push({ping, at});
     this.bytes += ping.data.length;
-    const gone = this.entries.findIndex((one) => one.at >= at - this.seconds);
-    this.keep((_, i) => i >= gone);
-    while (this.bytes > this.most_bytes && this.entries.length > 1) {
-      const half = Math.ceil(this.entries.length / 2);
-      this.keep((_, i) => i >= half || (half > 1 && i % 2 === 0));
-    }
+    while (this.entries[0].at < at - this.seconds) this.remove(0);
+    while (this.bytes > this.most_bytes && this.entries.length > 1) this.remove(this.closest());
   }
-  keep(wanted) {
-    const gone = this.entries.filter((one, i) => !wanted(one, i));
-    if (!gone.length) return;
-    this.entries = this.entries.filter(wanted);
-    for (const {ping} of gone) this.bytes -= ping.data.length;
+  remove(i) { this.bytes -= this.entries.splice(i, 1)[0].ping.data.length; }
+  /** Returns the index of the entry, apart from the oldest and the newest quarter, whose neighbours are closest. */
+  closest() {
+    const {entries} = this, gap = (i) => entries[i + 1].at - entries[i - 1].at;
+    let found = entries.length > 2 ? 1 : 0;
+    for (let i = 2; i < 0.75 * entries.length && i + 1 < entries.length; ++i) if (gap(i) < gap(found)) found = i;
+    return found;
   }
   clear() {
     this.entries = [];

@@ -1,7 +1,7 @@
 // Target marks, and what the page saves as files: targets as CSV and GeoJSON, the picture as PNG.
 import {byId, element, patch} from './dom.js';
 import {attitudeOf, attitudeTexts} from './instruments.js';
-import {bearingText, change, degrees, lengthText, settings} from './settings.js';
+import {bearingText, change, degrees, lengthIn, lengthUnit, settings} from './settings.js';
 
 /** Rotates a vector by a quaternion [x, y, z, w]. */
 function rotated([x, y, z, w], [a, b, c]) {
@@ -115,11 +115,11 @@ export class Targets {
   /** Shows the list; the section is there while it has something to show. */
   show() {
     this.section.hidden = !this.list.length;
-    const deep = this.list.every(({depth}) => depth !== null), cell = (text) => ['td', {class: 'n'}, text];
-    const head = ['name', 'time', 'range', 'bearing', 'north', 'east', deep ? 'depth' : 'up'].map((text, i) => ['th', {scope: 'col', class: i > 1 ? 'n' : undefined}, text]);
+    const deep = this.list.every(({depth}) => depth !== null), cell = (text) => ['td', {class: 'n'}, text], number = (m) => lengthIn(m).toFixed(1), unit = lengthUnit();
+    const head = ['name', 'time', `range ${unit}`, 'bearing', 'north', 'east', deep ? 'depth' : 'up'].map((text, i) => ['th', {scope: 'col', class: i > 1 ? 'n' : undefined}, text]);
     const rows = this.list.map(({name, time_us, range, bearing, heading, position, depth}, i) => ['tr', {},
-      ['td', {}, ['input', {'data-name': i, value: name, 'aria-label': `name of target ${i + 1}`}]], ['td', {}, timeText(time_us).replace(/.*T|[.]\d*Z/g, '')], cell(lengthText(range)), cell(bearingText(bearing, heading ?? undefined)),
-      ...(position ? [position[0], -position[1], deep ? depth : position[2]] : []).map((x) => cell(lengthText(x, 1))), ...(position ? [] : [['td', {colspan: 3}, 'position unknown']]),
+      ['td', {}, ['input', {'data-name': i, value: name, 'aria-label': `name of target ${i + 1}`}]], ['td', {}, timeText(time_us).replace(/.*T|[.]\d*Z/g, '')], cell(number(range)), cell(bearingText(bearing, heading ?? undefined)),
+      ...(position ? [position[0], -position[1], deep ? depth : position[2]] : []).map((x) => cell(number(x))), ...(position ? [] : [['td', {colspan: 3}, 'position unknown']]),
       ['td', {}, ['button', {'data-remove': i, 'aria-label': `remove target ${name}`}, '×']]]);
     patch(byId('targets'), [['thead', {}, ['tr', {}, ...head, ['td', {}]]], ['tbody', {}, ...rows]]);
     for (const input of byId('targets').querySelectorAll('input')) if (input !== document.activeElement) input.value = input.getAttribute('value');

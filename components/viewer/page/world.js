@@ -214,7 +214,7 @@ export class World {
   /** @param targets those with a position [m] */
   showTargets(targets) {
     const {THREE} = this;
-    this.marks ??= new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({color: 0x8df08a, size: 9, sizeAttenuation: false, fog: false}));
+    this.marks ??= new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({color: 0x8df08a, size: 9, sizeAttenuation: false, fog: false, depthTest: false}));
     this.marks.geometry.setAttribute('position', new THREE.Float32BufferAttribute(targets.flatMap(({position}) => position ?? []), 3));
     this.marks.frustumCulled = false;
     this.scene.add(this.marks);
