@@ -26,7 +26,7 @@ FRAMES = """new Promise((done) => {
                   beam_height: 0.35, bearings: [], edges}, begin = performance.now();
     insonify.take({kind: 1, json, buffer: pings[count % 8].buffer, start: 0});
     work.push(performance.now() - begin);
-    now - times[0] < %d ? requestAnimationFrame(frame) : done({times, work, size: [insonify.fan.canvas.width, insonify.fan.canvas.height]});
+    now - times[0] < DURATION ? requestAnimationFrame(frame) : done({times, work, size: [insonify.fan.canvas.width, insonify.fan.canvas.height]});
   }
   requestAnimationFrame(frame);
 })"""
@@ -75,14 +75,15 @@ def live_page(*settings):
 
 def measure_page(_options):
     found = []
-    for _ in range(2):
+    for layout in ["both", "fan"] * 2:
         for busy in [False, True]:
             with live_page("sonar.beam_count=32", "sonar.bin_count=100", "sonar.quality.rows=16") as ask:
+                ask(press=["1" if layout == "both" else "2"])
                 if busy:
                     ask(tab=BUSY)
-                seen = ask(eval=FRAMES % (1000 * SECONDS))
+                seen = ask(eval=FRAMES.replace("DURATION", str(1000 * SECONDS)))
             steps = [b - a for a, b in zip(seen["times"], seen["times"][1:])]
-            found.append({"busy": busy, "size": seen["size"], "frames_per_second": 1e3 / statistics.mean(steps),
+            found.append({"busy": busy, "layout": layout, "size": seen["size"], "frames_per_second": 1e3 / statistics.mean(steps),
                           "slowest_ms": max(steps), "p99_ms": sorted(steps)[int(0.99 * len(steps))],
                           "page_ms": statistics.median(seen["work"])})
     return found
@@ -91,6 +92,7 @@ def measure_page(_options):
 def show_page(rows):
     for row in rows:
         print(f"fan of 512 x 1000 on {row['size'][0]} x {row['size'][1]} pixels, "
+              f"{'with' if row['layout'] == 'both' else 'without'} the scene, "
               f"{'another tab computes' if row['busy'] else 'alone':20}{row['frames_per_second']:6.1f} frames/s, "
               f"99 % within {row['p99_ms']:.0f} ms; {row['page_ms']:.1f} ms of the page's own work a frame")
 

@@ -55,7 +55,7 @@ void main() {
   if (beam < 0) return;
   int covered = clamp(int(1. / (scale.y * bins.y)), 1, 8);
   float level = 0.;
-  for (int k = 0; k < 8; ++k) if (k < covered) level = max(level, texelFetch(levels, ivec2(min(bin + k, int(bins.x) - 1), beam), 0).r);
+  for (int k = 0; k < covered; ++k) level = max(level, texelFetch(levels, ivec2(min(bin + k, int(bins.x) - 1), beam), 0).r);
   float bright = level == 0. ? 0. : clamp(brightness.x + level * 255. * brightness.y, 0., 1.);
   colour = texelFetch(colours, ivec2(int(bright * 255. + .5), 0), 0);
 }`;

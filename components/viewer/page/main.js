@@ -338,8 +338,19 @@ fillDialog(byId('dialog'));
 onSettings(showSettings);
 showSettings();
 
-/** Draws the scene for at most a fifth of the time, so that most is left to the fan, but at least once a second. */
-let next_view = 0;
+/** Draws the scene for at most a fifth of the time, so that most is left to the fan, but about once a second. The time is
+ *  that of the graphics device, which draws after the page. */
+let next_view = 0, view_began = 0, view_drawn = null;
+function drawScene(now) {
+  const gl = world.renderer.getContext();
+  if (view_drawn && gl.clientWaitSync(view_drawn, 0, 0) === gl.TIMEOUT_EXPIRED) return;
+  if (view_drawn) next_view = now + Math.min(1000, 4 * (now - view_began));
+  view_drawn = null;
+  if (now < next_view || !world.draw()) return;
+  view_began = now;
+  view_drawn = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+}
 function frame(now) {
   if (playing) playOn();
   if (needs_drawing) {
@@ -352,11 +363,7 @@ function frame(now) {
   needs_drawing = false;
   byId('cursor').textContent = fan.cursorText();
   byId('measured').textContent = fan.measuredText();
-  if (world && now >= next_view) {
-    const begin = performance.now();
-    world.draw();
-    next_view = now + Math.min(1000, 4 * (performance.now() - begin));
-  }
+  if (world) drawScene(now);
   requestAnimationFrame(frame);
 }
 requestAnimationFrame(frame);

@@ -277,6 +277,7 @@ export class World {
     return lines;
   }
 
+  /** Returns whether there was something to draw. */
   draw() {
     const {clientWidth: w, clientHeight: h} = this.canvas, {THREE} = this;
     if (this.drawn_size !== `${w} ${h} ${devicePixelRatio}`) {
@@ -287,7 +288,7 @@ export class World {
       this.camera.updateProjectionMatrix();
       this.dirty = true;
     }
-    if (!this.dirty || !w || !h) return;
+    if (!this.dirty || !w || !h) return false;
     this.dirty = false;
     const heading = new THREE.Vector3(1, 0, 0).applyQuaternion(this.sonar.quaternion);
     const target = this.sonar.position.clone().addScaledVector(heading, this.distance * 0.45);
@@ -295,5 +296,6 @@ export class World {
     this.camera.position.set(target.x + c * Math.cos(turn), target.y + c * Math.sin(turn), target.z + this.distance * Math.sin(this.elevation));
     this.camera.lookAt(target);
     this.renderer.render(this.scene, this.camera);
+    return true;
   }
 }
