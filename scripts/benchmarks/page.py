@@ -6,6 +6,7 @@ import statistics
 import subprocess
 import tempfile
 from contextlib import contextmanager
+from pathlib import Path
 
 from benchmarks.common import INSONIFY, ROOT, fail
 
@@ -41,6 +42,23 @@ def python():
     raise SystemExit("scripts/bench: no python has websockets; scripts/setup installs one in build/venv")
 
 
+def processor_s(root):
+    """Processor time of a process and of those that it has started, so far [s]."""
+    parents, times = {}, {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+        except OSError:  # it has ended
+            continue
+        parents[int(stat.parent.name)] = int(fields[1])
+        times[int(stat.parent.name)] = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def is_below(pid):
+        return pid == root or (pid in parents and is_below(parents[pid]))
+
+    return sum(time for pid, time in times.items() if is_below(pid))
+
+
 @contextmanager
 def live_page(*settings):
     """Runs deploy/live_view.yml with these settings; yields its page as a function that answers a request of
@@ -62,6 +80,7 @@ def live_page(*settings):
                 raise SystemExit(f"{request}: {answer['error']}")
             return answer["value"]
 
+        ask.browser = browser.pid
         try:
             ask(size=[1280, 800, 1])
             ask(until="self.insonify && insonify.shown() > 10 && insonify.status()", seconds=120)
@@ -81,11 +100,13 @@ def measure_page(_options):
                 ask(press=["1" if layout == "both" else "2"])
                 if busy:
                     ask(tab=BUSY)
+                before = processor_s(ask.browser)
                 seen = ask(eval=FRAMES.replace("DURATION", str(1000 * SECONDS)))
+                processor_ms = 1e3 * (processor_s(ask.browser) - before) / len(seen["times"])
             steps = [b - a for a, b in zip(seen["times"], seen["times"][1:])]
             found.append({"busy": busy, "layout": layout, "size": seen["size"], "frames_per_second": 1e3 / statistics.mean(steps),
                           "slowest_ms": max(steps), "p99_ms": sorted(steps)[int(0.99 * len(steps))],
-                          "page_ms": statistics.median(seen["work"])})
+                          "page_ms": statistics.median(seen["work"]), "processor_ms": None if busy else processor_ms})
     return found
 
 
@@ -94,7 +115,8 @@ def show_page(rows):
         print(f"fan of 512 x 1000 on {row['size'][0]} x {row['size'][1]} pixels, "
               f"{'with' if row['layout'] == 'both' else 'without'} the scene, "
               f"{'another tab computes' if row['busy'] else 'alone':20}{row['frames_per_second']:6.1f} frames/s, "
-              f"99 % within {row['p99_ms']:.0f} ms; {row['page_ms']:.1f} ms of the page's own work a frame")
+              f"99 % within {row['p99_ms']:.0f} ms; {row['page_ms']:.1f} ms of the page's own work a frame"
+              + ("" if row["busy"] else f", {row['processor_ms']:.0f} ms of processor time of the whole browser"))
 
 
 def save_picture(file):

@@ -57,7 +57,16 @@ TEST_F(OperatorTest, ATargetStaysWhereItIsWhileTheVehicleMoves) {
     })())"),
               true);
     if (hasThree()) {
-        EXPECT_TRUE(becomes("insonify.world()?.marks?.geometry.attributes.position.count === 1"));
+        ASSERT_TRUE(becomes("insonify.world()?.marks?.geometry.attributes.position.count === 1"));
+        EXPECT_GT(value(R"((() => {
+            const world = insonify.world(), gl = world.renderer.getContext(), all = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+            world.dirty = true;
+            world.draw();
+            gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, all);
+            return new Uint32Array(all.buffer).filter((pixel) => pixel === 0xff8af08d).length;
+        })())"),
+                  30)
+            << "it is seen in the scene";
     }
 
     click("target");

@@ -151,7 +151,8 @@ export class Properties {
     const bounds = property.min === null && property.max === null ? '' : ` (${property.min ?? '-inf'} to ${property.max ?? 'inf'})`;
     const fixed = property.fixed ? '; can be set while the task is stopped, in the deployment' : '';
     this.fields.push(field);
-    return element('tr', {title: property.doc + bounds + fixed}, cell(property.name), element('td', {}, field.input, field.said), cell(property.unit === '1' ? '' : property.unit, 'dim'));
+    const unit = property.unit === '1' ? '' : property.unit;
+    return element('tr', {title: property.doc + bounds + fixed}, cell(property.name), element('td', {}, field.input, field.said), cell(unit, 'dim'));
   }
   update(status) {
     this.status = status;

@@ -74,7 +74,8 @@ export class Controls {
   }
   /** Makes the buttons of a clock that can be paused. */
   clock(of, is_paused, set, advance, what) {
-    return {of, is_paused, pause: this.button(`pause${of}`, () => set(!is_paused()), `${what} stops, or goes on`), step: this.button('step', advance, `one instant more of ${what}; while it is paused`)};
+    const pause = this.button(`pause${of}`, () => set(!is_paused()), `${what} stops, or goes on`);
+    return {of, is_paused, pause, step: this.button('step', advance, `one instant more of ${what}; while it is paused`)};
   }
   record(name) { return this.link.call(`${name}.setRecord`, !this.recording.get(name)); }
   /** Records, or stops, with the first logger. */
@@ -223,12 +224,12 @@ export class Watch {
   look(now) {
     const age = this.arrivals.length ? now - this.arrivals.at(-1) : null, is_lost = this.lost_at !== null && this.lost_at !== undefined;
     const is_silent = is_lost || (age !== null && age > this.patience);
-    const seconds = (since) => `${Math.floor(now - since)} s`;
+    const seconds = (since) => `${Math.floor(now - since)} s`, no_ping = age === null ? '' : `no ping for ${seconds(this.arrivals.at(-1))}`;
     return {
       is_silent, age,
       rate: is_silent ? 0 : this.rateAt(now),
       is_known: !is_lost && this.status_at !== undefined && now - this.status_at < least_silence,
-      text: is_lost ? `no connection for ${seconds(this.lost_at)}` + (age === null ? '' : `, no ping for ${seconds(this.arrivals.at(-1))}`) : is_silent ? `no ping for ${seconds(this.arrivals.at(-1))}` : '',
+      text: is_lost ? `no connection for ${seconds(this.lost_at)}` + (no_ping && `, ${no_ping}`) : is_silent ? no_ping : '',
     };
   }
 }

@@ -15,7 +15,8 @@ const seconds = () => performance.now() / 1e3;
 const fan = new Fan(byId('fan'), byId('overlay'));
 const rates = new Rates(), scans = new Map(), scenes = new Map(), places = new Places(), poses = new Places(), history = new History();
 const watch = new Watch(), alarm = new Alarm();
-let interfaces = '', world = null, scene = null, snapshot = null, shown_attitude = null, placed = '', reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false;
+let interfaces = '', world = null, scene = null, snapshot = null, shown_attitude = null, placed = '', reference = null;
+let missed = 0, last_count = null, shown = 0, needs_drawing = false;
 let moment = null;   // the entry of the history that is shown; null: the newest ping
 let playing = null;  // {from, since}: the last minute plays from there
 let is_chosen = false, was_silent = false;
@@ -312,8 +313,9 @@ byId('source').onchange = () => {
   change({source: byId('source').value});
   choose(settings.source);
 };
-for (const [id, key] of Object.entries({shape: 'f', freeze: ' ', save: 's', measure: 'm', target: 't', line: 'l', profile: 'b', whole: '0', back: '[', ahead: ']', play: 'p', live: '.', settings: '?'}))
-  byId(id).onclick = () => actions[key]();
+const buttons = {shape: 'f', freeze: ' ', save: 's', measure: 'm', target: 't', line: 'l', profile: 'b', whole: '0', back: '[', ahead: ']', play: 'p',
+                 live: '.', settings: '?'};
+for (const [id, key] of Object.entries(buttons)) byId(id).onclick = () => actions[key]();
 for (const [id, layout] of [['full_fan', 'fan'], ['full_view', 'scene']]) byId(id).onclick = () => change({layout: settings.layout === layout ? 'both' : layout});
 byId('moment').oninput = () => {
   const before = Number(byId('moment').value);

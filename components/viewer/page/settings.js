@@ -85,7 +85,8 @@ export function fillDialog(dialog) {
     onSettings(() => { list.value = settings[name]; });
     return element('label', {}, element('span', {}, title), list);
   });
-  const table = (rows) => element('dl', {}, ...rows.flatMap(([key, what]) => [element('dt', {}, ...key.split(' ').map((one) => element('kbd', {}, one))), element('dd', {}, what)]));
+  const keys = (text) => element('dt', {}, ...text.split(' ').map((one) => element('kbd', {}, one)));
+  const table = (rows) => element('dl', {}, ...rows.flatMap(([text, what]) => [keys(text), element('dd', {}, what)]));
   dialog.append(element('h2', {id: 'dialog_title'}, 'settings and keys'), element('div', {className: 'choices'}, ...lists), table(shortcuts),
                 element('h3', {}, 'in a picture that has the focus'), table(in_pictures),
                 element('button', {autofocus: true, onclick: () => dialog.close()}, 'close'));

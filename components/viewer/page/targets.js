@@ -64,8 +64,8 @@ export function csvOf(targets, datum) {
   const lines = targets.map(({name, time_us, source, range, bearing, heading, position, depth}) => {
     const earth = position && datum ? onEarth(position, datum) : {}, starboard = -bearing * degrees;
     return [name, timeText(time_us), source, rounded(range, 3), rounded(starboard, 3), rounded(heading, 3),
-            heading === null ? '' : rounded((heading + starboard + 720) % 360, 3), rounded(position?.[0], 3), rounded(position && -position[1], 3), rounded(position?.[2], 3),
-            rounded(depth, 3), rounded(earth.latitude, 8), rounded(earth.longitude, 8), rounded(earth.height, 3)].map(csvCell).join(',');
+            heading === null ? '' : rounded((heading + starboard + 720) % 360, 3),
+            rounded(position?.[0], 3), rounded(position && -position[1], 3), rounded(position?.[2], 3), rounded(depth, 3), rounded(earth.latitude, 8), rounded(earth.longitude, 8), rounded(earth.height, 3)].map(csvCell).join(',');
   });
   return [head.join(','), ...lines, ''].join('\n');
 }
@@ -77,9 +77,11 @@ export function geoJsonOf(targets, datum) {
     const {latitude, longitude, height} = datum ? onEarth(position, datum) : {longitude: -position[1], latitude: position[0], height: position[2]};
     const digits = datum ? 8 : 3, coordinates = [+longitude.toFixed(digits), +latitude.toFixed(digits), +height.toFixed(3)];
     return {type: 'Feature', geometry: {type: 'Point', coordinates},
-            properties: {name, time: timeText(time_us), source, range_m: +range.toFixed(3), bearing_starboard_deg: +(-bearing * degrees).toFixed(3), sonar_heading_deg: heading, depth_m: depth}};
+            properties: {name, time: timeText(time_us), source, range_m: +range.toFixed(3), bearing_starboard_deg: +(-bearing * degrees).toFixed(3),
+                         sonar_heading_deg: heading, depth_m: depth}};
   });
-  return JSON.stringify({type: 'FeatureCollection', ...(datum ? {} : {frame: 'local: metres east, north and up of the origin of the deployment; no datum is known'}), features}, null, 1);
+  const frame = datum ? {} : {frame: 'local: metres east, north and up of the origin of the deployment; no datum is known'};
+  return JSON.stringify({type: 'FeatureCollection', ...frame, features}, null, 1);
 }
 
 /** The targets that the operator has marked. They are remembered until they are removed. */
@@ -116,10 +118,12 @@ export class Targets {
   show() {
     this.section.hidden = !this.list.length;
     const deep = this.list.every(({depth}) => depth !== null), cell = (text) => ['td', {class: 'n'}, text], number = (m) => lengthIn(m).toFixed(1), unit = lengthUnit();
-    const head = ['name', 'time', `range ${unit}`, 'bearing', 'north', 'east', deep ? 'depth' : 'up'].map((text, i) => ['th', {scope: 'col', class: i > 1 ? 'n' : undefined}, text]);
+    const head = ['name', 'time', `range ${unit}`, 'bearing', 'north', 'east', deep ? 'depth' : 'up'].map(
+        (text, i) => ['th', {scope: 'col', class: i > 1 ? 'n' : undefined}, text]);
     const rows = this.list.map(({name, time_us, range, bearing, heading, position, depth}, i) => ['tr', {},
-      ['td', {}, ['input', {'data-name': i, value: name, 'aria-label': `name of target ${i + 1}`}]], ['td', {}, timeText(time_us).replace(/.*T|[.]\d*Z/g, '')], cell(number(range)), cell(bearingText(bearing, heading ?? undefined)),
-      ...(position ? [position[0], -position[1], deep ? depth : position[2]] : []).map((x) => cell(number(x))), ...(position ? [] : [['td', {colspan: 3}, 'position unknown']]),
+      ['td', {}, ['input', {'data-name': i, value: name, 'aria-label': `name of target ${i + 1}`}]],
+      ['td', {}, timeText(time_us).replace(/.*T|[.]\d*Z/g, '')], cell(number(range)), cell(bearingText(bearing, heading ?? undefined)),
+      ...(position ? [position[0], -position[1], deep ? depth : position[2]].map((x) => cell(number(x))) : [['td', {colspan: 3}, 'position unknown']]),
       ['td', {}, ['button', {'data-remove': i, 'aria-label': `remove target ${name}`}, '×']]]);
     patch(byId('targets'), [['thead', {}, ['tr', {}, ...head, ['td', {}]]], ['tbody', {}, ...rows]]);
     for (const input of byId('targets').querySelectorAll('input')) if (input !== document.activeElement) input.value = input.getAttribute('value');

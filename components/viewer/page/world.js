@@ -214,9 +214,10 @@ export class World {
   /** @param targets those with a position [m] */
   showTargets(targets) {
     const {THREE} = this;
-    this.marks ??= new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({color: 0x8df08a, size: 9, sizeAttenuation: false, fog: false, depthTest: false}));
+    this.marks ??= new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({color: 0x8df08a, size: 9, sizeAttenuation: false, fog: false, depthTest: false, transparent: true}));
     this.marks.geometry.setAttribute('position', new THREE.Float32BufferAttribute(targets.flatMap(({position}) => position ?? []), 3));
     this.marks.frustumCulled = false;
+    this.marks.renderOrder = 1;  // after all else: a mark may be below the sea floor
     this.scene.add(this.marks);
     this.dirty = true;
   }
