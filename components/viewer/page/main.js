@@ -318,8 +318,8 @@ const buttons = {shape: 'f', freeze: ' ', save: 's', measure: 'm', target: 't', 
 for (const [id, key] of Object.entries(buttons)) byId(id).onclick = () => actions[key]();
 for (const [id, layout] of [['full_fan', 'fan'], ['full_view', 'scene']]) byId(id).onclick = () => change({layout: settings.layout === layout ? 'both' : layout});
 byId('moment').oninput = () => {
-  const before = Number(byId('moment').value);
-  goTo(before > -0.05 || !history.newest ? null : history.at(history.newest.at + before));
+  const {value, min} = byId('moment'), before = Number(value), {newest, entries} = history;
+  goTo(before > -0.05 || !newest ? null : before <= Number(min) ? entries[0] : history.at(newest.at + before));
 };
 hands.on_shift_click = (at) => fan.ping && explanation.ask(fan.ping.source, properties.status?.connections ?? [], fan.placeAt(...at));
 hands.on_click = (at) => {
