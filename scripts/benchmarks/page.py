@@ -25,7 +25,7 @@ FRAMES = """new Promise((done) => {
     times.push(now);
     const json = {source, time_us: 1e5 * ++count, count, latency_s: 0, beams, bins, bin_m: 0.05, top_db: 0, step_db: 0.4, beam_width: 0.004,
                   beam_height: 0.35, bearings: [], edges}, begin = performance.now();
-    insonify.take({kind: 1, json, buffer: pings[count % 8].buffer, start: 0});
+    if (PINGS) insonify.take({kind: 1, json, buffer: pings[count % 8].buffer, start: 0});
     work.push(performance.now() - begin);
     now - times[0] < DURATION ? requestAnimationFrame(frame) : done({times, work, size: [insonify.fan.canvas.width, insonify.fan.canvas.height]});
   }
@@ -100,12 +100,14 @@ def measure_page(_options):
                 ask(press=["1" if layout == "both" else "2"])
                 if busy:
                     ask(tab=BUSY)
+                script = FRAMES.replace("DURATION", str(1000 * SECONDS))
+                still = ask(eval=script.replace("PINGS", "false").replace(str(1000 * SECONDS), "3000"))
                 before = processor_s(ask.browser)
-                seen = ask(eval=FRAMES.replace("DURATION", str(1000 * SECONDS)))
+                seen = ask(eval=script.replace("PINGS", "true"))
                 processor_ms = 1e3 * (processor_s(ask.browser) - before) / len(seen["times"])
             steps = [b - a for a, b in zip(seen["times"], seen["times"][1:])]
             found.append({"busy": busy, "layout": layout, "size": seen["size"], "frames_per_second": 1e3 / statistics.mean(steps),
-                          "slowest_ms": max(steps), "p99_ms": sorted(steps)[int(0.99 * len(steps))],
+                          "slowest_ms": max(steps), "still": len(still["times"]) / 3, "p99_ms": sorted(steps)[int(0.99 * len(steps))],
                           "page_ms": statistics.median(seen["work"]), "processor_ms": None if busy else processor_ms})
     return found
 
@@ -114,7 +116,7 @@ def show_page(rows):
     for row in rows:
         print(f"fan of 512 x 1000 on {row['size'][0]} x {row['size'][1]} pixels, "
               f"{'with' if row['layout'] == 'both' else 'without'} the scene, "
-              f"{'another tab computes' if row['busy'] else 'alone':20}{row['frames_per_second']:6.1f} frames/s, "
+              f"{'another tab computes' if row['busy'] else 'alone':20}{row['frames_per_second']:6.1f} frames/s ({row['still']:.0f} without pings), "
               f"99 % within {row['p99_ms']:.0f} ms; {row['page_ms']:.1f} ms of the page's own work a frame"
               + ("" if row["busy"] else f", {row['processor_ms']:.0f} ms of processor time of the whole browser"))
 
