@@ -333,14 +333,18 @@ TEST_F(DisplayTest, SettingsAreRememberedAndNonsenseIsNot) {
     EXPECT_NEAR(windowAt(6.75, 0)[1], at[1], 3) << "and moved alike";
     EXPECT_EQ(value(byId("task") + ".value"), "world");
 
-    for (const char* nonsense : {"{", "[]", "7", "null", R"({"units":"parsecs","low":"x","targets":{},"zoom":null})",
-                                 R"({"map":"plaid","targets":[null,{"range":"a"}],"zoom":1e9,"shift_x":7})"}) {
+    for (
+        const char* nonsense :
+        {"{", "[]", "7", "null", R"({"units":"parsecs","low":"x","targets":{},"zoom":null})",
+         R"({"targets":[{"name":"x","source":"s","time_us":1,"range":5,"bearing":0,"position":"here","heading":null,"depth":null}]})",
+         R"({"map":"plaid","targets":[null,{"range":"a"}],"zoom":1e9,"shift_x":7})"}) {
         value("localStorage.setItem('insonify.view', '" + std::string(nonsense) +
               "'), Storage.prototype.setItem = () => {}, 1");
         reload();
         EXPECT_EQ(text("reach"), "15.0 m, 32 x 100, 150 mm") << nonsense;
         EXPECT_EQ(value(byId("map") + ".value"), "amber") << nonsense;
         EXPECT_LE(value("insonify.fan.zoom"), 50) << nonsense;
+        EXPECT_EQ(value(byId("marked") + ".hidden"), true) << nonsense;
     }
 }
 

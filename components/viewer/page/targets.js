@@ -84,6 +84,13 @@ export function geoJsonOf(targets, datum) {
   return JSON.stringify({type: 'FeatureCollection', ...frame, features}, null, 1);
 }
 
+/** Whether what was remembered is a target. */
+function isTarget(one) {
+  const isNumber = Number.isFinite, isKnown = (value, check) => value === null || check(value);
+  return isNumber(one?.range) && isNumber(one.bearing) && isNumber(one.time_us) && typeof one.name === 'string' && typeof one.source === 'string' &&
+      isKnown(one.heading, isNumber) && isKnown(one.depth, isNumber) && isKnown(one.position, (p) => Array.isArray(p) && p.length === 3 && p.every(isNumber));
+}
+
 /** The targets that the operator has marked. They are remembered until they are removed. */
 export class Targets {
   /** @param changed called when the list has changed  @param datum returns that of datumOf() */
@@ -97,7 +104,7 @@ export class Targets {
     byId('targets').onchange = ({target}) => this.set(this.list.map((one, i) => i === Number(target.dataset.name) ? {...one, name: target.value} : one));
     this.show();
   }
-  get list() { return settings.targets.filter((one) => Number.isFinite(one?.range) && Number.isFinite(one.bearing)); }
+  get list() { return settings.targets.filter(isTarget); }
   set(targets) {
     change({targets});
     this.show();
