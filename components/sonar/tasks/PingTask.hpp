@@ -52,6 +52,7 @@ namespace insonify::sonar {
 class PingTask : public TriggeredTask,
                  public framework::Planned,
                  public framework::Divisible,
+                 public framework::Adjustable,
                  public framework::ReturnSource {
 public:
     using TriggeredTask::TriggeredTask;
