@@ -28,7 +28,7 @@ struct Place {
 struct Chain {
     struct Part {
         uint32_t id = 0;
-        Place place;  ///< When the world was read: of a link that messages omit.
+        Place place{};  ///< When the world was read: of a link that messages omit.
     };
     std::vector<Part> parts;
 };
@@ -39,7 +39,7 @@ struct PoseMessage {
         std::string name;
         types::Pose pose;  ///< In our axes, without a time. Values that the message does not have are unknown.
         uint32_t id = 0;
-        Place place;  ///< In Gazebo's axes, in its parent.
+        Place place{};  ///< In Gazebo's axes, in its parent.
     };
     std::optional<types::Time> stamp;  ///< Simulated time; none when the message has no stamp, or it is out of bounds.
     std::vector<Entity> entities;
