@@ -43,6 +43,8 @@ std::string sensor(const std::string& name, const std::string& block, const std:
 /** The file of two vehicles with elements added to a link of red. */
 std::string worldWith(const std::string& elements) {
     std::string text = readFile(test::sourceFile("deploy/scenes/two_vehicles.world"));
+    const size_t old = text.find("<sensor");
+    text.erase(old, text.find("</sensor>") + 9 - old);
     const size_t link = text.find("</link>", text.find("<model name=\"red\">"));
     return text.insert(link, elements);
 }
