@@ -16,7 +16,7 @@ const std::map<std::string, std::set<std::string>> neighbours = {
     {"dds", {"ros"}},
     {"device", {"console", "output", "recordings", "sonars"}},  // readJson, ByteFile
     {"framework", {"loader"}},
-    {"gazebo", {"meshes", "scene"}},
+    {"gazebo", {"meshes", "ros", "scene"}},
     {"log", {"ros"}},
     {"logger", {"log"}},
     {"mavlink", {"device"}},  // its network
