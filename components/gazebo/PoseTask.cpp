@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "components/gazebo/PublisherTask.hpp"
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {

@@ -9,7 +9,7 @@
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/pose/ListenerTask.hpp"
 #include "types/SenderClock.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::gazebo {
 

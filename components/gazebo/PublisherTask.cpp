@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/framework/execution/Timing.hpp"
 #include "components/gazebo/Messages.hpp"
 #include "components/gazebo/Subscriptions.hpp"

@@ -9,7 +9,7 @@
 #include "components/framework/TaskContext.hpp"
 #include "components/gazebo/Publisher.hpp"
 #include "types/ReturnLevels.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::gazebo {
 

@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "components/loader/Interface.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::loader {
 namespace {

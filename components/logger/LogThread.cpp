@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "components/log/Files.hpp"
-#include "types/Elapsed.hpp"
 #include "types/Thread.hpp"
+#include "types/Time.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::logger {

@@ -7,7 +7,7 @@
 #include <set>
 #include <system_error>
 
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/log/Stream.hpp"
 #include "types/text/ConfigError.hpp"
 

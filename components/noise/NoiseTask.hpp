@@ -10,7 +10,7 @@
 #include "components/framework/TaskContext.hpp"
 #include "components/noise/Noise.hpp"
 #include "types/samples/Sonar.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::noise {
 

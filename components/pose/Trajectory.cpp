@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "types/geometry/Angle.hpp"
-#include "types/geometry/Quaternion.hpp"
+#include "types/geometry/WorldFrame.hpp"
 #include "types/text/Csv.hpp"
 
 namespace insonify::pose {

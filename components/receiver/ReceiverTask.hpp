@@ -10,7 +10,7 @@
 #include "components/receiver/Receiver.hpp"
 #include "types/samples/Sonar.hpp"
 #include "types/samples/SonarSettings.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::receiver {
 

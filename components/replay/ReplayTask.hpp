@@ -15,7 +15,6 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/framework/config/StreamNames.hpp"
-#include "components/log/LoggerClock.hpp"
 #include "components/log/PoseSources.hpp"
 #include "components/log/Reader.hpp"
 #include "types/text/Describe.hpp"

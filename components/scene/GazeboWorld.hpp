@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "components/scene/Scene.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/Describe.hpp"
 

@@ -13,7 +13,7 @@
 #include "components/viewer/SceneMesh.hpp"
 #include "components/viewer/Server.hpp"
 #include "types/Thread.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::viewer {
 namespace {

@@ -14,11 +14,9 @@
 
 #include "components/console/Json.hpp"
 #include "components/console/Sha256.hpp"
-#include "components/dataset/commands/SweepFile.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/framework/config/YamlText.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/pose/Trajectory.hpp"

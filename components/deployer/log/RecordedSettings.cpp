@@ -11,19 +11,19 @@
 #include <utility>
 #include <variant>
 
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/Tasks.hpp"
+#include "components/deployer/log/Export.hpp"
 #include "components/deployer/log/ReplaySpec.hpp"
-#include "components/deployer/log/StreamMeaning.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/config/YamlText.hpp"
-#include "components/log/LoggerClock.hpp"
+#include "components/log/Reader.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
 #include "types/samples/TaskRecord.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::deployer {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "components/output/pictures/Colours.hpp"
+#include "components/output/pictures/Canvas.hpp"
 #include "types/geometry/Angle.hpp"
 
 namespace insonify::output {

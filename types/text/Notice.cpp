@@ -1,4 +1,4 @@
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::types {
 namespace {
