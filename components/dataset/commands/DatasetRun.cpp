@@ -119,7 +119,7 @@ std::string quoted(const std::string& text) { return console::Json(text).dump();
 pose::Trajectory trajectoryOf(const Sweep& sweep) {
     const TrajectoryPoses& asked = *sweep.trajectory;
     try {
-        return pose::Trajectory::fromFile(asked.file, false, asked.times);
+        return pose::Trajectory::fromFile(asked.file, false, asked.times, asked.world_frame);
     } catch (const types::ConfigError& error) {
         if (std::error_code none; fs::exists(asked.file, none)) throw;
         throw types::ConfigError({{"poses.trajectory.file", error.what(), sweep.file, asked.line, asked.column}});
