@@ -32,7 +32,7 @@ constexpr const char* quaternion_order = "w, x, y, z";
 
 /** Returns the nearest task whose type starts with `type` upstream of a task, or the task itself; null when there is
  * none. */
-const TaskSpec* upstream(const DeploymentSpec& spec, const std::string& from, const std::string& type) {
+const TaskSpec* upstreamSpec(const DeploymentSpec& spec, const std::string& from, const std::string& type) {
     std::vector<std::string> waiting{from};
     for (size_t i = 0; i < waiting.size(); ++i) {
         const TaskSpec* task = spec.task(waiting[i]);
@@ -75,10 +75,10 @@ Json frequencyOf(const TaskSpec* sonar) {
 }
 
 Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
-    const TaskSpec* sonar = upstream(spec, task, "sonar::");
-    const TaskSpec* receiver = upstream(spec, task, "receiver::ReceiverTask");
-    const TaskSpec* noise = upstream(spec, task, "noise::NoiseTask");
-    const TaskSpec* scene = upstream(spec, task, "scene::SceneTask");
+    const TaskSpec* sonar = upstreamSpec(spec, task, "sonar::");
+    const TaskSpec* receiver = upstreamSpec(spec, task, "receiver::ReceiverTask");
+    const TaskSpec* noise = upstreamSpec(spec, task, "noise::NoiseTask");
+    const TaskSpec* scene = upstreamSpec(spec, task, "scene::SceneTask");
     const std::string model = orElse(property(sonar, {"model"}), "physical"),
                       output = orElse(property(receiver, {"output"}), "intensity");
     return {{"bins", binsOf(model, output, receiver != nullptr)},
