@@ -158,7 +158,7 @@ std::map<std::string, std::string> propertiesOf(Deployment& deployment, const st
     return all;
 }
 
-/** Returns the tasks' properties that may be absent_value, as "task.property". */
+/** Returns the tasks' properties that may be absent, as "task.property". */
 std::set<std::string> optionalsOf(const Deployment& deployment, const std::set<std::string>& tasks) {
     std::set<std::string> optionals;
     for (const auto& task : deployment.tasks())
