@@ -3,6 +3,7 @@
 #include "components/deployer/log/ReplaySpec.hpp"
 #include "components/framework/config/DeploymentSpec.hpp"
 #include "components/log/Reader.hpp"
+#include "components/replay/ReplayTask.hpp"
 #include "types/samples/Pose.hpp"
 
 namespace insonify::deployer {
@@ -134,17 +135,6 @@ DeploymentSpec deploymentOf(const log::Reader& log) try {
     return {};
 }
 
-std::optional<types::Datum> recordedDatum(const log::Reader& log) {
-    const DeploymentSpec spec = deploymentOf(log);
-    if (spec.datum) return spec.datum;
-    for (const framework::TaskSpec& task : spec.tasks) {
-        types::Datum own;
-        const YAML::Node written = framework::child(task.properties, "datum");
-        if (written.IsDefined() && framework::ConfigReader("").read(written, "", own)) return own;
-    }
-    return {};
-}
-
 Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     Json meaning = {{"stream", stream.name}};
     if (log::holdsPings(stream)) {
@@ -162,7 +152,7 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     else if (stream.holds<types::SonarElements>())
         meaning.update(fieldsOf<types::SonarElements>());
     else if (stream.holds<types::PointCloud>())
-        meaning.update(cloudMeaning(recordedDatum(log)));
+        meaning.update(cloudMeaning(replay::recordedDatum(log)));
     else
         meaning["type"] = stream.type;
     if (const std::string names = stream.metadatum("insonify_objects"); !names.empty())
