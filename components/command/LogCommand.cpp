@@ -21,6 +21,7 @@
 #include "components/log/Files.hpp"
 #include "components/log/PoseSources.hpp"
 #include "components/recordings/RecordingReader.hpp"
+#include "components/replay/ReplayTask.hpp"
 #include "types/text/DidYouMean.hpp"
 
 namespace insonify::command {
@@ -183,7 +184,7 @@ Paths writeNpz(log::Reader& log, const Options& options) {
 Paths writeCsv(log::Reader& log, const Options& options) {
     noteSize(log, options.stream, options.to);
     std::optional<log::EarthColumns> earth;
-    if (const auto datum = recordedDatum(log)) earth = {*datum, options.utm};
+    if (const auto datum = replay::recordedDatum(log)) earth = {*datum, options.utm};
     if (options.utm && !earth)
         throw types::ConfigError(log.path(), "--utm",
                                  "needs a datum, the world's origin on the earth: the deployment in the log has none");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/execution/Activity.hpp"
 #include "components/log/Reader.hpp"
 
@@ -57,6 +58,40 @@ void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::
 
 }  // namespace
 
+std::optional<types::Datum> recordedDatum(const log::Reader& log) try {
+    const auto spec = framework::DeploymentSpec::parse(log.metadatum("insonify_deployment"), log.path().string());
+    if (spec.datum) return spec.datum;
+    for (const framework::TaskSpec& task : spec.tasks) {
+        types::Datum own;
+        const YAML::Node written = framework::child(task.properties, "datum");
+        if (written.IsDefined() && framework::ConfigReader("").read(written, "", own)) return own;
+    }
+    return {};
+} catch (const types::ConfigError&) {  // of another program
+    return {};
+}
+
+void ReplayTask::checkDatum(const log::Reader& log, types::Diagnostics& diagnostics) const {
+    const std::optional<types::Datum> recorded = recordedDatum(log);
+    if (!config->datum || !recorded || isSamePlace(*config->datum, *recorded)) return;
+    const auto isOfFixes = [&](const std::string& name) {
+        return std::ranges::any_of(config->poses, [&](const log::PoseSource& source) {
+            const log::Stream* const from = log.find(source.source);
+            return source.stream == name && from && from->holds<types::Fix>();
+        });
+    };
+    for (size_t i = 0; i < by_stream_.size(); ++i) {
+        const log::Stream& stream = log.streams()[i];
+        const bool is_in_world = stream.holds<types::Pose>() || stream.holds<types::PointCloud>();
+        if (by_stream_[i] && is_in_world && !isOfFixes(stream.name))
+            return diagnostics.push_back(
+                {"datum",
+                 fmt::format("is {}, and {} of the log counts from {}; give the deployment the log's datum, or "
+                             "render again from fixes",
+                             text(*config->datum), stream.name, text(*recorded))});
+    }
+}
+
 std::pair<std::unique_ptr<log::Reader>, types::Notices> ReplayTask::opened() const {
     auto log = log::openLog(inputPath(config->file), log::AtDamage::Stop, config->world_frame);
     types::Notices notices;
@@ -98,6 +133,7 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
 void ReplayTask::check(types::Diagnostics& diagnostics) const {
     try {
         const auto log = opened().first;
+        checkDatum(*log, diagnostics);
         const double span = log::LoggerClock(log->samples()).span(log->samples()).seconds();
         if (config->from > span)
             diagnostics.push_back(

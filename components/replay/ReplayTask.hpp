@@ -49,6 +49,10 @@ struct ReplayConfig {
     }
 };
 
+/** Returns the world's origin on the earth in the deployment that wrote a log, or in the first of its tasks that has
+ * one; none: unknown. */
+std::optional<types::Datum> recordedDatum(const log::Reader& log);
+
 /** Publishes a log's streams, sample by sample in the order of the file: a source.
  *
  *  Ports: an output for each connection that names a stream of the log, as in `replay.sonar.ping`. Samples keep their
@@ -109,6 +113,8 @@ private:
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
+    /** Reports a stream of poses or points that is played and counts from another datum than the world's. */
+    void checkDatum(const log::Reader& log, types::Diagnostics& diagnostics) const;
     /** Returns the log with the streams of `poses`, and what there is to say of these. Throws ConfigError. */
     std::pair<std::unique_ptr<log::Reader>, types::Notices> opened() const;
     void open();

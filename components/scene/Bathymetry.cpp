@@ -74,13 +74,22 @@ void checkUnit(const Survey& survey, const std::filesystem::path& file) {
             "has elevations in " + survey.unit() + "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
 }
 
-/** Checks that a world without a datum has metres, and that a mosaic has those of its survey. */
-void checkMap(const Survey& survey, const std::filesystem::path& file, bool may_be_degrees) {
-    if (survey.isInDegrees() && !may_be_degrees)
+/** Checks that a survey without a datum is in metres. */
+void checkMetres(const Survey& survey, const std::filesystem::path& file, bool has_datum) {
+    if (survey.isInDegrees() && !has_datum)
         throw types::ConfigError(
             file.string(), "",
             "is in degrees; give the deployment a datum, the world's origin on the earth, or project "
             "it to metres: gdalwarp -t_srs EPSG:32632 IN OUT, with the zone of yours");
+}
+
+void checkSameUnit(const Survey& mosaic, const std::filesystem::path& file, const Survey& survey) {
+    const auto unitOf = [](const Survey& map) { return map.isInDegrees() ? "degrees" : "metres"; };
+    if (mosaic.isInDegrees() != survey.isInDegrees())
+        throw types::ConfigError(file.string(), "",
+                                 fmt::format("is in {}, and the survey in {}; project it to the survey's map: gdalwarp "
+                                             "-t_srs EPSG:32632 IN OUT, with the map of yours",
+                                             unitOf(mosaic), unitOf(survey)));
 }
 
 /** @param tile size of a tile of the survey [m]. */
@@ -176,8 +185,8 @@ Bathymetry::Bathymetry(const BathymetryConfig& config, const std::filesystem::pa
       datum_(datum),
       places_(*survey_, config, datum),
       worker_places_(*survey_, config, datum) {
-    checkMap(*survey_, file, datum.has_value());
-    if (mosaic_) checkMap(*mosaic_, map, survey_->isInDegrees());
+    checkMetres(*survey_, file, datum.has_value());
+    if (mosaic_) checkSameUnit(*mosaic_, map, *survey_);
     checkUnit(*survey_, file);
     checkDatum(file);
     if (mosaic_) checkTexels(*mosaic_, map, double(config.tile) * glm::abs(survey_->spacing()));

@@ -184,6 +184,21 @@ TEST_F(EarthRunTest, SoundingsOfAWorldWithoutADatumAreAsBefore) {
     EXPECT_THAT(call({"check", "wall.yml"}), prints(Not(HasSubstr("datum"))));
 }
 
+TEST_F(EarthRunTest, PosesAboutAnotherDatumAreNotReplayed) {
+    run();
+    const std::string moved = "datum: {latitude_deg: 54.5001, longitude_deg: 10.25, height_m: 40}";
+    writeFile(folder_ / "moved.yml", replaced(earth_deployment, written_datum, moved));
+    const auto refused = isRefused(AllOf(HasSubstr("datum: is {latitude_deg: 54.5001,"),
+                                         HasSubstr("of the log counts from {latitude_deg: 54.5,")));
+    EXPECT_THAT(call({"replay", "out/x.0.log", "moved.yml", "--out", "a"}), refused);
+    EXPECT_THAT(call({"replay", "out/x.0.log", "moved.yml", "--pose", "vehicle.pose", "--out", "b"}), refused);
+    EXPECT_THAT(call({"replay", "out/x.0.log", "wall.yml", "--out", "c"}), succeeds());
+    EXPECT_THAT(call({"replay", "out/x.0.log", "moved.yml", "--pose", "fix.fix", "--out", "d"}), refused)
+        << "its soundings";
+    EXPECT_THAT(call({"replay", "out/x.0.log", "moved.yml", "--rerender", "--pose", "fix.fix", "--out", "e"}),
+                succeeds());
+}
+
 TEST_F(EarthRunTest, DatumsThatDoNotAgreeAreRefused) {
     EXPECT_THAT(checked("{water_surface: -5}", "{datum: {latitude_deg: 54.5, longitude_deg: 10.26, height_m: 40}}"),
                 isRefused(AllOf(HasSubstr("other.yml:"),

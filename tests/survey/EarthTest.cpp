@@ -255,7 +255,12 @@ TEST_F(EarthTest, ASceneHasOneZero) {
     config.bathymetry->easting = config.bathymetry->northing = std::nullopt;
     config.bathymetry->map.emplace().meaning.classes = {{"1", "rock"}};
     config.bathymetry->map->file = write({4326, {10.2, 54.3}, {1e-4, 1e-4}}, "classes.tif");
-    EXPECT_THAT(refusals(), testing::ElementsAre(AllOf(HasSubstr("bathymetry.map.file"), HasSubstr("is in degrees"))));
+    EXPECT_THAT(refusals(), testing::ElementsAre(AllOf(HasSubstr("bathymetry.map.file"),
+                                                       HasSubstr("is in degrees, and the survey in metres"))));
+    std::swap(config.bathymetry->file, config.bathymetry->map->file);
+    EXPECT_THAT(refusals(), testing::ElementsAre(AllOf(HasSubstr("bathymetry.map.file"),
+                                                       HasSubstr("is in metres, and the survey in degrees"))));
+    std::swap(config.bathymetry->file, config.bathymetry->map->file);
     config.bathymetry->map.reset();
     config.datum = types::Datum{10.2, 54.3, 0};
     EXPECT_THAT(refusals(), testing::ElementsAre(AllOf(HasSubstr("bathymetry.file"), HasSubstr("outside: give"))));

@@ -18,6 +18,7 @@
 #include "components/output/pictures/FanImage.hpp"
 #include "components/output/pictures/SideScanImage.hpp"
 #include "components/recordings/Xtf.hpp"
+#include "components/replay/ReplayTask.hpp"
 #include "types/samples/Image.hpp"
 #include "types/samples/Pose.hpp"
 
@@ -150,17 +151,6 @@ DeploymentSpec deploymentOf(const log::Reader& log) try {
     return {};
 }
 
-std::optional<types::Datum> recordedDatum(const log::Reader& log) {
-    const DeploymentSpec spec = deploymentOf(log);
-    if (spec.datum) return spec.datum;
-    for (const framework::TaskSpec& task : spec.tasks) {
-        types::Datum own;
-        const YAML::Node written = framework::child(task.properties, "datum");
-        if (written.IsDefined() && framework::ConfigReader("").read(written, "", own)) return own;
-    }
-    return {};
-}
-
 Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     Json meaning = {{"stream", stream.name}};
     if (log::holdsPings(stream)) {
@@ -178,7 +168,7 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     else if (stream.holds<types::SonarElements>())
         meaning.update(fieldsOf<types::SonarElements>());
     else if (stream.holds<types::PointCloud>())
-        meaning.update(cloudMeaning(recordedDatum(log)));
+        meaning.update(cloudMeaning(replay::recordedDatum(log)));
     else
         meaning["type"] = stream.type;
     if (const std::string names = stream.metadatum("insonify_objects"); !names.empty())

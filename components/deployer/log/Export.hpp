@@ -16,10 +16,6 @@ namespace insonify::deployer {
  *  unreadable. */
 framework::DeploymentSpec deploymentOf(const log::Reader& log);
 
-/** Returns the world's origin on the earth in the deployment that wrote the log, or in the first of its tasks that has
- *  one; none: unknown. */
-std::optional<types::Datum> recordedDatum(const log::Reader& log);
-
 /** Returns what the numbers of a stream mean, by the deployment in its metadata as written there. Settings from outside
  *  are in the run's properties log.
  *

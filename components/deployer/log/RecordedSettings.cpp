@@ -293,6 +293,7 @@ RecordedSettings recordedSettings(const log::Reader& log, const framework::Deplo
     for (const std::string& task : tasks) {
         if (names(set, task + ".quality")) settings.settled.insert(task + ".quality");
         if (seed) settings.settled.insert(task + ".seed");
+        if (spec.datum) settings.settled.insert(task + ".datum");  // where the world is now, not an effect
     }
     settings.addQualities(deployment, log, tasks);
     settings.addProperties(deployment, log, pings, tasks, from);
