@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::meshes {
 namespace {
