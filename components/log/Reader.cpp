@@ -161,7 +161,8 @@ std::vector<std::filesystem::path> filesOfBag(const std::filesystem::path& folde
     } catch (const YAML::Exception&) {  // the files are looked for
     }
     for (const auto& file : files)
-        if (*file.lexically_relative(folder).begin() == ".." || file.lexically_relative(folder).empty())
+        if (const auto below = file.lexically_normal().lexically_relative(folder.lexically_normal());
+            below.empty() || *below.begin() == "..")
             throw types::ConfigError(folder / "metadata.yaml", "relative_file_paths",
                                      "names " + file.string() + ", which is outside of the bag, and is not read");
     std::error_code none;
