@@ -171,7 +171,7 @@ std::optional<path> findInFuel(const FuelUrl& url) {
 
 }  // namespace
 
-ModelPaths::ModelPaths(const path& world) {
+ModelPaths::ModelPaths(const path& world, Reach reach) : reach_(reach) {
     const auto add = [this](const path& folder) {
         if (std::ranges::find(folders_, folder) == folders_.end()) folders_.push_back(folder);
     };
@@ -206,6 +206,7 @@ std::optional<path> ModelPaths::find(const std::string& uri, const path& named_i
 }
 
 bool ModelPaths::mayRead(const path& file, const path& named_in) const {
+    if (reach_ == Reach::Anywhere) return true;
     const auto isWithin = [plain = file.lexically_normal()](const path& folder) {
         const path below = plain.lexically_relative(folder.lexically_normal());
         return !below.empty() && *below.begin() != "..";

@@ -17,12 +17,14 @@ namespace insonify::meshes {
  *  - by name: packages of ROS in share/NAME of AMENT_PREFIX_PATH; packages and models (folders with a model.config)
  *    below ROS_PACKAGE_PATH and anywhere in the world's repository.
  *
- * Files outside of these are not read: a world of somebody else could name any file of this machine. Links are followed
- * in the folders of variables and of Gazebo; in the world's own they may not lead out of those.
+ * Files outside of these are not read, unless that is said: a world of somebody else could name any file of this
+ * machine. Links are followed in the folders of variables and of Gazebo; in the world's own they may not lead out of
+ * those.
  */
 class ModelPaths {
 public:
-    explicit ModelPaths(const std::filesystem::path& world);
+    enum class Reach { OwnPlaces, Anywhere };
+    explicit ModelPaths(const std::filesystem::path& world, Reach reach = Reach::OwnPlaces);
 
     const std::vector<std::filesystem::path>& folders() const { return folders_; }
 
@@ -44,6 +46,7 @@ private:
     std::vector<std::filesystem::path> folders_;
     std::vector<std::filesystem::path> trusted_;  ///< Of the user and of Gazebo.
     std::vector<std::filesystem::path> own_;      ///< Of the world.
+    Reach reach_;
     std::filesystem::path root_;  ///< Of the world's repository, or of its package's folder; empty: neither.
     mutable std::optional<std::map<std::string, std::filesystem::path>>
         named_;  ///< Packages and models, once searched.

@@ -67,6 +67,8 @@ TEST_F(ModelPathsTest, FilesOutsideOfThePlacesAreNotFound) {
         EXPECT_EQ(find(uri), "") << uri;
     EXPECT_THAT(meshes::ModelPaths(folder_ / "world/a.world").searched("x"),
                 testing::HasSubstr("files outside of these are not read"));
+    const meshes::ModelPaths anywhere(folder_ / "world/a.world", meshes::ModelPaths::Reach::Anywhere);
+    EXPECT_EQ(anywhere.find(at("secret.dae"), {}), folder_ / "secret.dae") << "as a Gazebo that runs names it";
     const Variable ours("INSONIFY_MODEL_PATH", at("one"));
     EXPECT_EQ(find(at("one/a.dae")), "one/a.dae");
     EXPECT_EQ(find("b.dae"), "one/b.dae") << "a link in a folder of the user, as colcon --symlink-install makes it";
