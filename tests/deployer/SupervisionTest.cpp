@@ -13,6 +13,7 @@
 #include "components/deployer/Supervision.hpp"
 #include "components/framework/Registry.hpp"
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Draw.hpp"
 #include "tests/support/Variable.hpp"
 
 using namespace insonify;
@@ -210,6 +211,12 @@ TEST(SupervisionTest, APortAnswersWhetherTheRunIsHealthy) {
          {std::string("x"), std::string(20'000, 'x'), std::string("POST / HTTP/1.1\r\n\r\n"), std::string("\r\n"),
           std::string(1, '\0')})
         EXPECT_THAT(answerTo(port, request), StartsWith("HTTP/1.1 200 OK\r\n"));
+    for (uint64_t seed = 1; seed <= 40; ++seed) {
+        test::Draw draw(seed);
+        std::string bytes;
+        for (int left = 1 + draw.upTo(3000); left > 0; --left) bytes += static_cast<char>(draw.upTo(256));
+        EXPECT_THAT(answerTo(port, bytes), StartsWith("HTTP/1.1 200 OK\r\n")) << seed;
+    }
     std::vector<int> silent;
     for (int i = 0; i < 40; ++i) silent.push_back(connected(port));
     EXPECT_THAT(answerTo(port), StartsWith("HTTP/1.1 200 OK\r\n")) << "clients that say nothing hold nobody up";
