@@ -45,6 +45,7 @@ Json connectionJson(const framework::Connection& connection) {
 
 Json validJson(const framework::Deployment& deployment) {
     Json json = {{"valid", true}, {"errors", Json::array()}, {"tasks", Json::array()}, {"connections", Json::array()}};
+    if (const auto& datum = deployment.spec().datum) json["datum"] = Json::parse(framework::flowYaml(*datum));
     json["warnings"] = deployment.spec().unused();
     for (const auto& task : deployment.spec().tasks) json["tasks"].push_back(taskJson(task));
     for (const auto& connection : deployment.connections()) json["connections"].push_back(connectionJson(connection));
@@ -67,6 +68,7 @@ void printGraph(framework::Deployment& deployment) {
     console::printResult("{}: valid, {}, {} tasks, {} connections\n", spec.file,
                          spec.lockstep ? "lockstep" : "realtime", deployment.tasks().size(),
                          deployment.connections().size());
+    if (spec.datum) console::printResult("datum: {}\n", text(*spec.datum));
     for (const std::string& line : spec.unused()) console::printResult("warning: {}\n", line);
     for (const framework::TaskContext* task : deployment.order()) {
         const framework::TaskSpec written = *framework::DeploymentSpec(spec).task(task->name());

@@ -139,7 +139,7 @@ struct Options {
     std::string from, until;
     std::string for_mcap;  ///< A given option that only an MCAP file takes; empty: none.
     log::McapConfig mcap;
-    bool json = false, metadata = false, ground = false;
+    bool json = false, metadata = false, ground = false, utm = false;
 };
 
 Json printInfo(log::Reader& log, bool json, bool metadata) {
@@ -206,12 +206,21 @@ Paths writeNpz(log::Reader& log, const Options& options) {
     return log::exportNpz(log, stream.name, options.to, text(meaningOf(log, stream)));
 }
 
+/** Writes text; soundings with their places on the earth where the log knows the datum. */
+Paths writeCsv(log::Reader& log, const Options& options) {
+    noteSize(log, options.stream, options.to);
+    std::optional<log::EarthColumns> earth;
+    if (const auto datum = recordedDatum(log)) earth = {*datum, options.utm};
+    if (options.utm && !earth)
+        throw types::ConfigError(log.path(), "--utm",
+                                 "needs a datum, the world's origin on the earth: the deployment in the log has none");
+    log::exportCsv(log, options.stream, options.to, earth);
+    return {options.to};
+}
+
 constexpr ExportFormat export_formats[] = {
     {".npz", "", writeNpz},
-    {".csv", "",
-     [](log::Reader& log, const Options& o) {
-         return noteSize(log, o.stream, o.to), log::exportCsv(log, o.stream, o.to), Paths{o.to};
-     }},
+    {".csv", "", writeCsv},
     {".png", "", [](log::Reader& log, const Options& o) { return exportPictures(log, o.stream, o.to, o.ground); }},
     {".mcap"},
     {".xtf", " (side-scan)",
@@ -221,15 +230,18 @@ constexpr ExportFormat export_formats[] = {
 
 Paths exportTo(log::Reader& log, Options options) {
     const fs::path to = options.to;
-    options.stream = log.streams()[log.indexOf(options.stream)].name;
+    const log::Stream& stream = log.streams()[log.indexOf(options.stream)];
+    options.stream = stream.name;
+    const ExportFormat* const format = types::findFormat(export_formats, to);
+    const std::string_view ending = format ? format->ending : "";
+    if (options.ground && ending != ".png") throw types::ConfigError("", "--ground", "is for pictures: --to FILE.png");
+    if (options.utm && (ending != ".csv" || !stream.holds<types::PointCloud>()))
+        throw types::ConfigError("", "--utm", "is for soundings as text: --stream of points, --to FILE.csv");
     if (!to.has_extension() || fs::is_directory(to)) {
         makeFolder(to);
         options.to = to / (options.stream + ".npz");
         return writeNpz(log, options);
     }
-    const ExportFormat* const format = types::findFormat(export_formats, to);
-    if (options.ground && (!format || format->ending != ".png"))
-        throw types::ConfigError("", "--ground", "is for pictures: --to FILE.png");
     makeFolderOf(to);
     if (!format)
         throw types::ConfigError(to, "--to", "may be a folder, or end in " + types::alternativeEndings(export_formats));
@@ -474,6 +486,7 @@ void addLogCommand(CLI::App& app, Action& action) {
     out->add_option("--to", options->to, files + "or a folder for FILE.npz")->required();
     out->add_flag("--ground", options->ground,
                   "a side-scan's pictures along a flat bottom, each line by the log's altitude at its time");
+    out->add_flag("--utm", options->utm, "soundings as text on the map of UTM, in place of latitudes and longitudes");
     addMcapOptions(*out, *options);
 
     CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);

@@ -232,7 +232,7 @@ std::string onlySource(const framework::DeploymentSpec& spec, log::Reader& log, 
         !log.metadatum("insonify_deployment").empty();  // of another deployment, which has pings as well
     if (is_own || hasStreamOf(spec, log)) return {};
     std::vector<log::FoundPoses> found = log::findPoses(log);
-    if (found.size() > 1 && options.datum.empty())
+    if (found.size() > 1 && options.datum.empty() && !spec.datum)
         std::erase_if(found, [](const log::FoundPoses& each) { return each.has_fixes; });
     if (found.empty()) return {};  // reported as a log of another deployment
     if (found.size() == 1) {
@@ -254,7 +254,7 @@ void choosePoses(log::Reader& log, Asked& options) {
         if (const std::string only = onlySource(spec, log, options); !only.empty()) given = {only};
     for (const std::string& each : given) {
         const log::PoseSource source = poseSource(options, each, bodyPorts(spec), spec.file);
-        log::addPoses(log, source, options.replay.world_frame);  // the task reports the notices
+        log::addPoses(log, source, options.replay.world_frame, spec.datum);  // the task reports the notices
         options.replay.poses.push_back(source);
     }
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "components/framework/Offers.hpp"
@@ -155,6 +156,7 @@ void Wiring::loadProperties(uint64_t seed) {
         if (task->properties().empty()) reader.refuseUnknown(spec.properties, path, {});
         if (reader.diagnostics().empty()) {
             seedTask(*task, spec, seed);
+            placeTask(*task, spec);
             continue;
         }
         unreliable_.push_back(task.get());
@@ -225,6 +227,29 @@ void Wiring::seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t se
                 } catch (const types::ConfigError& error) {  // the property has a narrower type and keeps its default
                     if (seed != 0) report(spec.place, path, error.diagnostics().front().message);
                 }
+}
+
+void Wiring::placeTask(const TaskContext& task, const TaskSpec& spec) {
+    const auto has = [](const PropertyInfo& info) { return info.name == "datum.latitude_deg"; };
+    const YAML::Node written = child(spec.properties, "datum");
+    const std::string path = spec.path() + ".properties.datum";
+    const bool is_misread = spec_.datum && std::isnan(spec_.datum->latitude_deg);
+    if (spec_.datum) origin_.emplace(*spec_.datum, "datum");
+    for (PropertiesBase* properties : task.properties()) {
+        if (std::ranges::none_of(properties->list(), has)) continue;
+        if (is_misread) return unreliable_.push_back(&task);
+        if (!written.IsDefined() || written.IsNull()) {
+            if (spec_.datum) properties->set("datum", flowYaml(*spec_.datum));
+            continue;
+        }
+        types::Datum own;
+        ConfigReader(spec_.file).read(written, path, own);  // without error, as the task has read it
+        if (!origin_) origin_.emplace(own, path);
+        if (!isSamePlace(own, origin_->first))
+            report(written, path,
+                   fmt::format("is {}, and {} is {}; a world has one origin: give only the deployment's datum",
+                               text(own), origin_->second, text(origin_->first)));
+    }
 }
 
 void Wiring::connect() {

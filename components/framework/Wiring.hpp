@@ -33,6 +33,9 @@ private:
     /** Sets the `seed` of a task that has this property: from `seed`, else from the deployment's unless a seed is
      *  written. A seed given by --set stays. */
     void seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed);
+    /** Sets the `datum` of a task that has this property to the deployment's, unless one is written. Reports one that
+     * is another place than the deployment's or than that of a task before. */
+    void placeTask(const TaskContext& task, const TaskSpec& spec);
     void connect();
     void connectOne(const ConnectionSpec& connection);
     OutputPortBase* findOutput(const ConnectionSpec& connection);
@@ -57,6 +60,7 @@ private:
     Graph graph_;
     types::Diagnostics diagnostics_, consequences_;
     std::vector<const TaskContext*> unreliable_;
+    std::optional<std::pair<types::Datum, std::string>> origin_;  ///< The datum of all tasks, and where it is written.
 };
 
 /** Returns the seed of a task, from that of the deployment or of `run --seed`: stable over runs, machines and versions;

@@ -13,6 +13,7 @@
 #include "components/log/NpzFile.hpp"
 #include "components/log/Reader.hpp"
 #include "components/log/TypeNames.hpp"
+#include "types/geometry/WorldFrame.hpp"
 
 namespace insonify::log {
 namespace {
@@ -379,22 +380,35 @@ void writeGrids(Reader& log, const std::string& stream, const std::filesystem::p
     csv.close();
 }
 
-/** Writes a line for each point, or for each cell. */
-void writePart(CsvFile& csv, const types::PointCloud& cloud, types::Time time) {
-    for (size_t k = 0; k < cloud.points.size(); ++k)
-        csv.line(time, cloud.points[k].x, cloud.points[k].y, cloud.points[k].z, cloud.intensity(k));
+/** Returns the columns of a point that has these in the world, with a comma before each. */
+std::string onEarth(const EarthColumns& earth, const glm::dvec3& point) {
+    const types::Datum at = geodetic(earth.datum, types::Axes{types::WorldFrame::Enu}.worldFromRock(point));
+    if (!earth.on_grid) return fmt::format(",{},{},{}", at.latitude_deg, at.longitude_deg, at.height_m);
+    const types::GridPlace on_map = gridPlace(earth.datum, at);
+    return fmt::format(",{},{},{},{}", on_map.easting, on_map.northing, at.height_m, on_map.epsg);
 }
-void writePart(CsvFile& csv, const types::DepthMap& map, types::Time time) {
+
+/** Writes a line for each point, or for each cell. */
+void writePart(CsvFile& csv, const types::PointCloud& cloud, types::Time time,
+               const std::optional<EarthColumns>& earth) {
+    for (size_t k = 0; k < cloud.points.size(); ++k) {
+        const glm::dvec3& p = cloud.points[k];
+        csv.line(time, p.x, p.y, p.z, fmt::format("{}{}", cloud.intensity(k), earth ? onEarth(*earth, p) : ""));
+    }
+}
+void writePart(CsvFile& csv, const types::DepthMap& map, types::Time time, const std::optional<EarthColumns>&) {
     for (size_t cell = 0; cell < map.distances.size(); ++cell)
         csv.line(time, cell / map.horizontal_size, cell % map.horizontal_size, map.distances[cell],
                  map.remissions.empty() ? 0 : map.remissions[cell]);
 }
 
 template <class T>
-void writeParts(Reader& log, const std::string& stream, const std::filesystem::path& path, const char* header) {
+void writeParts(Reader& log, const std::string& stream, const std::filesystem::path& path, const std::string& header,
+                const std::optional<EarthColumns>& earth = {}) {
     CsvFile csv(path, header);
-    log.forEach<T>(stream,
-                   [&](const T& sample, const SampleRef& at) { writePart(csv, sample, sampleTime(sample, at.time)); });
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
+        writePart(csv, sample, sampleTime(sample, at.time), earth);
+    });
     csv.close();
 }
 
@@ -472,11 +486,17 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
     return files;
 }
 
-void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path,
+               const std::optional<EarthColumns>& earth) {
     const Stream& declared = log.streams()[log.indexOf(stream)];
     if (holdsPings(declared)) return writePings(log, stream, path);
     if (declared.holds<types::PointCloud>())
-        return writeParts<types::PointCloud>(log, stream, path, "time,x,y,z,intensity");
+        return writeParts<types::PointCloud>(
+            log, stream, path,
+            std::string("time,x,y,z,intensity") + (!earth           ? ""
+                                                   : earth->on_grid ? ",easting,northing,height_m,epsg"
+                                                                    : ",latitude_deg,longitude_deg,height_m"),
+            earth);
     if (declared.holds<types::DepthMap>())
         return writeParts<types::DepthMap>(log, stream, path, "time,row,column,distance,remission");
     const auto write = [&]<class T>(std::type_identity<T>) {

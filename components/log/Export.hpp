@@ -1,9 +1,11 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "components/log/Reader.hpp"
+#include "types/geometry/Datum.hpp"
 
 namespace insonify::log {
 
@@ -27,12 +29,19 @@ namespace insonify::log {
 std::vector<std::filesystem::path> exportNpz(Reader& log, const std::string& stream, const std::filesystem::path& path,
                                              const std::string& meta = "");
 
+/** How points are placed on the earth. */
+struct EarthColumns {
+    types::Datum datum;    ///< Origin of the world.
+    bool on_grid = false;  ///< On the map of the datum's zone of UTM or UPS, not by latitude and longitude.
+};
+
 /** Writes a stream as text. Pings, beams and scans: `time,beam,bearing,bin,value`, one line per bin [s, 1, rad, 1, 1].
  *  Truth: the same with `elevation,object,share,hits,grazing,path,shadow` instead of the value. Returns:
  *  `time,beam,bearing` and their fields. Elements: `time,element,position,sample,in_phase,quadrature`. Points:
- *  `time,x,y,z,intensity`. Maps: `time,row,column,distance,remission`. Ranges: `time,range`. Poses:
- *  `time,x,y,z,qw,qx,qy,qz`, the columns of a trajectory file [s, m, 1]. Numbers, texts, times [s] and angles [rad]:
- *  `time,value`. Throws as exportNpz. */
-void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path);
+ *  `time,x,y,z,intensity`, with `earth` also `latitude_deg,longitude_deg,height_m` or `easting,northing,height_m,epsg`.
+ * Maps: `time,row,column,distance,remission`. Ranges: `time,range`. Poses: `time,x,y,z,qw,qx,qy,qz`, the columns of a
+ * trajectory file [s, m, 1]. Numbers, texts, times [s] and angles [rad]: `time,value`. Throws as exportNpz. */
+void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path,
+               const std::optional<EarthColumns>& earth = {});
 
 }  // namespace insonify::log

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view arrow = "->";
 
-bool hasFixes(const Stream& stream) { return stream.message == ros::NavSatFix::type_name; }
+bool hasFixes(const Stream& stream) { return stream.holds<types::Fix>(); }
 
 /** Calls `use(at, message)` for each sample of the streams for which `wanted` is true. Throws ConfigError for a message
  *  that cannot be decoded. */
@@ -97,15 +97,18 @@ void findTransforms(Reader& log, std::vector<FoundPoses>& found) {
     }
 }
 
+/** Returns the frame of a fix, which only messages name. Throws std::runtime_error for a damaged message. */
+std::string frameOfFixes(Reader& log, const SampleRef& at) {
+    if (log.streams()[at.stream].message != ros::NavSatFix::type_name) return "";
+    ros::NavSatFix fix;
+    ros::decode(log.bytesOf(at), fix);
+    return fix.header.frame_id;
+}
+
 /** Sets the frames that the first sample names. */
 void readFrames(Reader& log, size_t stream, FoundPoses& found) try {
     const auto first = std::ranges::find(log.samples(), stream, &SampleRef::stream);
-    if (found.has_fixes) {
-        ros::NavSatFix fix;
-        ros::decode(log.bytesOf(*first), fix);
-        found.child = fix.header.frame_id;
-        return;
-    }
+    if (found.has_fixes) return void(found.child = frameOfFixes(log, *first));
     types::Pose pose;
     log.read(*first, pose);
     found.parent = pose.target_frame;
@@ -264,15 +267,6 @@ types::Notices followFrames(Reader& log, const PoseSource& asked, types::WorldFr
     return notices;
 }
 
-types::Datum placeOf(const ros::NavSatFix& fix, double otherwise_m) {
-    return {fix.latitude, fix.longitude, std::isnan(fix.altitude) ? otherwise_m : fix.altitude};
-}
-
-bool isUsable(const ros::NavSatFix& fix) {
-    return fix.status.status > ros::NavSatStatus::no_fix && std::abs(fix.latitude) <= 90 &&
-           std::abs(fix.longitude) <= 360 && !(std::abs(fix.altitude) > 1e7);
-}
-
 /** Returns what there is to say of fixes that became poses. */
 types::Notices noticesOf(Reader& log, const PoseSource& asked, size_t omitted, glm::dvec3 first) {
     constexpr double far = 1e5;  // [m]
@@ -294,31 +288,47 @@ types::Notices noticesOf(Reader& log, const PoseSource& asked, size_t omitted, g
     return notices;
 }
 
-types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream) {
+/** Returns the datum of a source, or else of the world. */
+types::Datum datumOf(Reader& log, const PoseSource& asked, const std::optional<types::Datum>& world,
+                     const types::Datum& first) {
+    if (asked.datum && world && !isSamePlace(*asked.datum, *world))
+        refuseSource(
+            log, asked,
+            fmt::format("has the datum {}, and the deployment's is {}; a world has one origin: omit that of the "
+                        "source",
+                        text(*asked.datum), text(*world)));
+    if (asked.datum || world) return asked.datum ? *asked.datum : *world;
+    refuseSource(
+        log, asked,
+        fmt::format("has latitudes and longitudes, and needs a datum, the origin of the world; that of its "
+                    "first fix is datum: {{latitude_deg: {0:.9g}, longitude_deg: {1:.9g}, height_m: {2:.6g}}}, "
+                    "or --datum {0:.9g},{1:.9g},{2:.6g}",
+                    first.latitude_deg, first.longitude_deg, std::isnan(first.height_m) ? 0 : first.height_m));
+}
+
+types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream,
+                          const std::optional<types::Datum>& world) {
     std::optional<Attitudes> attitudes;
     if (!asked.orientation.empty()) attitudes.emplace(log, asked.orientation);
     const types::Axes enu{types::WorldFrame::Enu};
     Reader::MadePoses made;
-    size_t omitted = 0;
-    const std::string topic = log.streams()[stream].topic;
-    const auto take = [&](const SampleRef& at, const ros::NavSatFix& fix) {
-        if (!isUsable(fix)) return void(++omitted);
-        if (!asked.datum)
-            refuseSource(
-                log, asked,
-                fmt::format(
-                    "has latitudes and longitudes, and needs a datum, the origin of the world; that of its first fix "
-                    "is datum: {{latitude_deg: {0:.9g}, longitude_deg: {1:.9g}, height_m: {2:.6g}}}, or --datum "
-                    "{0:.9g},{1:.9g},{2:.6g}",
-                    fix.latitude, fix.longitude, placeOf(fix, 0).height_m));
-        made.child = fix.header.frame_id;
-        const types::Time time = stampOf(fix.header.stamp, at.time);
-        made.poses.push_back({at.number, time,
-                              enu.rockFromWorld(eastNorthUp(*asked.datum, placeOf(fix, asked.datum->height_m))),
+    std::optional<types::Datum> datum;
+    types::Fix fix;
+    for (const SampleRef& at : log.samples()) {
+        if (at.stream != stream) continue;
+        log.read(at, fix);
+        types::Datum place = fix.place();
+        if (!fix.hasPosition() || std::abs(place.height_m) > 1e7) continue;
+        if (!datum) {
+            datum = datumOf(log, asked, world, place);
+            made.child = frameOfFixes(log, at);
+        }
+        if (std::isnan(place.height_m)) place.height_m = datum->height_m;
+        const types::Time time = types::sampleTime(fix, at.time);
+        made.poses.push_back({at.number, time, enu.rockFromWorld(eastNorthUp(*datum, place)),
                               attitudes ? attitudes->at(time) : glm::dquat(1, 0, 0, 0)});
-    };
-    forEachMessage<ros::NavSatFix>(
-        log, [&](const Stream& each) { return each.topic == topic; }, take);
+    }
+    const size_t omitted = log.streams()[stream].count - made.poses.size();
     if (made.poses.empty()) refuseSource(log, asked, fmt::format("has no fix in its {} messages", omitted));
     const glm::dvec3 first = made.poses.front().position;
     Stream placed;
@@ -373,7 +383,8 @@ std::string tableOf(const std::vector<FoundPoses>& found) {
     return table;
 }
 
-types::Notices addPoses(Reader& log, const PoseSource& asked, types::WorldFrame foreign) {
+types::Notices addPoses(Reader& log, const PoseSource& asked, types::WorldFrame foreign,
+                        const std::optional<types::Datum>& world) {
     const Stream* const stream = log.find(asked.source);
     const bool is_pair = !stream && asked.source.find(arrow) != asked.source.npos;
     if (!stream && !is_pair) {
@@ -386,7 +397,7 @@ types::Notices addPoses(Reader& log, const PoseSource& asked, types::WorldFrame 
     const size_t index = stream ? static_cast<size_t>(stream - log.streams().data()) : 0;
     if (const Stream* const same = log.find(asked.stream); same && same != stream)
         log.rename(static_cast<size_t>(same - log.streams().data()), same->name + "_recorded");
-    if (!is_pair && hasFixes(log.streams()[index])) return placeFixes(log, asked, index);
+    if (!is_pair && hasFixes(log.streams()[index])) return placeFixes(log, asked, index, world);
     types::Notices notices = is_pair ? followFrames(log, asked, foreign) : renamePoses(log, asked, index);
     if (asked.datum || !asked.orientation.empty())
         notices.push_back(types::warning(

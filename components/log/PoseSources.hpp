@@ -21,7 +21,9 @@ struct PoseSource {
         visit({"source", "", "a topic or a stream of poses or of fixes, or two frames of tf, as in map->base_link"},
               self.source);
         visit({"stream", "", "name that the stream of these poses gets, which connections lead from"}, self.stream);
-        visit({"datum", "", "origin of the world, which a source of latitudes and longitudes needs"}, self.datum);
+        visit({"datum", "",
+               "origin of the world, which a source of latitudes and longitudes needs; absent: the deployment's"},
+              self.datum);
         visit(
             {"orientation", "",
              "topic or stream of an attitude or of poses that turns a body whose source has only positions; empty: it "
@@ -62,7 +64,9 @@ std::string tableOf(const std::vector<FoundPoses>& found);
  *  body turns by slerp, and outside of them not at all.
  *
  *  Returns what was omitted or assumed. Throws ConfigError, with the sources that there are, for a source that cannot
- *  be used. @param foreign axes of frames of tf */
-types::Notices addPoses(Reader& log, const PoseSource& asked, types::WorldFrame foreign);
+ *  be used, or whose datum is another place than the world's. @param foreign axes of frames of tf
+ *  @param world the datum of a source of fixes without its own */
+types::Notices addPoses(Reader& log, const PoseSource& asked, types::WorldFrame foreign,
+                        const std::optional<types::Datum>& world = {});
 
 }  // namespace insonify::log

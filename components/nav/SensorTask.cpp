@@ -78,9 +78,42 @@ void ImuTask::updateHook() {
     orientation_samples.write(orientationOf(measured));
 }
 
+void FixTask::check(types::Diagnostics& diagnostics) const try {
+    if (config->datum)
+        geodetic(*config->datum, {});
+    else
+        diagnostics.push_back({"datum",
+                               "is missing; give the deployment, next to its tasks, the world's origin on the earth: "
+                               "datum: {latitude_deg: 54.5, longitude_deg: 10.25}"});
+} catch (const types::ConfigError& error) {
+    diagnostics.push_back({"datum", error.diagnostics().front().message});
+}
+
+bool FixTask::configureHook() {
+    types::Diagnostics diagnostics;
+    check(diagnostics);
+    if (!diagnostics.empty()) throw types::ConfigError("", name() + ".datum", diagnostics.front().message);
+    cadence_ = Cadence(config->sensor.period);
+    receiver_.emplace(*config);
+    return true;
+}
+
+void FixTask::updateHook() {
+    types::Pose body, antenna;
+    if (!pose.readNew(body)) return;
+    if (!isUsable(body)) return error("pose: is not finite, or its orientation has no length");
+    if (state() == framework::TaskState::RunTimeError) recover();
+    if (!cadence_.isDue(body.time)) return;
+    types::place(body, config->sensor.mount, antenna);
+    const types::Pose measured = receiver_->measure(antenna);
+    fix.write(fixOf(measured, *config->datum));
+    position_samples.write(measured);
+}
+
 void registerTasks(framework::Registry& registry) {
     registry.add<ImuTask>("nav::ImuTask", "an inertial measurement unit with an attitude, from the vehicle's poses");
     registry.add<DvlTask>("nav::DvlTask", "a Doppler velocity log of four beams over the scene's bottom");
+    registry.add<FixTask>("nav::FixTask", "a receiver of satellites, from the vehicle's poses");
     registry.add<PressureTask>("nav::PressureTask", "a pressure gauge, from the vehicle's poses");
 }
 

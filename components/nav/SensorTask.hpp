@@ -8,6 +8,7 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/nav/Dvl.hpp"
+#include "components/nav/Fix.hpp"
 #include "components/nav/Imu.hpp"
 #include "components/nav/Motion.hpp"
 #include "components/nav/Pressure.hpp"
@@ -104,6 +105,34 @@ private:
     MotionTracker tracker_;
     Cadence cadence_;
     std::optional<Imu> unit_;
+};
+
+/** A receiver of satellites, from the poses of the body.
+ *
+ *  Input: `pose`, body in the world. Outputs, at the time of the pose: `fix`, the antenna's place on the earth by the
+ *  datum; the same in the world as `position_samples`, as Rock's drivers have it. Below the water surface both are
+ *  unknown, and the fix has no solution. The same seed and poses give the same errors; a replay repeats them if it
+ * starts with the first pose. A pose that is not finite leads to RunTimeError; the next valid pose recovers from it. */
+class FixTask final : public framework::TaskContext, public framework::Divisible {
+public:
+    using TaskContext::TaskContext;
+
+    framework::Properties<FixConfig> config{this};
+    framework::InputPort<types::Pose> pose{this, "pose", "body in the world: x north, y west, z up"};
+    framework::OutputPort<types::Fix> fix{this, "fix", "place on the earth, with its deviations"};
+    framework::OutputPort<types::Pose> position_samples{this, "position_samples", "position in the world, as Rock's"};
+
+    /** Reports a missing datum. */
+    void check(types::Diagnostics& diagnostics) const override;
+
+private:
+    bool configureHook() override;
+    bool startHook() override { return configureHook(); }
+    void updateHook() override;
+    void errorHook() override { updateHook(); }
+
+    Cadence cadence_;
+    std::optional<FixReceiver> receiver_;
 };
 
 /** Registers the tasks of this folder. */

@@ -63,7 +63,7 @@ std::pair<std::unique_ptr<log::Reader>, types::Notices> ReplayTask::opened() con
     types::Notices notices;
     if (!whole.notice.empty()) notices.push_back(whole.notice);
     for (const log::PoseSource& source : config->poses)
-        for (types::Notice& notice : log::addPoses(*log, source, config->world_frame))
+        for (types::Notice& notice : log::addPoses(*log, source, config->world_frame, config->datum))
             notices.push_back(std::move(notice));
     return {std::move(log), std::move(notices)};
 }

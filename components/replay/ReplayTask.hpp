@@ -29,6 +29,7 @@ struct ReplayConfig {
     bool loop = false;
     std::vector<log::PoseSource> poses = {};
     types::WorldFrame world_frame = types::WorldFrame::Enu;
+    std::optional<types::Datum> datum = {};
 
     static void describe(auto& self, auto& visit) {
         visit({"file", "", "pocolog, MCAP or .db3 file, or the folder of a bag, relative to the deployment"},
@@ -44,6 +45,8 @@ struct ReplayConfig {
         visit({"poses", "", "streams of poses that are made from others of the log: from topics, frames of tf, fixes"},
               self.poses);
         visit({"world_frame", "", "axes of poses in messages of other programs; ROS has ENU"}, self.world_frame);
+        visit({"datum", "", "the world's origin on the earth, for poses from fixes; absent: the deployment's"},
+              self.datum);
     }
 };
 

@@ -373,7 +373,8 @@ struct NavSatStatus {
         "int8 STATUS_UNKNOWN=-2\nint8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\n"
         "int8 STATUS_GBAS_FIX=2\nuint16 SERVICE_UNKNOWN=0\nuint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\n"
         "uint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\n";
-    static constexpr int8_t no_fix = -1, fix = 0;
+    static constexpr int8_t no_fix = -1, fix = 0, sbas_fix = 1, gbas_fix = 2;
+    static constexpr uint16_t gps = 1;
     int8_t status = fix;
     uint16_t service = 0;
 
@@ -391,6 +392,7 @@ struct NavSatFix {
     static constexpr const char* constants =
         "uint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
         "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\n";
+    static constexpr uint8_t unknown = 0, diagonal_known = 2;
     Header header;
     NavSatStatus status;
     double latitude = 0, longitude = 0, altitude = 0;

@@ -226,6 +226,46 @@ void convert(const FluidPressure& message, types::Pressure& pressure) {
     pressure.pascal = static_cast<float>(message.fluid_pressure);
 }
 
+void convert(const types::Fix& fix, const std::string& frame_id, NavSatFix& message) {
+    using Kind = types::FixKind;
+    message = {};
+    message.header = {toRos(fix.time), frame_id};
+    const bool is_rtk = fix.kind == Kind::RtkFixed || fix.kind == Kind::RtkFloat;
+    message.status.status = !fix.hasPosition()               ? NavSatStatus::no_fix
+                            : is_rtk                         ? NavSatStatus::gbas_fix
+                            : fix.kind == Kind::Differential ? NavSatStatus::sbas_fix
+                                                             : NavSatStatus::fix;
+    message.status.service = NavSatStatus::gps;
+    message.latitude = fix.latitude;
+    message.longitude = fix.longitude;
+    message.altitude = fix.place().height_m;
+    const glm::dvec3 deviations(fix.deviation_longitude, fix.deviation_latitude, fix.deviation_altitude);
+    if (isUnknown(deviations)) return;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const double deviation = deviations[static_cast<int>(axis)];
+        message.position_covariance[4 * axis] = deviation * deviation;
+    }
+    message.position_covariance_type = NavSatFix::diagonal_known;
+}
+
+void convert(const NavSatFix& message, types::Fix& fix) {
+    using Kind = types::FixKind;
+    fix = {};
+    fix.time = fromRos(message.header.stamp);
+    const int8_t status = message.status.status;
+    fix.kind = status <= NavSatStatus::no_fix     ? Kind::NoSolution
+               : status == NavSatStatus::fix      ? Kind::Autonomous
+               : status == NavSatStatus::sbas_fix ? Kind::Differential
+                                                  : Kind::RtkFixed;
+    fix.latitude = message.latitude;
+    fix.longitude = message.longitude;
+    fix.altitude = message.altitude;
+    if (message.position_covariance_type == NavSatFix::unknown) return;
+    fix.deviation_longitude = std::sqrt(message.position_covariance[0]);
+    fix.deviation_latitude = std::sqrt(message.position_covariance[4]);
+    fix.deviation_altitude = std::sqrt(message.position_covariance[8]);
+}
+
 glm::dvec3 worldFromRock(WorldFrame frame, glm::dvec3 v) { return Axes{frame}.worldFromRock(v); }
 glm::dvec3 rockFromWorld(WorldFrame frame, glm::dvec3 v) { return Axes{frame}.rockFromWorld(v); }
 

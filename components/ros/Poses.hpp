@@ -10,6 +10,7 @@
 #include "components/ros/Options.hpp"
 #include "types/geometry/Mount.hpp"
 #include "types/samples/Dvl.hpp"
+#include "types/samples/Fix.hpp"
 #include "types/samples/Imu.hpp"
 #include "types/samples/Pose.hpp"
 #include "types/samples/Pressure.hpp"
@@ -38,6 +39,12 @@ void convert(const Dvl& message, types::Dvl& dvl);
 /** Leaves the variance unknown. */
 void convert(const types::Pressure& pressure, const std::string& frame_id, FluidPressure& message);
 void convert(const FluidPressure& message, types::Pressure& pressure);
+
+/** Converts a position on the earth. The message has the height above the ellipsoid, three kinds of fix (autonomous,
+ *  differential, RTK), and neither the number of satellites nor the age of corrections. An unknown deviation makes the
+ *  covariance unknown; covariances between the axes are lost on the way back. */
+void convert(const types::Fix& fix, const std::string& frame_id, NavSatFix& message);
+void convert(const NavSatFix& message, types::Fix& fix);
 
 /** Converts a vector of the world from Rock's axes to those of a frame, and back. */
 glm::dvec3 worldFromRock(WorldFrame frame, glm::dvec3 v);

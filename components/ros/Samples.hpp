@@ -135,6 +135,8 @@ struct MessagesOf<types::Dvl> : Messages<types::Dvl, Dvl, Clock> {};
 template <>
 struct MessagesOf<types::Pressure> : Messages<types::Pressure, FluidPressure, Clock> {};
 template <>
+struct MessagesOf<types::Fix> : Messages<types::Fix, NavSatFix, Clock> {};
+template <>
 struct MessagesOf<types::Time> : Messages<types::Time, Time> {};
 template <>
 struct MessagesOf<types::Angle> : Messages<types::Angle, Float64> {};
@@ -223,6 +225,9 @@ inline void toMessage(const types::Dvl& dvl, const MessageOptions& options, Dvl&
 inline void toMessage(const types::Pressure& pressure, const MessageOptions& options, FluidPressure& message) {
     convert(pressure, options.frame_id, message);
 }
+inline void toMessage(const types::Fix& fix, const MessageOptions& options, NavSatFix& message) {
+    convert(fix, options.frame_id, message);
+}
 template <types::Stamped T>
 void toMessage(const T& sample, const MessageOptions&, Clock& message) {
     message = toClock(sample.time);
@@ -277,6 +282,7 @@ inline void toSample(const Dvl& message, const MessageOptions&, types::Dvl& dvl)
 inline void toSample(const FluidPressure& message, const MessageOptions&, types::Pressure& pressure) {
     convert(message, pressure);
 }
+inline void toSample(const NavSatFix& message, const MessageOptions&, types::Fix& fix) { convert(message, fix); }
 inline void toSample(const Time& message, const MessageOptions&, types::Time& time) { time = fromRos(message); }
 inline void toSample(const Float64& message, const MessageOptions&, types::Angle& angle) { angle = {message.data}; }
 template <class T, class Message>

@@ -12,6 +12,8 @@
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Clusters.hpp"
 #include "components/scene/SurfaceMaps.hpp"
+#include "types/geometry/Angle.hpp"
+#include "types/geometry/WorldFrame.hpp"
 #include "types/geometry/WorldPlaces.hpp"
 #include "types/text/ConfigError.hpp"
 
@@ -32,6 +34,9 @@ auto* libraryOpener(const std::filesystem::path& file) try {
 
 constexpr const char* floor_name = "bathymetry";  ///< Name of the object and of its material.
 constexpr double max_posts = 4096;                ///< Max posts of a window along each side [1].
+
+constexpr double far_off = -1e9;  ///< Column and row of places that are not on the map [1].
+const types::Axes enu_axes{types::WorldFrame::Enu};
 
 int wholeDown(double value) { return static_cast<int>(std::clamp(std::floor(value), -1e9, 1e9)); }
 
@@ -70,6 +75,15 @@ void checkUnit(const Survey& survey, const std::filesystem::path& file) {
             "has elevations in " + survey.unit() + "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
 }
 
+/** Checks that a world without a datum has metres, and that a mosaic has those of its survey. */
+void checkMap(const Survey& survey, const std::filesystem::path& file, bool may_be_degrees) {
+    if (survey.isInDegrees() && !may_be_degrees)
+        throw types::ConfigError(
+            file.string(), "",
+            "is in degrees; give the deployment a datum, the world's origin on the earth, or project "
+            "it to metres: gdalwarp -t_srs EPSG:32632 IN OUT, with the zone of yours");
+}
+
 /** @param tile size of a tile of the survey [m]. */
 void checkTexels(const Survey& mosaic, const std::filesystem::path& file, const glm::dvec2& tile) {
     const glm::dvec2 texels = tile / glm::abs(mosaic.spacing());
@@ -101,16 +115,74 @@ void MosaicConfig::check(types::Diagnostics& diagnostics) const {
     meaning.check(diagnostics);
 }
 
+SurveyPlaces::SurveyPlaces(const Survey& survey, const BathymetryConfig& config,
+                           const std::optional<types::Datum>& datum)
+    : survey_(survey), zero_(survey.place((survey.columns() - 1) / 2.0, (survey.rows() - 1) / 2.0)), datum_(datum) {
+    if (config.easting) zero_ = {*config.easting, *config.northing};
+    if (!datum) return;
+    to_map_ = survey.toMap();
+    to_earth_ = survey.toEarth();
+}
+
+void SurveyPlaces::toWorld(std::vector<glm::dvec3>& posts) const {
+    std::vector<glm::dvec2> map;
+    map.reserve(posts.size());
+    for (const glm::dvec3& post : posts) map.push_back(survey_.place(post.x, post.y));
+    if (datum_) to_earth_(map);
+    for (size_t i = 0; i < posts.size(); ++i) {
+        const double up = posts[i].z;
+        if (datum_) {
+            const double height = datum_->height_m + (std::isfinite(up) ? up : 0);
+            posts[i] = enu_axes.rockFromWorld(eastNorthUp(*datum_, {map[i].y, map[i].x, height}));
+            if (!std::isfinite(up)) posts[i].z = NAN;
+        } else {
+            posts[i] = {map[i].y - zero_.y, zero_.x - map[i].x, up};
+        }
+    }
+}
+
+glm::dvec3 SurveyPlaces::inWorld(const glm::dvec3& post) const {
+    std::vector<glm::dvec3> posts{post};
+    toWorld(posts);
+    return posts.front();
+}
+
+std::pair<glm::dvec2, glm::dvec2> SurveyPlaces::around(const glm::dvec3& place, double reach) const {
+    if (!datum_) {
+        const glm::dvec2 middle = survey_.postAt(zero_ + glm::dvec2(-place.y, place.x));
+        const glm::dvec2 half = reach / glm::abs(survey_.spacing());
+        return {middle - half, middle + half};
+    }
+    std::vector<glm::dvec2> rim;
+    for (const double x : {-reach, 0.0, reach})
+        for (const double y : {-reach, 0.0, reach}) {
+            const types::Datum at = geodetic(*datum_, enu_axes.worldFromRock(place + glm::dvec3(x, y, 0)));
+            rim.emplace_back(at.longitude_deg, at.latitude_deg);
+        }
+    to_map_(rim);
+    glm::dvec2 low = survey_.postAt(rim.front()), high = low;
+    for (const glm::dvec2& at : rim) {
+        if (!std::isfinite(at.x + at.y)) return {glm::dvec2(far_off), glm::dvec2(far_off)};
+        low = glm::min(low, survey_.postAt(at));
+        high = glm::max(high, survey_.postAt(at));
+    }
+    return {low, high};
+}
+
 Bathymetry::Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file,
-                       const std::filesystem::path& map)
+                       const std::filesystem::path& map, const std::optional<types::Datum>& datum)
     : config_(config),
       survey_(openSurvey(file, config.band)),
       mosaic_(config.map ? openSurvey(map, config.map->band) : nullptr),
-      zero_(survey_->place((survey_->columns() - 1) / 2.0, (survey_->rows() - 1) / 2.0)) {
-    if (config.easting) zero_ = {*config.easting, *config.northing};
+      datum_(datum),
+      places_(*survey_, config, datum),
+      worker_places_(*survey_, config, datum) {
+    checkMap(*survey_, file, datum.has_value());
+    if (mosaic_) checkMap(*mosaic_, map, survey_->isInDegrees());
     checkUnit(*survey_, file);
+    checkDatum(file);
     if (mosaic_) checkTexels(*mosaic_, map, double(config.tile) * glm::abs(survey_->spacing()));
-    const glm::dvec2 spacing = glm::abs(survey_->spacing());
+    const glm::dvec2 spacing = groundSpacing();
     const double posts = 2 * config.reach / std::min(spacing.x, spacing.y) + 2 * config.tile;
     if (posts > max_posts)
         throw types::ConfigError(
@@ -136,12 +208,50 @@ void Bathymetry::addMaterials(Scene& scene, const BathymetryConfig& config) {
     scene.geometry = std::move(geometry);
 }
 
-/** Returns the posts that enclose the floor within reach. The world's x is north of its origin, y west. */
+void Bathymetry::checkDatum(const std::filesystem::path& file) const {
+    if (!datum_) return;
+    const glm::dvec2 post = places_.around({}, 0).first;
+    const glm::dvec2 last(survey_->columns() - 0.5, survey_->rows() - 0.5);
+    if (post.x >= -0.5 && post.y >= -0.5 && post.x <= last.x && post.y <= last.y) return;
+    const glm::dvec2 a = survey_->place(-0.5, -0.5), b = survey_->place(last.x, last.y),
+                     at = survey_->place(post.x, post.y);
+    throw types::ConfigError(
+        file.string(), "",
+        fmt::format(
+            "reaches from easting {:.9g} to {:.9g} and from northing {:.9g} to {:.9g} on its map; the datum {} is {}"
+            "outside: give a datum within the survey, latitude and longitude not exchanged",
+            std::min(a.x, b.x), std::max(a.x, b.x), std::min(a.y, b.y), std::max(a.y, b.y), text(*datum_),
+            post.x == far_off ? "" : fmt::format("at {:.9g}, {:.9g}, ", at.x, at.y)));
+}
+
+glm::dvec2 Bathymetry::groundSpacing() const {
+    if (!datum_) return glm::abs(survey_->spacing());
+    const glm::dvec3 post(places_.around({}, 0).first, 0);
+    const auto to = [&](double columns, double rows) {
+        return glm::distance(places_.inWorld(post), places_.inWorld(post + glm::dvec3(columns, rows, 0)));
+    };
+    return {to(1, 0), to(0, 1)};
+}
+
+std::string Bathymetry::placeText() const {
+    if (!datum_) return "";
+    const glm::dvec2 post = places_.around({}, 0).first, at = survey_->place(post.x, post.y),
+                     above = survey_->postAt(at + glm::dvec2(0, std::abs(survey_->spacing().y)));
+    const glm::dvec3 north = places_.inWorld({above, 0}) - places_.inWorld({post, 0});
+    const std::string scale = survey_->isInDegrees() ? ""
+                                                     : fmt::format(", and a metre on it is {:.6f} m on the ground",
+                                                                   glm::length(north) / std::abs(survey_->spacing().y));
+    return fmt::format(
+        "bathymetry: the datum is at easting {:.10g}, northing {:.10g} of the map, whose north is turned by "
+        "{:.4f} degrees to the east{}",
+        at.x, at.y, types::degrees(std::atan2(-north.y, north.x)), scale);
+}
+
+/** Returns the posts that enclose the floor within reach. */
 PostWindow Bathymetry::postsAbout(const glm::dvec3& place) const {
-    const glm::dvec2 middle = survey_->postAt(zero_ + glm::dvec2(-place.y, place.x));
-    const glm::dvec2 half = config_.reach / glm::abs(survey_->spacing());
-    const int column = wholeDown(middle.x - half.x), row = wholeDown(middle.y - half.y);
-    return {column, row, wholeDown(middle.x + half.x) + 2 - column, wholeDown(middle.y + half.y) + 2 - row};
+    const auto [low, high] = places_.around(place, config_.reach);
+    const int column = wholeDown(low.x), row = wholeDown(low.y);
+    return {column, row, wholeDown(high.x) + 2 - column, wholeDown(high.y) + 2 - row};
 }
 
 PostWindow Bathymetry::wholeTiles(const PostWindow& posts) const {
@@ -189,13 +299,8 @@ void Bathymetry::addMap(const PostWindow& posts, const std::vector<int>& materia
         }
 }
 
-glm::dvec3 Bathymetry::inWorld(int column, int row) const {
-    const glm::dvec2 at = survey_->place(column, row);
-    return {at.y - zero_.y, zero_.x - at.x, 0};
-}
-
-glm::dvec3 Bathymetry::originOf(const Tile& tile) const {
-    const glm::dvec3 first = inWorld(tile.first * config_.tile, tile.second * config_.tile);
+glm::dvec3 Bathymetry::originOf(const Tile& tile, const SurveyPlaces& places) const {
+    const glm::dvec3 first = places.inWorld({tile.first * config_.tile, tile.second * config_.tile, 0});
     return types::isFarOut(first) ? first : glm::dvec3(0);
 }
 
@@ -203,16 +308,21 @@ types::MeshPtr Bathymetry::meshOf(const Tile& tile, const std::vector<int>& mate
     const PostWindow posts =
         clipped({tile.first * config_.tile, tile.second * config_.tile, config_.tile + 1, config_.tile + 1}, *survey_);
     if (posts.isEmpty()) return nullptr;
-    const std::vector<float> values = survey_->read(posts);
+    std::vector<float> values = survey_->read(posts);
     Surface surface;
-    const glm::dvec3 origin = originOf(tile);
+    const glm::dvec3 origin = originOf(tile, worker_places_);
+    std::vector<glm::dvec3> places;
+    places.reserve(values.size());
+    for (int row = 0; row < posts.rows; ++row)
+        for (int column = 0; column < posts.columns; ++column)
+            places.emplace_back(posts.column + column, posts.row + row,
+                                double(values[places.size()]) * (config_.positive_down ? -1 : 1));
+    worker_places_.toWorld(places);
     surface.positions.reserve(values.size());
-    for (int row = 0, i = 0; row < posts.rows; ++row)
-        for (int column = 0; column < posts.columns; ++column, ++i) {
-            const glm::dvec3 at = inWorld(posts.column + column, posts.row + row) - origin;
-            const double up = double(values[static_cast<size_t>(i)]) * (config_.positive_down ? -1 : 1);
-            surface.positions.emplace_back(at.x, at.y, up);
-        }
+    for (const glm::dvec3& at : places) {
+        if (!std::isfinite(at.x + at.y)) values[surface.positions.size()] = NAN;
+        surface.positions.emplace_back(at - origin);
+    }
     addTriangles(values, posts, survey_->spacing().x * survey_->spacing().y > 0, surface);
     types::Mesh mesh;
     mesh.name = floor_name;
@@ -318,7 +428,7 @@ types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::Geome
     for (const Tile& tile : tiles) {
         types::MeshPtr mesh = wait(tile);
         if (!mesh) continue;
-        const glm::dmat4 world_from_tile = glm::translate(glm::dmat4(1), originOf(tile));
+        const glm::dmat4 world_from_tile = glm::translate(glm::dmat4(1), originOf(tile, places_));
         geometry->objects.push_back({floor_name, static_cast<int>(geometry->meshes.size()), world_from_tile, true});
         geometry->meshes.push_back(std::move(mesh));
     }

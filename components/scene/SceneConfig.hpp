@@ -10,6 +10,7 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/SurfaceMaps.hpp"
 #include "components/scene/motion/Animator.hpp"
+#include "types/geometry/Datum.hpp"
 #include "types/geometry/Mount.hpp"
 
 namespace insonify::scene {
@@ -22,6 +23,7 @@ struct TargetConfig {
     std::optional<glm::dvec3> position;
     std::string attached_to;
     std::optional<double> strength_db;
+    std::optional<types::Datum> geodetic = {};
 
     static void describe(auto& self, auto& visit) {
         visit({"name", "", "of the target, unique"}, self.name);
@@ -30,6 +32,7 @@ struct TargetConfig {
                "turned, absent: the node's origin",
                -1e7, 1e7},
               self.position);
+        visit({"geodetic", "", "place on the earth, in place of position; it needs a datum"}, self.geodetic);
         visit({"attached_to", "", "node with which the target moves; absent: it is fixed"}, self.attached_to);
         visit({"strength_db", "dB re 1 m^2", "target strength, the same from all sides", -3000, 200}, self.strength_db);
     }
@@ -62,12 +65,14 @@ struct BathymetryConfig {
 
     static void describe(auto& self, auto& visit) {
         visit({"file", "",
-               "elevations on a map in metres: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of "
+               "elevations on a map: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of "
                "them (.vrt)"},
               self.file);
-        visit({"easting", "m", "of the world's zero on the map; absent: the middle of the survey", -1e8, 1e8},
+        visit({"easting", "m",
+               "of the world's zero on the map, in place of a datum; both absent: the middle of the survey", -1e8, 1e8},
               self.easting);
-        visit({"northing", "m", "of the world's zero on the map; absent: the middle of the survey", -1e8, 1e8},
+        visit({"northing", "m",
+               "of the world's zero on the map, in place of a datum; both absent: the middle of the survey", -1e8, 1e8},
               self.northing);
         visit({"band", "1", "of the file", 1, 1000}, self.band);
         visit({"positive_down", "", "true: the file has depths; false: elevations"}, self.positive_down);
@@ -83,6 +88,7 @@ struct SceneConfig {
     std::string file;
     std::optional<GazeboConfig> gazebo;
     std::optional<BathymetryConfig> bathymetry;
+    std::optional<types::Datum> datum;
     std::optional<Placement> placement;
     std::map<std::string, double> scale;
     Mount mount;
@@ -101,6 +107,10 @@ struct SceneConfig {
               self.gazebo);
         visit({"bathymetry", "", "the sea floor of a survey, read around the vehicle; absent: what file has"},
               self.bathymetry);
+        visit({"datum", "",
+               "the world's origin on the earth, for bathymetry and for targets with latitudes; absent: the "
+               "deployment's"},
+              self.datum);
         visit({"placement", "", "place of the scene of file or gazebo in the world; absent: the scene's own"},
               self.placement);
         visit(

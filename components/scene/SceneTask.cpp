@@ -18,6 +18,7 @@
 #include "components/scene/Drawings.hpp"
 #include "types/Elapsed.hpp"
 #include "types/geometry/Quaternion.hpp"
+#include "types/geometry/WorldFrame.hpp"
 #include "types/text/DidYouMean.hpp"
 
 namespace insonify::scene {
@@ -54,6 +55,21 @@ std::string attach(const Scene& scene, const TargetConfig& config, const std::ve
                   : fmt::format("is {}, which is scaled to nothing and has no axes; omit position", config.attached_to);
 }
 
+/** Sets the place in the world of a place on the earth, or returns why it has none. */
+std::string placeOnEarth(const types::Datum& place, const std::optional<types::Datum>& datum, glm::dvec3& in_world) {
+    constexpr double farthest = 1e5;  // [m]
+    if (!datum) return "needs the deployment's datum, the world's origin on the earth";
+    try {
+        in_world = types::Axes{types::WorldFrame::Enu}.rockFromWorld(eastNorthUp(*datum, place));
+    } catch (const types::ConfigError& error) {
+        return error.diagnostics().front().message;
+    }
+    const double distance = glm::length(in_world);
+    if (distance <= farthest) return "";
+    return fmt::format("is {:.0f} km from the datum {}; at most {:.0f}: are latitude and longitude exchanged?",
+                       distance / 1e3, text(*datum), farthest / 1e3);
+}
+
 constexpr std::string_view time_ending = ".time";
 
 constexpr const char* unusable =
@@ -85,8 +101,11 @@ glm::dmat4 rateOf(const types::Pose& pose, const glm::dmat4& place, const std::o
 
 void TargetConfig::check(types::Diagnostics& diagnostics) const {
     if (name.empty()) diagnostics.push_back({"name", "is missing; give each target a name of its own"});
-    if (!position && attached_to.empty())
-        diagnostics.push_back({"position", "is missing; give the target's place, or attached_to"});
+    if (!position && !geodetic && attached_to.empty())
+        diagnostics.push_back({"position", "is missing; give the target's place, or geodetic, or attached_to"});
+    if (geodetic && (position || !attached_to.empty()))
+        diagnostics.push_back({"geodetic", std::string("is given, and ") + (position ? "position" : "attached_to") +
+                                               " as well; give one"});
     if (!strength_db) diagnostics.push_back({"strength_db", "is missing; give the target strength [dB re 1 m^2]"});
 }
 
@@ -102,13 +121,17 @@ void SceneConfig::check(types::Diagnostics& diagnostics) const {
 }
 
 std::vector<PlacedTarget> placeTargets(const Scene& scene, const std::vector<TargetConfig>& targets,
-                                       const std::vector<int>& moving, types::Diagnostics& diagnostics) {
+                                       const std::vector<int>& moving, types::Diagnostics& diagnostics,
+                                       const std::optional<types::Datum>& datum) {
     std::vector<PlacedTarget> all;
     for (size_t i = 0; i < targets.size(); ++i) {
         const TargetConfig& config = targets[i];
         PlacedTarget& target = all.emplace_back();
         target.strength_db = config.strength_db.value_or(0);
-        if (config.attached_to.empty())
+        if (config.geodetic) {
+            const std::string diagnostic = placeOnEarth(*config.geodetic, datum, target.in_world);
+            if (!diagnostic.empty()) diagnostics.push_back({fmt::format("targets[{}].geodetic", i), diagnostic});
+        } else if (config.attached_to.empty())
             target.in_world = config.position.value_or(glm::dvec3(0));
         else if (const std::string diagnostic = attach(scene, config, moving, target); !diagnostic.empty())
             diagnostics.push_back({fmt::format("targets[{}].attached_to", i), diagnostic});
@@ -222,21 +245,26 @@ std::unique_ptr<Bathymetry> SceneTask::openSurvey() const {
     if (!config->bathymetry) return nullptr;
     const auto& map = config->bathymetry->map;
     return std::make_unique<Bathymetry>(*config->bathymetry, inputPath(config->bathymetry->file),
-                                        map ? inputPath(map->file) : std::filesystem::path());
+                                        map ? inputPath(map->file) : std::filesystem::path(), config->datum);
 }
 
 void SceneTask::check(types::Diagnostics& diagnostics) const try {
-    try {
-        openSurvey();
-    } catch (const types::ConfigError& error) {
-        for (const types::Diagnostic& each : error.diagnostics())
-            diagnostics.push_back({config->bathymetry->map && each.file == inputPath(config->bathymetry->map->file)
-                                       ? "bathymetry.map.file"
-                                       : "bathymetry.file",
-                                   each.text()});
-    }
+    const bool has_two_places = config->bathymetry && config->bathymetry->easting && config->datum;
+    if (has_two_places)
+        diagnostics.push_back({"bathymetry.easting", "is given with northing, and the world's zero has a datum, " +
+                                                         text(*config->datum) + "; give one of both"});
+    else
+        try {
+            openSurvey();
+        } catch (const types::ConfigError& error) {
+            for (const types::Diagnostic& each : error.diagnostics())
+                diagnostics.push_back({config->bathymetry->map && each.file == inputPath(config->bathymetry->map->file)
+                                           ? "bathymetry.map.file"
+                                           : "bathymetry.file",
+                                       each.text()});
+        }
     overrideMaterials(*load(), materials(diagnostics), diagnostics);
-    scene::placeTargets(*load(), config->targets, {}, diagnostics);
+    scene::placeTargets(*load(), config->targets, {}, diagnostics, config->datum);
     if (!config->animations.empty()) Animator(load(), config->animations, {}, diagnostics);
 } catch (const types::ConfigError& error) {
     for (const types::Diagnostic& each : error.diagnostics())
@@ -255,6 +283,7 @@ types::Notices SceneTask::notices() const {
     if (scene_) addOmissions(*scene_, all);
     if (!lay_.empty()) all.push_back(lay_);
     if (!side_.empty()) all.push_back(types::warning(side_));
+    if (const std::string place = bathymetry_ ? bathymetry_->placeText() : ""; !place.empty()) all.push_back(place);
     if (animator_) all.insert(all.end(), animator_->notices().begin(), animator_->notices().end());
     return all;
 }
@@ -306,7 +335,7 @@ bool SceneTask::configureHook() {
 void SceneTask::placeTargets(const Scene& scene, types::Diagnostics& diagnostics) {
     std::vector<int> moving;
     for (const Movable& movable : movables_) moving.push_back(movable.node);
-    targets_ = scene::placeTargets(scene, config->targets, moving, diagnostics);
+    targets_ = scene::placeTargets(scene, config->targets, moving, diagnostics, config->datum);
     std::vector<std::string> names;
     for (const TargetConfig& target : config->targets) names.push_back(target.name);
     target_names_ = std::make_shared<const std::vector<std::string>>(std::move(names));

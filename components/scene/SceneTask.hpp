@@ -38,10 +38,11 @@ struct PlacedTarget {
     glm::dvec3 offset{0};           ///< Place in the axes of that node, as in the configuration [m].
 };
 
-/** Places targets in a scene whose nodes `moving` move. Adds errors to `diagnostics` at path
- *  `targets[0].attached_to`. */
+/** Places targets in a scene whose nodes `moving` move. Adds errors to `diagnostics` at paths `targets[0].attached_to`
+ *  and `targets[0].geodetic`. @param datum the world's origin on the earth, which targets with latitudes need */
 std::vector<PlacedTarget> placeTargets(const Scene& scene, const std::vector<TargetConfig>& targets,
-                                       const std::vector<int>& moving, types::Diagnostics& diagnostics);
+                                       const std::vector<int>& moving, types::Diagnostics& diagnostics,
+                                       const std::optional<types::Datum>& datum = {});
 
 /** Holds a scene and publishes, for each pose of the vehicle, a snapshot of what the sonar has in front of it.
  *

@@ -43,14 +43,8 @@ std::string reason() {
     return text.empty() ? "GDAL gives no reason" : "GDAL: " + text;
 }
 
-/** Returns the metres per unit of the map. A file without a map is assumed to be in metres. */
-double metresOf(GDALDataset& dataset, const std::filesystem::path& file) {
-    const OGRSpatialReference* map = dataset.GetSpatialRef();
-    if (!map) return 1;
-    if (map->IsGeographic())
-        refuse(file, "is in degrees; project it to metres: gdalwarp -t_srs EPSG:32632 IN OUT, with the zone of yours");
-    return map->GetLinearUnits();
-}
+/** Returns the metres per unit of the map. A file without a map is assumed to be in metres; degrees count as such. */
+double metresOf(const OGRSpatialReference* map) { return map && !map->IsGeographic() ? map->GetLinearUnits() : 1; }
 
 /** Checks the size of raw binary files. GDAL reads missing values of a truncated file as 0, and would interpret a short
  *  .flt as bytes. */
@@ -86,8 +80,12 @@ class GdalSurvey final : public scene::Survey {
 public:
     GdalSurvey(const std::filesystem::path& file, int band);
     std::vector<float> read(const scene::PostWindow& window) const override;
+    Conversion toMap() const override { return conversion(true); }
+    Conversion toEarth() const override { return conversion(false); }
 
 private:
+    Conversion conversion(bool to_map) const;
+
     std::unique_ptr<GDALDataset, Close> dataset_;
     std::string file_;
     int band_;
@@ -117,11 +115,49 @@ GdalSurvey::GdalSurvey(const std::filesystem::path& file, int band) : file_(file
                "IN OUT");
     if (map[2] != 0 || map[4] != 0) refuse(file, "is rotated against north; rotate it: gdalwarp IN OUT");
     unit_ = dataset_->GetRasterBand(band)->GetUnitType();
-    const double metres = metresOf(*dataset_, file);
+    const OGRSpatialReference* const named = dataset_->GetSpatialRef();
+    is_in_degrees_ = named && named->IsGeographic();
+    const double metres = metresOf(named);
     spacing_ = metres * glm::dvec2(map[1], map[5]);
     first_ = metres * glm::dvec2(map[0], map[3]) + 0.5 * spacing_;
     if (!(std::abs(spacing_.x) > 0 && std::abs(spacing_.y) > 0 && std::isfinite(first_.x + first_.y)))
         refuse(file, fmt::format("has posts {} m and {} m apart", spacing_.x, spacing_.y));
+}
+
+scene::Survey::Conversion GdalSurvey::conversion(bool to_map) const {
+    const OGRSpatialReference* const named = dataset_->GetSpatialRef();
+    if (!named)
+        refuse(file_,
+               "does not name its map, which a datum needs; name it: gdal_edit.py -a_srs EPSG:32632 FILE, with the "
+               "code of "
+               "yours, or give easting and northing, and no datum");
+    const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
+    CPLErrorReset();
+    OGRSpatialReference map(*named), earth;
+    map.StripVertical();
+    earth.importFromEPSG(4326);
+    for (OGRSpatialReference* each : {&map, &earth}) each->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::shared_ptr<OGRCoordinateTransformation> made(
+        to_map ? OGRCreateCoordinateTransformation(&earth, &map) : OGRCreateCoordinateTransformation(&map, &earth),
+        OGRCoordinateTransformation::DestroyCT);
+    if (!made)
+        refuse(file_, std::string("is on the map ") + map.GetName() + ", which has no place on the earth; " + reason());
+    const double metres = metresOf(named), middle = place((columns_ - 1) / 2.0, 0).x;
+    return [made, to_map, metres, middle, in_degrees = is_in_degrees_](std::vector<glm::dvec2>& places) {
+        const CPLErrorHandlerPusher silent(CPLQuietErrorHandler);
+        std::vector<double> x, y;
+        for (const glm::dvec2& at : places) {
+            x.push_back(to_map ? at.x : at.x / metres);
+            y.push_back(to_map ? at.y : at.y / metres);
+        }
+        std::vector<int> done(places.size());
+        made->Transform(static_cast<int>(places.size()), x.data(), y.data(), nullptr, done.data());
+        for (size_t i = 0; i < places.size(); ++i) {
+            if (to_map) x[i] *= metres, y[i] *= metres;
+            if (to_map && in_degrees) x[i] += 360 * std::round((middle - x[i]) / 360);
+            places[i] = done[i] != 0 ? glm::dvec2(x[i], y[i]) : glm::dvec2(HUGE_VAL);
+        }
+    };
 }
 
 std::vector<float> GdalSurvey::read(const scene::PostWindow& window) const {

@@ -171,15 +171,22 @@ TEST_F(PeerTest, ReadsTheMeasurementsOfNavigationSensors) {
     dvl->beam_velocity_variances = {0.5, 0.5, types::Pose::unknown, 0.5};
     Publishing<types::Imu> imus({topicOut("in", "/imu", message_type<ros::Imu>)});
     Publishing<types::Pressure> pressures({topicOut("in", "/pressure", message_type<ros::FluidPressure>)});
+    types::Fix fix;
+    fix.time = imu.time;
+    fix.kind = types::FixKind::Autonomous;
+    fix.latitude = 54.5, fix.longitude = -10.25, fix.altitude = 41;
+    fix.deviation_latitude = 2, fix.deviation_longitude = 3, fix.deviation_altitude = 5;
+    Publishing<types::Fix> fixes({topicOut("in", "/fix", message_type<ros::NavSatFix>)});
     Publishing<types::DvlPtr> dvls({topicOut("in", "/dvl", message_type<ros::Dvl>)});
     Peer imu_peer("listen Imu /imu 240 1"), pressure_peer("listen FluidPressure /pressure 240 1"),
-        dvl_peer("listen Dvl /dvl 240 1");
+        dvl_peer("listen Dvl /dvl 240 1"), fix_peer("listen NavSatFix /fix 240 1");
     ASSERT_TRUE(becomesTrue([&] {
         imus.send(imu);
         pressures.send(pressure);
         dvls.send(dvl);
+        fixes.send(fix);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        return imu_peer.hasEnded() && pressure_peer.hasEnded() && dvl_peer.hasEnded();
+        return imu_peer.hasEnded() && pressure_peer.hasEnded() && dvl_peer.hasEnded() && fix_peer.hasEnded();
     }));
     const json felt = imu_peer.result()["first"], reported = dvl_peer.result()["first"];
     EXPECT_EQ(felt["linear_acceleration"]["z"], 9.75);
@@ -187,6 +194,10 @@ TEST_F(PeerTest, ReadsTheMeasurementsOfNavigationSensors) {
     EXPECT_EQ(felt["linear_acceleration_covariance"][4], 0.25);
     EXPECT_NEAR(felt["orientation"]["z"], std::sqrt(0.5), 1e-12) << "north, in a world of x east";
     EXPECT_EQ(pressure_peer.result()["first"]["fluid_pressure"], 201'325.5);
+    const json place = fix_peer.result()["first"];
+    EXPECT_EQ(place["longitude"], -10.25);
+    EXPECT_EQ(place["status"]["status"], 0);
+    EXPECT_EQ(place["position_covariance"], json({9, 0, 0, 0, 4, 0, 0, 0, 25}));
     EXPECT_EQ(reported["velocity"]["y"], 0.25) << "to starboard";
     EXPECT_EQ(reported["num_good_beams"], 3);
     EXPECT_EQ(reported["beam_velocities_valid"], true);

@@ -4,7 +4,7 @@ import typing
 from dataclasses import dataclass, field
 
 from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import array, float32, float64, int32, int64, sequence, uint8, uint32, uint64
+from cyclonedds.idl.types import array, float32, float64, int8, int32, int64, sequence, uint8, uint16, uint32, uint64
 
 
 def zero(kind):
@@ -59,6 +59,10 @@ Imu = message(
     "sensor_msgs", "Imu", header=Header, orientation=Quaternion, orientation_covariance=array[float64, 9],
     angular_velocity=Vector3, angular_velocity_covariance=array[float64, 9], linear_acceleration=Vector3,
     linear_acceleration_covariance=array[float64, 9])
+NavSatStatus = message("sensor_msgs", "NavSatStatus", status=int8, service=uint16)
+NavSatFix = message(
+    "sensor_msgs", "NavSatFix", header=Header, status=NavSatStatus, latitude=float64, longitude=float64,
+    altitude=float64, position_covariance=array[float64, 9], position_covariance_type=uint8)
 FluidPressure = message("sensor_msgs", "FluidPressure", header=Header, fluid_pressure=float64, variance=float64)
 Dvl = message(
     "marine_acoustic_msgs", "Dvl", header=Header, velocity_mode=uint8, dvl_type=uint8, velocity=Vector3,

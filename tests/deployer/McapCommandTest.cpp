@@ -120,7 +120,7 @@ TEST_F(McapCommandTest, MistakesAreNamed) {
     expectError({"log", "export", "out/wall.0.log", "--stream", "no.port", "--to", "x.mcap"},
                 "there is no such stream");
     ASSERT_EQ(call({"log", "export", "out/wall.0.log", "--to", "wall.mcap"}).code, 0);
-    expectError({"log", "export", "out/wall.0.log", "--to", "other.mcap"}, "describes another bag");
+    expectError({"log", "cut", "out/wall.0.log", "--to", "other.mcap"}, "describes another bag");
     expectError({"log", "export", "wall.mcap", "--to", "wall.mcap"}, "it is the log that is read");
     fs::resize_file(folder / "wall.mcap", fs::file_size(folder / "wall.mcap") - 5);
     expectError({"log", "check", "wall.mcap"},

@@ -7,6 +7,9 @@
 namespace insonify::framework {
 namespace {
 
+using testing::AllOf;
+using testing::HasSubstr;
+
 const std::atomic<bool> never{false};
 
 struct LockstepRun {
@@ -240,6 +243,81 @@ TEST(DeploymentRunTest, KeepsAWrittenSeed) {
     EXPECT_EQ(seedsOf("seed: 1", "seed: 5\n"), (Seeds{seedOf(5, "a"), 1})) << "the struct's default, but written";
     EXPECT_EQ(seedsOf("", "", 0, "b.seed=7"), (Seeds{seedOf(1, "a"), 7}));
     EXPECT_EQ(seedsOf("seed: 7", "", 0, "b.seed=null"), seedsOf("")) << "removed again";
+}
+
+struct PlacedConfig {
+    std::optional<types::Datum> datum;
+    static void describe(auto& self, auto& visit) { visit({"datum", "", "of the world"}, self.datum); }
+};
+struct Placed : TaskContext {
+    using TaskContext::TaskContext;
+    Properties<PlacedConfig> config{this};
+};
+
+/** Returns the datum of tasks a and b of a deployment with these keys of the document and properties, as texts. */
+std::string datumsOf(const std::string& document, const std::string& of_a = "", const std::string& of_b = "") {
+    Registry registry = test::testRegistry();
+    registry.add<Placed>("test::Placed", "is somewhere");
+    const auto task = [](const std::string& properties) {
+        return "{type: test::Placed, activity: {period: 1}, properties: {" + properties + "}}\n";
+    };
+    const Deployment deployment(
+        DeploymentSpec::parse(document + "tasks:\n  a: " + task(of_a) + "  b: " + task(of_b), "a.yml"), registry);
+    std::string texts;
+    for (const auto& made : deployment.tasks()) {
+        const auto& datum = dynamic_cast<Placed&>(*made).config->datum;
+        texts += (datum ? text(*datum) : "none") + " ";
+    }
+    return texts;
+}
+
+TEST(DeploymentRunTest, ADatumOfTheDeploymentIsThatOfAllTasksThatHaveOne) {
+    const std::string kiel = "{latitude_deg: 54.5, longitude_deg: 10.25, height_m: 40}";
+    EXPECT_EQ(datumsOf(""), "none none ");
+    EXPECT_EQ(datumsOf("datum: " + kiel + "\n"), kiel + " " + kiel + " ");
+    EXPECT_EQ(datumsOf("datum: " + kiel + "\n", "datum: " + kiel), kiel + " " + kiel + " ");
+    EXPECT_EQ(datumsOf("", "datum: " + kiel), kiel + " none ");
+    EXPECT_EQ(datumsOf("datum: {latitude_deg: -90, longitude_deg: 360}\n").substr(0, 60),
+              "{latitude_deg: -90, longitude_deg: 360, height_m: 0} {latitu");
+}
+
+TEST(DeploymentRunTest, TasksWithOtherDatumsAreRefused) {
+    const std::string kiel = "{latitude_deg: 54.5, longitude_deg: 10.25, height_m: 40}",
+                      faro = "{latitude_deg: 37, longitude_deg: -8, height_m: 50}";
+    EXPECT_THAT(test::refused([&] { datumsOf("datum: " + kiel + "\n", "", "datum: " + faro); }),
+                testing::ElementsAre(AllOf(testing::StartsWith("a.yml:4:"),
+                                           HasSubstr("tasks.b.properties.datum: is " + faro + ", and datum is " + kiel),
+                                           HasSubstr("a world has one origin"))));
+    EXPECT_THAT(test::refused([&] { datumsOf("", "datum: " + kiel, "datum: " + faro); }),
+                testing::ElementsAre(
+                    HasSubstr("tasks.b.properties.datum: is " + faro + ", and tasks.a.properties.datum is " + kiel)));
+}
+
+TEST(DeploymentRunTest, ADatumThatIsNoPlaceIsRefused) {
+    const std::pair<const char*, const char*> all[] = {
+        {"{latitude_deg: 91, longitude_deg: 0}", "datum.latitude_deg: is 91"},
+        {"{latitude_deg: -90.001, longitude_deg: 0}", "datum.latitude_deg: is -90.001"},
+        {"{latitude_deg: .nan, longitude_deg: 0}", "datum.latitude_deg: is .nan"},
+        {"{latitude_deg: 54, longitude_deg: .inf}", "datum.longitude_deg: is .inf"},
+        {"{latitude_deg: 54, longitude_deg: 361}", "datum.longitude_deg: is 361"},
+        {"{latitude_deg: 54, longitude_deg: 10, height_m: -20000}", "datum.height_m: is -20000"},
+        {"{latitude_deg: 54, longitude_deg: 10, height_m: 1e9}",
+         "datum.height_m: is 1000000000 m; may be -12000 to 100000 m"},
+        {"{latitude_deg: 54}", "datum.longitude_deg: is missing"},
+        {"{longitude_deg: 10}", "datum.latitude_deg: is missing"},
+        {"{}", "datum.latitude_deg: is missing"},
+        {"{latitude: 54, longitude: 10}", "datum.latitude: is not a key here; did you mean latitude_deg?"},
+        {"{latitude_deg: 54, longitude_deg: 10, latitude_deg: 54}", "latitude_deg"},
+        {"[54, 10]", "datum: "},
+        {"54", "datum: "},
+        {"{latitude_deg: 54 N, longitude_deg: 10}", "datum.latitude_deg: is 54 N"},
+        {"{latitude_deg: [54], longitude_deg: 10}", "datum.latitude_deg: "}};
+    for (const auto& [datum, words] : all) {
+        const auto whole = test::refused([&, given = datum] { datumsOf(std::string("datum: ") + given + "\n"); });
+        EXPECT_THAT(whole, testing::Contains(AllOf(testing::StartsWith("a.yml:1:"), HasSubstr(words)))) << datum;
+        const auto own = test::refused([&, given = datum] { datumsOf("", std::string("datum: ") + given); });
+        EXPECT_THAT(own, testing::Contains(HasSubstr(words))) << datum;
+    }
 }
 
 TEST(DeploymentRunTest, TheRunsSeedReachesEveryTaskWithASeed) {

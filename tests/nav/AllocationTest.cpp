@@ -4,6 +4,7 @@
 #include "tests/nav/Paths.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 
 namespace insonify::nav {
@@ -39,6 +40,13 @@ TEST(AllocationTest, ADopplerLogOverASceneAllocatesNothing) {
     const auto snapshot = std::make_shared<types::Snapshot>(test::snapshotOf(test::sceneOf({test::ground(-17)})));
     scene.port.write(snapshot);
     EXPECT_THAT(allocationsOf(task, &DvlTask::dvl), testing::IsEmpty());
+}
+
+TEST(AllocationTest, AReceiverOfSatellitesAllocatesNothing) {
+    FixTask task("fix");
+    task.config.set({.datum = types::Datum{54, 10, 0}, .water_surface = -100});
+    if (!test::refusalsOf(task).empty()) GTEST_SKIP() << "this build has no GeographicLib";
+    EXPECT_THAT(allocationsOf(task, &FixTask::fix), testing::IsEmpty());
 }
 
 TEST(AllocationTest, APressureGaugeAllocatesNothing) {

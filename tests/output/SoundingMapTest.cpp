@@ -51,9 +51,23 @@ TEST(SoundingMapTest, ForgetsOldPoints) {
     EXPECT_GT(map.pixel(0, 0).x - map.pixel(0, 10).x, 100) << "the chart fits the points that are left";
 }
 
+TEST(SoundingMapTest, TheTitleNamesTheDatum) {
+    SoundingMap map(1000, ColourMap::Gray);
+    map.add(cloudOf({{0, 0, -10}, {20, 0, -6}}));
+    types::Image bare, placed;
+    map.paint(bare);
+    map.setDatum(types::Datum{54.5, 10.25, 40});
+    map.paint(placed);
+    ASSERT_EQ(bare.size.height, placed.size.height);
+    const cv::Mat changed = test::pixelsOf(bare) != test::pixelsOf(placed);
+    EXPECT_GT(cv::countNonZero(changed.reshape(1)), 100);
+    const cv::Mat below = changed.rowRange(changed.rows / 2, changed.rows);
+    EXPECT_EQ(cv::countNonZero(below.clone().reshape(1)), 0) << "a title is at the top";
+}
+
 TEST(SoundingMapTest, MakesAPictureForEveryFewClouds) {
     SoundingMapTask task("chart");
-    SamplePictureConfig config;
+    SoundingMapConfig config;
     config.every = 3;
     config.width = 256;
     task.config.set(config);

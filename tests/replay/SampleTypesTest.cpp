@@ -190,6 +190,18 @@ types::Pressure made(std::type_identity<types::Pressure>) {
     pressure.pascal = 201'325.5f;
     return pressure;
 }
+types::Fix made(std::type_identity<types::Fix>) {
+    types::Fix fix;
+    fix.time = {1'500'000};
+    fix.kind = types::FixKind::Differential;
+    fix.latitude = 54.123456789;
+    fix.longitude = -10.987654321;
+    fix.altitude = 41.5;
+    fix.deviation_latitude = 0.3;
+    fix.deviation_longitude = 0.7;
+    fix.deviation_altitude = 1.1;
+    return fix;
+}
 types::Time made(std::type_identity<types::Time>) { return {1'234'567}; }
 types::Angle made(std::type_identity<types::Angle>) { return {0.75}; }
 std::string made(std::type_identity<std::string>) { return "a \"word\"\n"; }

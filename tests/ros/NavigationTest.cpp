@@ -152,5 +152,59 @@ TEST(NavigationTest, APressureIsInPascal) {
     EXPECT_EQ(again.time, types::Time{2'000'000});
 }
 
+TEST(NavigationTest, AFixIsOnTheEllipsoidWithItsCovarianceEastNorthUp) {
+    types::Fix fix;
+    fix.time = {2'000'000};
+    fix.kind = types::FixKind::Autonomous;
+    fix.latitude = 54.5;
+    fix.longitude = -10.25;
+    fix.altitude = 3;
+    fix.geoidal_separation = 40;
+    fix.deviation_latitude = 2;
+    fix.deviation_longitude = 3;
+    fix.deviation_altitude = 5;
+    NavSatFix message;
+    convert(fix, "gps", message);
+    EXPECT_EQ(message.header.frame_id, "gps");
+    EXPECT_EQ(message.altitude, 43);
+    EXPECT_THAT(message.position_covariance, testing::ElementsAre(9, 0, 0, 0, 4, 0, 0, 0, 25));
+    EXPECT_EQ(message.position_covariance_type, 2);
+    types::Fix again;
+    convert(message, again);
+    EXPECT_EQ(again.place(), fix.place());
+    EXPECT_EQ(again.deviation_longitude, 3);
+    fix.deviation_altitude = unknown;
+    convert(fix, "gps", message);
+    EXPECT_EQ(message.position_covariance_type, 0);
+    convert(message, again);
+    EXPECT_TRUE(std::isnan(again.deviation_latitude));
+}
+
+TEST(NavigationTest, TheKindOfAFixIsItsStatus) {
+    using Kind = types::FixKind;
+    const std::pair<Kind, int> all[] = {{Kind::NoSolution, -1}, {Kind::Autonomous, 0}, {Kind::Differential, 1},
+                                        {Kind::Invalid, -1},    {Kind::RtkFixed, 2},   {Kind::RtkFloat, 2},
+                                        {Kind::Autonomous2d, 0}};
+    for (const auto& [kind, status] : all) {
+        types::Fix fix;
+        fix.kind = kind;
+        fix.latitude = fix.longitude = 1;
+        NavSatFix message;
+        convert(fix, "gps", message);
+        EXPECT_EQ(message.status.status, status);
+        types::Fix again;
+        convert(message, again);
+        EXPECT_EQ(again.hasPosition(), fix.hasPosition());
+    }
+    types::Fix nowhere;
+    nowhere.kind = Kind::Autonomous;
+    NavSatFix message;
+    convert(nowhere, "gps", message);
+    EXPECT_EQ(message.status.status, -1) << "its latitude is unknown";
+    message.status.status = -2;
+    convert(message, nowhere);
+    EXPECT_EQ(nowhere.kind, Kind::NoSolution) << "unknown, of newer messages";
+}
+
 }  // namespace
 }  // namespace insonify::ros

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/scene/SceneTaskFiles.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/geometry/Angle.hpp"
 
 namespace insonify::scene {
@@ -84,6 +85,40 @@ TEST_F(TargetsTest, ReportsErrorsWithTheirPlace) {
                                     HasSubstr("boat")));
     config_.targets = {{"on dot", glm::dvec3(1, 0, 0), "dot", 0}};
     EXPECT_THAT(diagnostic(), HasSubstr("scene.targets[0].attached_to: is dot, which is scaled to nothing"));
+}
+
+TEST_F(TargetsTest, APlaceOnTheEarthIsWhereTheDatumHasIt) {
+    const types::Datum datum{54.5, 10.25, 40};
+    if (!test::refused([&] { geodetic(datum, {}); }).empty()) GTEST_SKIP() << "this build has no GeographicLib";
+    TargetConfig wreck;
+    wreck.name = "wreck";
+    wreck.strength_db = -20;
+    wreck.geodetic = geodetic(datum, {300, 1200, -25});
+    config_.targets = {wreck};
+    config_.datum = datum;
+    start();
+    expectClose(pingAt(1)->targets[0].position, {1200, -300, -25});
+}
+
+TEST_F(TargetsTest, PlacesOnTheEarthThatHaveNoMeaningAreRefused) {
+    const types::Datum datum{54.5, 10.25, 40};
+    if (!test::refused([&] { geodetic(datum, {}); }).empty()) GTEST_SKIP() << "this build has no GeographicLib";
+    TargetConfig wreck;
+    wreck.name = "wreck";
+    wreck.strength_db = -20;
+    wreck.geodetic = datum;
+    config_.targets = {wreck};
+    EXPECT_THAT(diagnostic(), HasSubstr("targets[0].geodetic: needs the deployment's datum"));
+    config_.datum = types::Datum{10.25, 54.5, 0};
+    EXPECT_THAT(diagnostic(), AllOf(HasSubstr("km from the datum {latitude_deg: 10.25"), HasSubstr("exchanged?")));
+    config_.datum = datum;
+    EXPECT_EQ(diagnostic(), "");
+    wreck.position = glm::dvec3(0);
+    EXPECT_THAT(test::refusalsOf(wreck), testing::ElementsAre(HasSubstr("geodetic: is given, and position as well")));
+    wreck.position.reset();
+    wreck.attached_to = "boat";
+    EXPECT_THAT(test::refusalsOf(wreck),
+                testing::ElementsAre(HasSubstr("geodetic: is given, and attached_to as well")));
 }
 
 }  // namespace

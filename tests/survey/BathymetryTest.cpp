@@ -416,7 +416,7 @@ TEST_F(BathymetryTest, FilesThatAreNoSurveyAreRefused) {
          {Case{(folder_ / "none.tif").string(), "is not there"}, Case{folder_.path().string(), "may be GeoTIFF"},
           Case{write("text.txt", "a text"), "supported file format.); may be GeoTIFF"},
           Case{write("empty.tif", ""), "may be GeoTIFF, BAG"},
-          Case{grid("degrees", 9, 9), "is in degrees; project it to metres: gdalwarp"},
+          Case{grid("degrees", 9, 9), "or project it to metres: gdalwarp"},
           Case{write("nowhere.vrt", with("")), "has no place on the map"},
           Case{shortened(grid("short", 9, 9)), "ends too early: has 162 of 324 bytes"},
           Case{write("turned.vrt", with("<GeoTransform>0, 2, 0.1, 0, 0.1, -2</GeoTransform>")),

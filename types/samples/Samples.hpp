@@ -14,6 +14,7 @@
 #include "types/geometry/Angle.hpp"
 #include "types/samples/DepthMap.hpp"
 #include "types/samples/Dvl.hpp"
+#include "types/samples/Fix.hpp"
 #include "types/samples/Image.hpp"
 #include "types/samples/Imu.hpp"
 #include "types/samples/PointCloud.hpp"
@@ -32,7 +33,7 @@ namespace insonify::types {
 
 using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, SonarElements, SonarDetections,
                                SonarSettings, Pose, Image, PointCloud, DepthMap, Range, ImuSensors, Imu, Dvl, Pressure,
-                               Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
+                               Fix, Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
 
 /** The type that a port passes for a T: a shared pointer for samples with `shared`, otherwise T itself. */
 template <class T>
@@ -198,6 +199,17 @@ struct Columns<Pressure> {
     template <class Visit>
     static void forEach(const Pressure& sample, Visit&& visit) {
         visit("pascal", std::array{"pascal"}, std::array{sample.pascal});
+    }
+};
+template <>
+struct Columns<Fix> {
+    template <class Visit>
+    static void forEach(const Fix& sample, Visit&& visit) {
+        visit("position", std::array{"latitude", "longitude", "altitude"},
+              std::array{sample.latitude, sample.longitude, sample.altitude});
+        visit("deviation", std::array{"deviation_latitude", "deviation_longitude", "deviation_altitude"},
+              std::array{sample.deviation_latitude, sample.deviation_longitude, sample.deviation_altitude});
+        visit("kind", std::array{"kind"}, std::array{static_cast<int32_t>(sample.kind)});
     }
 };
 struct AnyColumns {

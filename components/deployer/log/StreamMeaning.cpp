@@ -119,9 +119,11 @@ Json fieldsOf() {
     return fields;
 }
 
-Json cloudMeaning() {
-    return {{"points", "in the world, x north, y west, z up [m]"},
-            {"intensity", "value of the strongest bin of each return, in the units of the sonar's bins"}};
+Json cloudMeaning(const std::optional<types::Datum>& datum) {
+    Json meaning = {{"points", "in the world, x north, y west, z up [m]"},
+                    {"intensity", "value of the strongest bin of each return, in the units of the sonar's bins"}};
+    if (datum) meaning["datum"] = Json::parse(framework::flowYaml(*datum));
+    return meaning;
 }
 
 }  // namespace
@@ -129,6 +131,17 @@ Json cloudMeaning() {
 DeploymentSpec deploymentOf(const log::Reader& log) try {
     return DeploymentSpec::parse(log.metadatum("insonify_deployment"), log.path().string());
 } catch (const types::ConfigError&) {
+    return {};
+}
+
+std::optional<types::Datum> recordedDatum(const log::Reader& log) {
+    const DeploymentSpec spec = deploymentOf(log);
+    if (spec.datum) return spec.datum;
+    for (const framework::TaskSpec& task : spec.tasks) {
+        types::Datum own;
+        const YAML::Node written = framework::child(task.properties, "datum");
+        if (written.IsDefined() && framework::ConfigReader("").read(written, "", own)) return own;
+    }
     return {};
 }
 
@@ -149,7 +162,7 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     else if (stream.holds<types::SonarElements>())
         meaning.update(fieldsOf<types::SonarElements>());
     else if (stream.holds<types::PointCloud>())
-        meaning.update(cloudMeaning());
+        meaning.update(cloudMeaning(recordedDatum(log)));
     else
         meaning["type"] = stream.type;
     if (const std::string names = stream.metadatum("insonify_objects"); !names.empty())

@@ -9,6 +9,10 @@ namespace insonify::deployer {
  *  unreadable. */
 framework::DeploymentSpec deploymentOf(const log::Reader& log);
 
+/** Returns the world's origin on the earth in the deployment that wrote the log, or in the first of its tasks that has
+ *  one; none: unknown. */
+std::optional<types::Datum> recordedDatum(const log::Reader& log);
+
 /** Returns what the numbers of a stream mean, by the deployment in its metadata as written there. Settings from outside
  *  are in the run's properties log.
  *
@@ -16,7 +20,7 @@ framework::DeploymentSpec deploymentOf(const log::Reader& log);
  *  null, range_m, bin_duration, frame, mount: {position [m], roll_deg, pitch_deg, yaw_deg}, quaternion_order, seed};
  *  what is not configured is null. Poses: {stream, position, orientation, quaternion_order}. Truth, returns and
  *  elements of pings: {stream, a text for each field; objects: the names of the truth's objects, where known}. Points:
- *  {stream, points, intensity}. Others: {stream, type}. */
+ *  {stream, points, intensity; datum: the world's origin, where known}. Others: {stream, type}. */
 Json meaningOf(const log::Reader& log, const log::Stream& stream);
 
 /** Returns the stream if it has at least one ping. Throws types::ConfigError for other streams, with the expectation

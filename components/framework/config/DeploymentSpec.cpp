@@ -110,6 +110,7 @@ struct DocumentKeys {
     Schedule schedule = Schedule::Lockstep;
     double start_time = 1, watchdog = 10;
     uint64_t seed = 1;
+    std::optional<types::Datum> datum;
     bool lock_memory = false;
     std::string ros_namespace, frame_prefix;
     std::vector<std::string> libraries;
@@ -119,6 +120,8 @@ struct DocumentKeys {
         visit({"schedule", "", "simulated time or the wall clock"}, self.schedule);
         visit({"start_time", "s", "start of simulated time", 0, 4e9}, self.start_time);
         visit({"seed", "1", "a task without a seed gets a hash of this one and its name"}, self.seed);
+        visit({"datum", "", "the place on the earth that is the world's origin: x is true north there, z up"},
+              self.datum);
         visit({"watchdog", "s", "in realtime, max duration of a cycle before it is reported", 1e-3, 1e6},
               self.watchdog);
         visit({"lock_memory", "", "in realtime, all memory stays resident"}, self.lock_memory);
@@ -238,6 +241,9 @@ DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string&
     spec.lockstep = keys.schedule == Schedule::Lockstep;
     spec.start_time = keys.start_time;
     spec.seed = keys.seed;
+    spec.datum = keys.datum;
+    for (const types::Diagnostic& diagnostic : reader.diagnostics())
+        if (diagnostic.path.starts_with("datum")) spec.datum = types::Datum{};
     spec.watchdog = keys.watchdog;
     spec.lock_memory = keys.lock_memory;
     spec.libraries = keys.libraries;

@@ -2,6 +2,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/config/ConnPolicy.hpp"
 #include "components/framework/execution/Activity.hpp"
+#include "types/geometry/Datum.hpp"
 #include "types/text/RosNames.hpp"
 
 namespace insonify::framework {
@@ -57,6 +59,7 @@ struct DeploymentSpec {
     bool lockstep = true;
     double start_time = 1;               ///< Start of simulated time [s].
     uint64_t seed = 1;                   ///< Source of the seeds of tasks without their own `seed`, see seedOf.
+    std::optional<types::Datum> datum;   ///< Of the world, also of tasks without their own; NaN: misread.
     double watchdog = 10;                ///< In realtime, the max duration of a cycle before it is reported [s].
     bool lock_memory = false;            ///< In realtime, keeps all memory resident.
     std::vector<std::string> libraries;  ///< Shared objects, relative to the deployment file.

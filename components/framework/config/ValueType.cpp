@@ -37,7 +37,11 @@ public:
     std::string name() const override {
         return std::floating_point<T> ? "double" : std::is_signed_v<T> ? "integer" : "integer >= 0";
     }
-    std::string text(const void* value) const override { return fmt::format("{}", this->of(value)); }
+    /** Returns nothing for a number that must be given, which is NaN until then. */
+    std::string text(const void* value) const override {
+        const T number = this->of(value);
+        return number != number ? "" : fmt::format("{}", number);
+    }
     /** A number cannot be `null`: "nan" would not be JSON. */
     void emit(YAML::Emitter& out, const void* value) const override {
         if (std::isfinite(static_cast<double>(this->of(value))))

@@ -83,7 +83,9 @@ void SoundingMap::drawLabels(cv::Mat& canvas, const Bounds& bounds) const {
     for (double x = step * std::ceil(bounds.low.x / step); x <= bounds.high.x; x += step)
         if (const double row = pixel(x, 0).y; row > Chart::colour_bar.y + colour_bar_size.height + 20)
             overlay.text(fmt::format("x {:.12g}", x + 0.0), {Chart::left_margin - 8.0, row}, Anchor::Right);
-    Chart::addTitle(overlay, fmt::format("{} soundings, x north, y west [m], colour: height", bounds.points));
+    const std::string origin =
+        datum_ ? fmt::format(" of {:.7f} N {:.7f} E", datum_->latitude_deg, datum_->longitude_deg) : "";
+    Chart::addTitle(overlay, fmt::format("{} soundings, x north, y west{} [m], colour: height", bounds.points, origin));
     overlay.finish();
     overlay.blend(canvas);
 }

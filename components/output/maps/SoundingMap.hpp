@@ -1,8 +1,10 @@
 #pragma once
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "components/output/maps/Chart.hpp"
+#include "types/geometry/Datum.hpp"
 #include "types/samples/Image.hpp"
 #include "types/samples/PointCloud.hpp"
 
@@ -18,6 +20,8 @@ public:
 
     SoundingMap(uint32_t width, ColourMap colour_map) : chart_(width, colour_map) {}
 
+    /** Sets the world's origin on the earth, which the title then names. */
+    void setDatum(const std::optional<types::Datum>& datum) { datum_ = datum; }
     /** Adds the points of a ping; points that are not finite are ignored. */
     void add(const types::PointCloudPtr& cloud);
     /** @param picture becomes a BGR image, 8 bits a channel, with the newest cloud's time; its memory is reused */
@@ -44,8 +48,9 @@ private:
     Chart chart_;
     std::vector<std::vector<glm::dvec3>> clouds_;  ///< A ring buffer, whose memory is reused.
     size_t next_ = 0;                              ///< Index of the next cloud.
-    types::Time time_;                             ///< Time of the newest cloud.
-    cv::Point2d centre_;                           ///< x north, y west of the middle of the chart [m].
+    std::optional<types::Datum> datum_;
+    types::Time time_;    ///< Time of the newest cloud.
+    cv::Point2d centre_;  ///< x north, y west of the middle of the chart [m].
     double pixels_per_m_ = 1;
 };
 

@@ -8,6 +8,7 @@ template <class Picture>
 bool SamplePictureTask<Picture>::configureHook() {
     prepareFiles(*config);
     picture_ = std::make_unique<Picture>(config->width, config->colour_map);
+    if constexpr (std::is_same_v<Picture, SoundingMap>) picture_->setDatum(config->datum);
     return true;
 }
 

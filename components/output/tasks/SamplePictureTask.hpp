@@ -1,5 +1,7 @@
 #pragma once
 #include <memory>
+#include <optional>
+#include <type_traits>
 
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
@@ -27,6 +29,16 @@ struct SamplePictureConfig : RecordingConfig {
     }
 };
 
+struct SoundingMapConfig : SamplePictureConfig {
+    std::optional<types::Datum> datum = {};
+
+    static void describe(auto& self, auto& visit) {
+        SamplePictureConfig::describe(self, visit);
+        visit({"datum", "", "the world's origin on the earth, named in the title; absent: the deployment's"},
+              self.datum);
+    }
+};
+
 /** Shows samples that are not pings, with a Picture.
  *
  *  In: a port named by Picture::port. Out: `image` and files, as in PictureTask; the first picture is made after
@@ -37,7 +49,9 @@ public:
     using RecordingTask::RecordingTask;
     using Sample = typename Picture::Sample;
 
-    framework::Properties<SamplePictureConfig> config{this};
+    using Config = std::conditional_t<std::is_same_v<Picture, SoundingMap>, SoundingMapConfig, SamplePictureConfig>;
+
+    framework::Properties<Config> config{this};
     framework::InputPort<Sample> input{this, Picture::port, "samples to show"};
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
