@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 
 namespace insonify::types {
 

@@ -8,7 +8,6 @@
 #include "components/console/Console.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/tasks/PingTask.hpp"

@@ -6,8 +6,8 @@
 #include "components/command/CommandLine.hpp"
 #include "components/command/RunCommand.hpp"
 #include "components/console/Console.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
 
 namespace insonify::command {

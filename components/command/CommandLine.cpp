@@ -425,6 +425,7 @@ int runCommandLine(int argc, char** argv) {
     addBackscatterCommand(app, action);
     addLibrariesCommand(app, action);
     addSchemaCommand(app, action);
+    addGazeboCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);
     addCompletionCommand(app, action);

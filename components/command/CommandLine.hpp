@@ -36,6 +36,7 @@ void addExamplesCommand(CLI::App& app, Action& action);
 void addInitCommand(CLI::App& app, Action& action);
 /** Adds the names of sonars to the help of `init`; reads their table, which the start of other commands does not. */
 void describeSonars(CLI::App& init);
+void addGazeboCommand(CLI::App& app, Action& action);
 void addLogCommand(CLI::App& app, Action& action);
 void addReplayCommand(CLI::App& app, Action& action);
 void addSceneCommand(CLI::App& app, Action& action);

@@ -7,7 +7,7 @@
 #include "components/command/CommandLine.hpp"
 #include "components/command/init/Starter.hpp"
 #include "components/console/Console.hpp"
-#include "components/deployer/Tasks.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 
 namespace insonify::command {
 

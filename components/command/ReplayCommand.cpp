@@ -17,7 +17,6 @@
 #include "components/deployer/log/RecordedSettings.hpp"
 #include "components/deployer/log/ReplaySpec.hpp"
 #include "components/deployer/log/Score.hpp"
-#include "components/log/LoggerClock.hpp"
 #include "components/log/PoseSources.hpp"
 #include "components/log/Reader.hpp"
 #include "components/recordings/RecordingReader.hpp"

@@ -1,5 +1,6 @@
-// insonify run DEPLOYMENT
 #include "components/command/RunCommand.hpp"
+
+// insonify run DEPLOYMENT
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -11,7 +12,6 @@
 #include <memory>
 
 #include "components/command/CommandLine.hpp"
-#include "components/command/ShardRun.hpp"
 #include "components/command/Summary.hpp"
 #include "components/console/Console.hpp"
 #include "components/console/OutputFolder.hpp"
@@ -20,7 +20,6 @@
 #include "components/deployer/RunFiles.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Supervision.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/config/YamlText.hpp"
 #include "components/pose/TrajectoryTask.hpp"

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "components/command/CommandLine.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/config/DeploymentSpec.hpp"
-#include "components/framework/config/Quantity.hpp"
 
 namespace insonify::command {
 

@@ -1,16 +1,15 @@
-#include "components/command/ShardRun.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "components/command/RunCommand.hpp"
 #include "components/console/Console.hpp"
 #include "components/console/Sha256.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/ShardFolder.hpp"
 #include "components/deployer/StopSignal.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/execution/Activity.hpp"
 #include "types/text/ConfigError.hpp"

@@ -1,5 +1,5 @@
 // The component library dataset: the command `insonify dataset`.
-#include "components/dataset/commands/DatasetCommand.hpp"
+#include "components/dataset/commands/DatasetRun.hpp"
 #include "components/loader/Interface.hpp"
 
 INSONIFY_COMPONENT_LIBRARY;

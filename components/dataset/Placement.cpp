@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/Hash.hpp"
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "components/dataset/Placement.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/DidYouMean.hpp"
 #include "types/text/Hash.hpp"

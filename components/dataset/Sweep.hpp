@@ -69,12 +69,14 @@ struct TrajectoryPoses {
     std::optional<double> from, to;
     std::optional<pose::SeaMotionConfig> motion = {};
     pose::TrajectoryTimes times = {};
+    types::WorldFrame world_frame = types::WorldFrame::AsIs;
     int line = 0, column = 0;  ///< Its place in the sweep.
 
     static void describe(auto& self, auto& visit) {
         visit({"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz, or of TUM or EuRoC; relative to the sweep"},
               self.file);
         pose::TrajectoryTimes::describe(self.times, visit);
+        visit(pose::world_frame_of_file, self.world_frame);
         visit({"count", "1", "poses, evenly from `from` to `to`", 1, 1e6}, self.count);
         visit({"period", "s", "instead: time between two poses", 1e-3, 1e6}, self.period);
         visit({"from", "s", "time of the first; absent: the start of the trajectory", 0, 1e10}, self.from);

@@ -11,8 +11,8 @@
 
 #include "components/ros/Cdr.hpp"
 #include "types/Thread.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::dds {
 namespace {

@@ -14,7 +14,7 @@
 #include "components/ros/Stamps.hpp"
 #include "types/Check.hpp"
 #include "types/text/ConfigError.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::dds {
 

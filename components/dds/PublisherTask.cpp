@@ -5,7 +5,7 @@
 
 #include "components/dds/SubscriberTask.hpp"
 #include "components/dds/TransformTask.hpp"
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/framework/execution/Timing.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"

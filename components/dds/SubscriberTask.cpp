@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 
 namespace insonify::dds {
 namespace {

@@ -10,8 +10,8 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/Elapsed.hpp"
-#include "types/geometry/Quaternion.hpp"
+#include "types/Time.hpp"
+#include "types/geometry/WorldFrame.hpp"
 
 namespace insonify::dds {
 namespace {

@@ -10,7 +10,7 @@
 #include "components/dds/Node.hpp"
 #include "components/ros/Messages.hpp"
 #include "types/samples/Pose.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::dds {
 

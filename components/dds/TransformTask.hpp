@@ -9,8 +9,8 @@
 #include "components/dds/Subscription.hpp"
 #include "components/pose/ListenerTask.hpp"
 #include "components/ros/TransformTree.hpp"
-#include "types/Elapsed.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/Time.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::dds {
 

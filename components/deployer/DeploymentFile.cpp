@@ -1,5 +1,6 @@
 #include "components/deployer/DeploymentFile.hpp"
 
+#include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,7 +9,16 @@
 #include <fstream>
 #include <vector>
 
+#include "components/console/Console.hpp"
 #include "components/loader/ComponentLibrary.hpp"
+#include "components/logger/LoggerTask.hpp"
+#include "components/noise/NoiseTask.hpp"
+#include "components/output/tasks/PictureTask.hpp"
+#include "components/pose/TrajectoryTask.hpp"
+#include "components/receiver/ReceiverTask.hpp"
+#include "components/replay/ReplayTask.hpp"
+#include "components/scene/SceneTask.hpp"
+#include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::deployer {
@@ -46,6 +56,25 @@ std::string deploymentIn(const std::string& given) {
                                  "is a folder without a deployment, a .yml file with tasks; `insonify init` makes one");
     throw types::ConfigError(path, "",
                              fmt::format("is a folder of several deployments; name one of {}", fmt::join(found, ", ")));
+}
+
+framework::Registry coreTasks() {
+    framework::Registry registry;
+    pose::registerTasks(registry);
+    scene::registerTasks(registry);
+    sonar::registerTasks(registry);
+    noise::registerTasks(registry);
+    receiver::registerTasks(registry);
+    output::registerTasks(registry);
+    logger::registerTasks(registry);
+    replay::registerTasks(registry);
+    return registry;
+}
+
+framework::Registry allTasks() {
+    framework::Registry registry = coreTasks();
+    for (const types::Diagnostic& wrong : registry.loadAll()) console::printDiagnostic("notice: {}\n", wrong.text());
+    return registry;
 }
 
 }  // namespace insonify::deployer

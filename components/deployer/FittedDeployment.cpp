@@ -9,8 +9,8 @@
 #include "components/noise/NoiseTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/scene/SceneTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "components/sonar/tasks/SideScanTask.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
 
 namespace insonify::deployer {
 namespace {

@@ -6,8 +6,8 @@
 #include "components/noise/Noise.hpp"
 #include "components/receiver/Receiver.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
-#include "types/geometry/Mount.hpp"
 #include "types/geometry/Snapshot.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::deployer {
 

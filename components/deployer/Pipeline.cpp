@@ -5,7 +5,6 @@
 
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/StopSignal.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Port.hpp"
 #include "components/receiver/ReceiverTask.hpp"

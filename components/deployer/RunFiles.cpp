@@ -10,7 +10,7 @@
 #include "components/log/Reader.hpp"
 #include "components/output/PictureFiles.hpp"
 #include "types/samples/Sonar.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;

@@ -9,7 +9,6 @@
 
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/deployer/log/ReplaySpec.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"

@@ -12,7 +12,7 @@
 #include "types/Time.hpp"
 #include "types/samples/SonarSettings.hpp"
 #include "types/text/Describe.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::device {
 

@@ -3,7 +3,6 @@
 #include "components/device/OculusRecording.hpp"
 #include "components/device/PingViewerLog.hpp"
 #include "components/device/commands/DeviceCommand.hpp"
-#include "components/device/commands/OculusExport.hpp"
 #include "components/loader/Interface.hpp"
 
 INSONIFY_COMPONENT_LIBRARY;

@@ -56,6 +56,7 @@ types::TaskStatus statusOf(const TaskContext& task, const std::string& type) {
                              {}};
     status.record.type = type;
     if (const auto* const player = dynamic_cast<const Player*>(&task)) status.playback = player->playback();
+    if (const auto* const recorder = dynamic_cast<const Recorder*>(&task)) status.recording = recorder->recording();
     for (const OutputPortBase* port : task.outputs())
         status.outputs.push_back({port->name(), port->typeName(), port->written()});
     return status;
@@ -73,6 +74,9 @@ types::TaskInterface interfaceOf(const TaskContext& task) {
     for (const PropertiesBase* properties : task.properties())
         for (types::PropertyInfo& info : properties->list())
             if (info.name.find_first_of(".[") == std::string::npos) interface.properties.push_back(std::move(info));
+    const auto* const adjustable = dynamic_cast<const Adjustable*>(&task);
+    for (const types::PropertyInfo& info : interface.properties)
+        if (!adjustable || !adjustable->adjusts(info.name)) interface.fixed.push_back(info.name);
     for (const OperationBase* operation : task.operations())
         interface.operations.push_back(operation->name() + " " + operation->signature());
     return interface;

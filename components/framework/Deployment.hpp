@@ -13,7 +13,7 @@
 #include "components/framework/Registry.hpp"
 #include "components/framework/config/DeploymentSpec.hpp"
 #include "components/framework/execution/Executor.hpp"
-#include "types/OwnProcess.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::framework {
 

@@ -48,6 +48,25 @@ public:
     virtual std::optional<types::Playback> playback() const = 0;
 };
 
+/** A task that records. */
+class Recorder {
+public:
+    virtual ~Recorder() = default;
+
+    /** None: nothing has been written yet. Any thread. */
+    virtual std::optional<types::Recording> recording() const = 0;
+};
+
+/** A task that takes new values of its properties while it runs: one that overrides TaskContext::propertiesHook. The
+ *  live view shows the properties of other tasks read-only. */
+class Adjustable {
+public:
+    virtual ~Adjustable() = default;
+
+    /** Whether a property can be set while the task runs, by its name without those below blocks. Any thread. */
+    virtual bool adjusts(const std::string& /*property*/) const { return true; }
+};
+
 /** A task that decides which parts of its work are done and which are omitted. */
 class Planned {
 public:

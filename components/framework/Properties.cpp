@@ -7,7 +7,7 @@
 
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/execution/Activity.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::framework {
 namespace {

@@ -155,6 +155,7 @@ wire::Discovery messageOf(const std::string& process, wire::Discovery::Type type
 std::optional<Announcement::Kind> kindOf(wire::Discovery::Type type) {
     switch (type) {
         case wire::Discovery::ADVERTISE: return Announcement::Kind::Offer;
+        case wire::Discovery::SUBSCRIBE: return Announcement::Kind::Question;
         case wire::Discovery::UNADVERTISE: return Announcement::Kind::Withdrawal;
         case wire::Discovery::BYE: return Announcement::Kind::Goodbye;
         case wire::Discovery::HEARTBEAT: return Announcement::Kind::Alive;
@@ -231,6 +232,7 @@ std::optional<Announcement> readDatagram(std::string_view datagram, const std::s
     const auto kind = kindOf(message.type());
     if (!kind) return {};
     Announcement announcement{*kind, message.process_uuid(), {}};
+    if (*kind == Announcement::Kind::Question) announcement.publication.topic = message.sub().topic();
     if (*kind != Announcement::Kind::Offer && *kind != Announcement::Kind::Withdrawal) return announcement;
     const bool is_whole = message.pub().has_msg_pub() || message.pub().has_srv_pub();
     if (!is_whole || !message.pub().address().starts_with("tcp://")) return {};
@@ -249,6 +251,20 @@ std::string askDatagram(const std::string& process, const std::string& topic) {
 std::string aliveDatagram(const std::string& process) { return framed(messageOf(process, wire::Discovery::HEARTBEAT)); }
 
 std::string goodbyeDatagram(const std::string& process) { return framed(messageOf(process, wire::Discovery::BYE)); }
+
+std::string offerDatagram(const Publication& publication, bool begins) {
+    wire::Discovery message =
+        messageOf(publication.process, begins ? wire::Discovery::ADVERTISE : wire::Discovery::UNADVERTISE);
+    wire::Discovery::Publisher& pub = *message.mutable_pub();
+    pub.set_topic(publication.topic);
+    pub.set_address(publication.address);
+    pub.set_process_uuid(publication.process);
+    pub.set_node_uuid(publication.node);
+    pub.set_scope(wire::Discovery::Publisher::ALL);
+    pub.mutable_msg_pub()->set_ctrl(publication.process);
+    pub.mutable_msg_pub()->set_msg_type(publication.type);
+    return framed(message);
+}
 
 std::string connectionDatagram(const std::string& process, const std::string& node, const Publication& publication,
                                bool begins) {

@@ -47,10 +47,10 @@ struct Publication {
 
 /** The content of a datagram. */
 struct Announcement {
-    enum class Kind { Offer, Withdrawal, Alive, Goodbye };
+    enum class Kind { Offer, Withdrawal, Question, Alive, Goodbye };
     Kind kind = Kind::Alive;
     std::string process;      ///< UUID of the sender.
-    Publication publication;  ///< The publication that is offered or withdrawn.
+    Publication publication;  ///< The publication that is offered, withdrawn or, by its topic, searched.
 };
 
 /** A program counts as gone after this time without a datagram [s]. Programs send a datagram each second. */
@@ -80,6 +80,8 @@ std::optional<Announcement> readDatagram(std::string_view datagram, const std::s
 
 /** Returns a datagram that asks for publishers of a topic or a service. */
 std::string askDatagram(const std::string& process, const std::string& topic);
+/** Returns a datagram that offers a topic of `publication.process`, or withdraws it. */
+std::string offerDatagram(const Publication& publication, bool begins);
 std::string aliveDatagram(const std::string& process);
 std::string goodbyeDatagram(const std::string& process);
 /** Returns a datagram that informs the publisher of a topic that `node` of `process` begins, or ends, to receive it. */

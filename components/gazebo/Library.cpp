@@ -10,6 +10,10 @@ extern "C" void insonify_register(insonify::framework::Registry& registry) {
     insonify::gazebo::registerTasks(registry);
 }
 
+extern "C" void insonify_request_sdf(const insonify::scene::GazeboConfig& config, std::string& text) {
+    text = insonify::gazebo::requestSdf(config);
+}
+
 extern "C" void insonify_read_world(const insonify::scene::GazeboConfig& config, const std::filesystem::path& folder,
                                     insonify::scene::Scene& scene) {
     scene = insonify::gazebo::readWorld(config, folder);

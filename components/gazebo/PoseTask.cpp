@@ -4,7 +4,8 @@
 #include <iterator>
 #include <utility>
 
-#include "types/Elapsed.hpp"
+#include "components/gazebo/PublisherTask.hpp"
+#include "types/Time.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
@@ -69,6 +70,7 @@ bool PoseTask::configureHook() {
 bool PoseTask::startHook() {
     inbox_->take();  // drops messages from before the start
     clocks_.assign(subscriptions_->topics().size(), {});
+    next_.assign(config->bodies.size(), {});
     started_ = now();
     is_silence_reported_ = false;
     changed_ = {};
@@ -122,8 +124,21 @@ void PoseTask::take(Arrived& message) {
             return drops_.add(subscriptions_->topics()[message.topic] +
                               ": the stamp is before that of the previous message");
         time = reading.time;
+        if (reading.order == Order::Restarted) next_.assign(config->bodies.size(), {});
+        if (!config->world.empty()) noteClock(config->world, subscriptions_->partition(), time - *message.stamp);
     }
-    for (Placed& placed : message.bodies) write(placed, time);
+    for (Placed& placed : message.bodies)
+        if (!message.stamp || isDue(placed.body, *message.stamp)) write(placed, time);
+}
+
+bool PoseTask::isDue(size_t body, types::Time stamp) {
+    const types::Time period = types::Time::fromSeconds(config->bodies[body].period);
+    if (period.microseconds <= 0) return true;
+    std::optional<types::Time>& next = next_[body];
+    if (next && stamp < *next) return false;
+    // The poses come at times of their own: the grid of the period is kept, unless a whole period is missing.
+    next = next && stamp - *next < period ? *next + period : stamp + period;
+    return true;
 }
 
 void PoseTask::write(Placed& placed, types::Time time) {
@@ -146,6 +161,7 @@ void PoseTask::cleanupHook() {
 
 void registerTasks(framework::Registry& registry) {
     registry.add<PoseTask>("gazebo::PoseTask", "reads the poses of bodies in a Gazebo world");
+    registry.add<PublisherTask>("gazebo::PublisherTask", "sends samples on Gazebo's topics");
 }
 
 }  // namespace insonify::gazebo

@@ -1,6 +1,7 @@
 #pragma once
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,7 @@
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/pose/ListenerTask.hpp"
 #include "types/SenderClock.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::gazebo {
 
@@ -43,10 +44,13 @@ private:
     /** Warns of the changes of the world, the first at once, then those of a minute together. */
     void reportChanges();
     void write(Placed& placed, types::Time time);
+    /** Returns whether a pose of this body at a simulated time is due by its period. */
+    bool isDue(size_t body, types::Time stamp);
 
     std::unique_ptr<Inbox> inbox_;
     std::unique_ptr<Subscriptions> subscriptions_;  ///< Fills the inbox, so it must be destroyed first.
     std::vector<types::SenderClock> clocks_;        ///< By topic.
+    std::vector<std::optional<types::Time>> next_;  ///< Simulated time from which a body with a period has a pose.
     types::ThrottledWarning drops_{"message", "dropped"};
     types::Time started_;
     bool is_silence_reported_ = false;

@@ -21,20 +21,24 @@
 #include "components/gazebo/World.hpp"
 #include "types/Thread.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::gazebo {
 namespace {
 
 glm::dvec3 vectorOf(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-types::Pose poseOf(const wire::Pose& message, const types::Axes& axes) {
+/** A message omits the identity orientation. */
+Place placeIn(const wire::Pose& message) {
     const wire::Quaternion& q = message.orientation();
+    return {vectorOf(message.position()),
+            message.has_orientation() ? glm::dquat(q.w(), q.x(), q.y(), q.z()) : glm::dquat(1, 0, 0, 0)};
+}
+
+types::Pose poseOf(const Place& place, const types::Axes& axes) {
     types::Pose pose;
-    pose.position = axes.rockFromWorld(vectorOf(message.position()));
-    // A message omits the identity orientation.
-    const glm::dquat turned =
-        message.has_orientation() ? glm::dquat(q.w(), q.x(), q.y(), q.z()) : glm::dquat(1, 0, 0, 0);
-    pose.orientation = axes.rockFromOrientation(turned);
+    pose.position = axes.rockFromWorld(place.position);
+    pose.orientation = axes.rockFromOrientation(place.orientation);
     return pose;
 }
 
@@ -78,7 +82,8 @@ std::optional<PoseMessage> readPoses(std::string_view bytes, types::WorldFrame f
     if (!parse(bytes, message)) return {};
     const types::Axes axes{frame};
     PoseMessage read{stampOf(message.header()), {}};
-    for (const wire::Pose& pose : message.pose()) read.entities.push_back({pose.name(), poseOf(pose, axes)});
+    for (const wire::Pose& pose : message.pose())
+        read.entities.push_back({pose.name(), poseOf(placeIn(pose), axes), pose.id(), placeIn(pose)});
     return read;
 }
 
@@ -86,7 +91,7 @@ std::optional<OdometryMessage> readOdometry(std::string_view bytes, types::World
     wire::Odometry message;
     if (!parse(bytes, message)) return {};
     const types::Axes axes{frame};
-    OdometryMessage read{stampOf(message.header()), poseOf(message.pose(), axes)};
+    OdometryMessage read{stampOf(message.header()), poseOf(placeIn(message.pose()), axes)};
     types::Pose& pose = read.pose;
     if (!message.has_twist() || !types::isUsable(pose)) return read;
     pose.velocity = glm::normalize(pose.orientation) * axes.body(vectorOf(message.twist().linear()));
@@ -105,6 +110,61 @@ FoundEntity findEntity(const PoseMessage& message, const std::string& name) {
     if (count == 1) return found;
     if (count == 0) return {nullptr, "no entity of that name"};
     return {nullptr, "several entities of that name; those inside models have poses in their parents' frames"};
+}
+
+types::Pose poseOfChain(const PoseMessage& message, const Chain& chain, types::WorldFrame frame) {
+    Place whole;
+    for (const Chain::Part& part : chain.parts) {
+        const auto moved = std::ranges::find(message.entities, part.id, &PoseMessage::Entity::id);
+        const Place& place = moved == message.entities.end() ? part.place : moved->place;
+        whole.position += glm::normalize(whole.orientation) * place.position;
+        whole.orientation = whole.orientation * place.orientation;
+    }
+    return poseOf(whole, types::Axes{frame});
+}
+
+namespace {
+
+void addChains(const wire::Model& model, const std::string& scope, const Chain& parents,
+               std::map<std::string, Chain>& chains) {
+    const auto longer = [](Chain chain, const auto& entity) {
+        chain.parts.push_back({entity.id(), placeIn(entity.pose())});
+        return chain;
+    };
+    const Chain own = longer(parents, model);
+    const std::string inner = scope + model.name() + "::";
+    chains.emplace(scope + model.name(), own);
+    for (const wire::Link& link : model.link()) chains.emplace(inner + link.name(), longer(own, link));
+    for (const wire::Model& nested : model.model()) addChains(nested, inner, own, chains);
+}
+
+std::mutex clocks_mutex;
+
+std::map<std::string, types::Time>& clocks() {
+    static std::map<std::string, types::Time> offsets;
+    return offsets;
+}
+
+}  // namespace
+
+std::map<std::string, Chain> readChains(std::string_view bytes) {
+    wire::Scene scene;
+    if (!parse(bytes, scene))
+        throw types::ConfigError("", "world", "has a service that answers bytes which are no message Scene");
+    std::map<std::string, Chain> chains;
+    for (const wire::Model& model : scene.model()) addChains(model, "", {}, chains);
+    return chains;
+}
+
+void noteClock(const std::string& world, const std::string& partition, types::Time offset) {
+    const std::lock_guard lock(clocks_mutex);
+    clocks()[partition + "@" + world] = offset;
+}
+
+std::optional<types::Time> clockOffset(const std::string& world, const std::string& partition) {
+    const std::lock_guard lock(clocks_mutex);
+    const auto found = clocks().find(partition + "@" + world);
+    return found == clocks().end() ? std::nullopt : std::optional(found->second);
 }
 
 class Subscriber::Worker {
@@ -209,6 +269,7 @@ private:
                     break;
                 case Announcement::Kind::Withdrawal: forget(news->process, publication.topic); break;
                 case Announcement::Kind::Goodbye: forget(news->process, ""); break;
+                case Announcement::Kind::Question:
                 case Announcement::Kind::Alive: break;
             }
             if (const auto known = last_received_.find(news->process); known != last_received_.end())
@@ -351,16 +412,25 @@ Topic Subscriptions::entities(const PoseConfig& config, Inbox& inbox) {
         types::WorldFrame frame;
         std::string world;  ///< Empty when the topic is not that of a whole world.
         std::string partition;
+        std::vector<std::optional<Chain>> chains;  ///< By body.
         std::optional<WorldWatch> watch;
     };
-    const auto state = std::make_shared<State>(State{
-        config.bodies, config.world_frame, config.pose_topic.empty() ? config.world : "", options_.partition, {}});
+    const auto state = std::make_shared<State>(State{config.bodies,
+                                                     config.world_frame,
+                                                     config.pose_topic.empty() ? config.world : "",
+                                                     options_.partition,
+                                                     chains(config),
+                                                     {}});
     return {topics_.back(), [&inbox, number, state](const std::string& type, std::string_view bytes) {
                 const auto message = type == "Pose_V" ? readPoses(bytes, state->frame) : std::nullopt;
                 if (!message) return inbox.put(unread(number, type, "Pose_V"));
                 Arrived arrived{number, message->stamp, {}, {}, ""};
                 for (size_t i = 0; i < state->bodies.size(); ++i) {
                     if (state->bodies[i].entity.empty()) continue;
+                    if (const auto& chain = state->chains[i]) {
+                        arrived.bodies.push_back({i, poseOfChain(*message, *chain, state->frame), ""});
+                        continue;
+                    }
                     auto [pose, diagnostic] = findEntity(*message, state->bodies[i].entity);
                     arrived.bodies.push_back({i, pose ? *pose : types::Pose{}, std::move(diagnostic)});
                 }
@@ -370,6 +440,32 @@ Topic Subscriptions::entities(const PoseConfig& config, Inbox& inbox) {
                 }
                 inbox.put(std::move(arrived));
             }};
+}
+
+std::vector<std::optional<Chain>> Subscriptions::chains(const PoseConfig& config) const {
+    const auto isScope = [](const BodyConfig& body) { return body.entity.find("::") != std::string::npos; };
+    std::vector<std::optional<Chain>> found(config.bodies.size());
+    if (std::ranges::none_of(config.bodies, isScope)) return found;
+    const std::string service = "/world/" + config.world + "/scene/info";
+    const Reply reply =
+        request(options_, {service, "Empty", "Scene"}, "", std::chrono::duration<double>(config.timeout));
+    if (!reply.failure.empty())
+        throw types::ConfigError("", "world", "is " + config.world + "; its service " + service + " " + reply.failure);
+    const std::map<std::string, Chain> all = readChains(reply.message);
+    std::vector<std::string> names;
+    for (const auto& [name, chain] : all) names.push_back(name);
+    for (size_t i = 0; i < config.bodies.size(); ++i) {
+        if (!isScope(config.bodies[i])) continue;
+        const auto known = all.find(config.bodies[i].entity);
+        if (known == all.end()) {
+            const std::string near = types::didYouMean(config.bodies[i].entity, names);
+            throw types::ConfigError("", "bodies[" + std::to_string(i) + "].entity",
+                                     "is " + config.bodies[i].entity + ", which world " + config.world +
+                                         " does not have" + (near.empty() ? "" : "; " + near));
+        }
+        found[i] = known->second;
+    }
+    return found;
 }
 
 Topic Subscriptions::odometry(const PoseConfig& config, size_t body, Inbox& inbox) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -17,11 +18,28 @@
 
 namespace insonify::gazebo {
 
+/** A place in the axes of a parent. */
+struct Place {
+    glm::dvec3 position{0};              ///< [m]
+    glm::dquat orientation{1, 0, 0, 0};  ///< As sent; of any length.
+};
+
+/** An entity with its parents, from the model of the world's top level to the entity. */
+struct Chain {
+    struct Part {
+        uint32_t id = 0;
+        Place place{};  ///< When the world was read: of a link that messages omit.
+    };
+    std::vector<Part> parts;
+};
+
 /** The poses in a message Pose_V: the models of a world and all their links, by name. */
 struct PoseMessage {
     struct Entity {
         std::string name;
         types::Pose pose;  ///< In our axes, without a time. Values that the message does not have are unknown.
+        uint32_t id = 0;
+        Place place{};  ///< In Gazebo's axes, in its parent.
     };
     std::optional<types::Time> stamp;  ///< Simulated time; none when the message has no stamp, or it is out of bounds.
     std::vector<Entity> entities;
@@ -44,17 +62,35 @@ struct FoundEntity {
 };
 FoundEntity findEntity(const PoseMessage& message, const std::string& name);
 
+/** Returns the pose in the world of an entity below other entities, in our axes. */
+types::Pose poseOfChain(const PoseMessage& message, const Chain& chain, types::WorldFrame frame);
+
+/** Reads the models and links of a message Scene, by their scope ("rov::arm::hand"). Throws types::ConfigError when the
+ *  bytes are no Scene. */
+std::map<std::string, Chain> readChains(std::string_view message);
+
+/** Keeps the time of a world on our clock minus that of its simulation. Thread-safe. */
+void noteClock(const std::string& world, const std::string& partition, types::Time offset);
+/** Returns that time; none while no message of the world's poses was read in this process. */
+std::optional<types::Time> clockOffset(const std::string& world, const std::string& partition);
+
 /** The source of the poses of one output port. */
 struct BodyConfig {
     std::string port = "pose";
     std::string entity;
     std::string odometry;
+    double period = 0;
 
     static void describe(auto& self, auto& visit) {
         visit({"port", "", "output port of the poses"}, self.port);
-        visit({"entity", "", "the model of this name, of the world's poses; empty: odometry is given"}, self.entity);
+        visit({"entity", "",
+               "the model of this name, or the link or nested model of this scope (rov::base), of the world's poses; "
+               "empty: odometry is given"},
+              self.entity);
         visit({"odometry", "", "topic of the body's Odometry, /model/rov/odometry; empty: entity is given"},
               self.odometry);
+        visit({"period", "s", "min simulated time between two poses, as the update rate of a sensor; 0: all", 0, 1e6},
+              self.period);
     }
 };
 
@@ -64,6 +100,7 @@ struct PoseConfig {
     std::vector<BodyConfig> bodies;
     types::WorldFrame world_frame = types::WorldFrame::AsIs;
     std::string partition;
+    double timeout = 10;
 
     PoseConfig();  // not inline: g++ 12 would warn that its strings are uninitialized
 
@@ -76,6 +113,8 @@ struct PoseConfig {
                "ned, if x of the scene is north"},
               self.world_frame);
         visit({"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
+        visit({"timeout", "s", "max wait for the world where an entity is a link or a nested model", 0.1, 3600},
+              self.timeout);
     }
     void check(types::Diagnostics& diagnostics) const;
     /** Returns the topic of the entities' poses. */
@@ -189,6 +228,8 @@ public:
 
 private:
     Topic entities(const PoseConfig& config, Inbox& inbox);
+    /** Returns the chain of each body whose entity is a scope; none for the others. Throws types::ConfigError. */
+    std::vector<std::optional<Chain>> chains(const PoseConfig& config) const;
     Topic odometry(const PoseConfig& config, size_t body, Inbox& inbox);
 
     const TransportOptions options_;

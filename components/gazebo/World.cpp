@@ -234,6 +234,26 @@ scene::Scene readWorld(const scene::GazeboConfig& config, const std::filesystem:
     return std::move(world.scene);
 }
 
+std::string requestSdf(const scene::GazeboConfig& config) {
+    const TransportOptions options = TransportOptions::fromEnvironment(config.partition);
+    const std::string service = "/world/" + config.world + "/generate_world_sdf";
+    if (!qualifiedName(options.partition, service))
+        throw types::ConfigError("", "world",
+                                 "is " + config.world + ", which Gazebo's transport does not take for a name");
+    wire::SdfGeneratorConfig wanted;
+    wanted.mutable_global_entity_gen_config()->mutable_expand_include_tags()->set_data(true);
+    const Reply reply = request(options, {service, "SdfGeneratorConfig", "StringMsg"}, wanted.SerializeAsString(),
+                                std::chrono::duration<double>(config.timeout));
+    if (!reply.failure.empty())
+        throw types::ConfigError("", "world",
+                                 fmt::format("is {}; its service {} {}", config.world, service, reply.failure));
+    wire::StringMsg text;
+    if (!text.ParseFromString(reply.message) || text.data().empty())
+        throw types::ConfigError("", "world",
+                                 fmt::format("is {}; its service {} answers no SDF", config.world, service));
+    return text.data();
+}
+
 std::optional<std::set<std::string>> namesTaken(const std::string& world, const std::string& partition) {
     const auto name = qualifiedName(partition, serviceOf(world));
     const std::lock_guard lock(taken_mutex);

@@ -19,6 +19,9 @@ struct World {
 /** Requests the models of a world from Gazebo, see scene::sharedWorld(). */
 scene::Scene readWorld(const scene::GazeboConfig& config, const std::filesystem::path& folder);
 
+/** Requests the SDF of a world from Gazebo, see scene::requestSdf(). */
+std::string requestSdf(const scene::GazeboConfig& config);
+
 /** Makes a scene from the bytes of Gazebo's message Scene.
  *
  *  Each model and link is a node, named by its scope ("rov::arm::hand"), below the node of its model. Objects are the

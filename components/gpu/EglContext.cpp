@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "components/gpu/Program.hpp"
-#include "types/OwnProcess.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::gpu {

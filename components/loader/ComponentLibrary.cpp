@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "components/loader/Interface.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::loader {
 namespace {
@@ -27,8 +27,9 @@ constexpr Component all_components[] = {
     {"device", "simulated instruments, and their recordings"},
     {"gazebo", "poses and worlds of Gazebo"},
     {"mavlink", "poses of autopilots"},
+    {"meshes", "meshes of .dae, .obj, .stl and .ply as scenes"},
     {"nav", "a DVL, an inertial unit and a pressure gauge"},
-    {"sdf", "scenes in SDF and robots in URDF, with meshes as .dae, .obj and .stl"},
+    {"sdf", "scenes in SDF and robots in URDF"},
     {"study", "studies of the simulator itself"},
     {"survey", "surveys of the sea floor"},
     {"video", "videos"},

@@ -17,6 +17,25 @@
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::log {
+
+Verdict check(const std::filesystem::path& path) {
+    if (storageOf(path) == Storage::Pocolog && !std::filesystem::is_directory(path)) return pocolog::check(path);
+    const auto log = openLog(path);
+    Verdict verdict{log->streams().size(), 0, 0, {}};
+    for (const Stream& stream : log->streams()) verdict.set_backs += stream.set_backs;
+    for (const SampleRef& at : log->samples()) {
+        try {
+            log->verify(at);
+        } catch (const types::ConfigError& error) {
+            verdict.diagnostic = {path, at.position, error.diagnostics().front().message};
+            return verdict;
+        }
+        ++verdict.samples;
+    }
+    if (!log->complete()) verdict.diagnostic = {path, log->gaps().front().byte, log->gaps().front().what};
+    return verdict;
+}
+
 namespace {
 
 std::string reason(int error_number) { return std::generic_category().message(error_number); }

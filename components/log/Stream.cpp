@@ -10,7 +10,7 @@
 #include <sstream>
 #include <type_traits>
 
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::log {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "components/log/Files.hpp"
-#include "types/Elapsed.hpp"
 #include "types/Thread.hpp"
+#include "types/Time.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::logger {
@@ -172,12 +172,21 @@ void LogThread::writeAll() {
         lock.unlock();
         work(has_entry ? &ring_[first_] : nullptr);
         lock.lock();
+        count();
         if (!has_entry) continue;
         waiting_bytes_ -= std::exchange(ring_[first_].bytes, 0);
         first_ = (first_ + 1) % ring_.size();
         --count_;
         room_.notify_one();
     }
+}
+
+void LogThread::count() {
+    if (!log_.isOpen()) return;
+    const uint64_t size = log_.size();
+    if (size < present_bytes_ || health_.current.empty()) health_.current = log_.path();
+    health_.bytes += size < present_bytes_ ? size : size - present_bytes_;  // smaller: the next file
+    present_bytes_ = size;
 }
 
 void LogThread::work(Entry* entry) {

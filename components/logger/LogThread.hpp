@@ -48,12 +48,14 @@ enum class AtFailure { Throw, Heal };
 
 /** The state of a log that heals. */
 struct LogHealth {
-    uint64_t outages = 0;        ///< Times that the file could not be written.
-    uint64_t lost = 0;           ///< Samples of past outages.
-    uint64_t refused = 0;        ///< Samples that the format cannot store.
-    bool fails = false;          ///< There is an outage.
-    std::string failure;         ///< The reason of the last outage or refusal.
-    std::filesystem::path file;  ///< The file in which the log continued after the last outage.
+    uint64_t bytes = 0;             ///< In all files of this run [B].
+    std::filesystem::path current;  ///< The file that is written now.
+    uint64_t outages = 0;           ///< Times that the file could not be written.
+    uint64_t lost = 0;              ///< Samples of past outages.
+    uint64_t refused = 0;           ///< Samples that the format cannot store.
+    bool fails = false;             ///< There is an outage.
+    std::string failure;            ///< The reason of the last outage or refusal.
+    std::filesystem::path file;     ///< The file in which the log continued after the last outage.
 };
 
 /** Declares a stream. */
@@ -128,6 +130,7 @@ private:
     void work(Entry* entry);  ///< One iteration of the thread: an entry, if there is one, and due flushes.
     void flush();             ///< Also syncs, if that is due.
     void pass(Entry& entry);  ///< Releases a sample, written or lost; a stream waits for the next file.
+    void count();             ///< Counts what was written; under the mutex.
     void refuse(Entry& entry, const std::string& why);
     void beginOutage(const std::string& why);
     void tryAgain();
@@ -145,7 +148,8 @@ private:
     std::filesystem::path opened_;  ///< The last file that could be opened.
     std::filesystem::path sequel_;  ///< The log's next file.
     Clock::time_point next_try_, next_flush_, next_sync_;
-    LogHealth health_;  ///< Changed by the thread, under the mutex.
+    LogHealth health_;            ///< Changed by the thread, under the mutex.
+    uint64_t present_bytes_ = 0;  ///< Those of `health_.bytes` that are in the present file [B].
     mutable std::mutex mutex_;
     std::condition_variable work_, room_;
     std::vector<Entry> ring_;

@@ -7,7 +7,7 @@
 #include <set>
 #include <system_error>
 
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/log/Stream.hpp"
 #include "types/text/ConfigError.hpp"
 
@@ -77,6 +77,23 @@ types::Notices LoggerTask::notices() const {
         all.push_back(fmt::format("{} samples are in no file, because it cannot store them; the last: {}",
                                   health_.refused, health_.failure));
     return all;
+}
+
+std::optional<types::Recording> LoggerTask::recording() const {
+    std::lock_guard lock(recording_mutex_);
+    return recording_;
+}
+
+void LoggerTask::followRecording() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_recording_) return;
+    next_recording_ = now + std::chrono::milliseconds(250);
+    const std::filesystem::path path = outputPath(config->file);
+    std::error_code unknown;
+    const auto disk = std::filesystem::space(path.parent_path(), unknown);
+    std::lock_guard lock(recording_mutex_);
+    recording_ = {(health_.current.empty() ? path : health_.current).string(), health_.bytes,
+                  unknown ? 0 : disk.available};
 }
 
 bool LoggerTask::heals() const { return environment().mayLose(); }
@@ -261,6 +278,7 @@ void LoggerTask::updateHook() {
         }
     });
     followHealth();
+    followRecording();
 }
 
 void LoggerTask::stopHook() {

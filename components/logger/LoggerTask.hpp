@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,7 +40,10 @@ namespace insonify::logger {
  *  samples. In realtime a full or broken disk causes RunTimeError: samples are lost and counted until the log continues
  *  in its next file, which is tried each second. A sample that the format cannot store is skipped. Outside of realtime,
  *  where no other sample may be lost, both cause Exception with the number of lost samples. Flushed samples stay. */
-class LoggerTask final : public framework::TaskContext, public framework::Divisible {
+class LoggerTask final : public framework::TaskContext,
+                         public framework::Divisible,
+                         public framework::Recorder,
+                         public framework::Adjustable {
 public:
     using TaskContext::TaskContext;
 
@@ -48,6 +52,8 @@ public:
     /** Throws ConfigError for a type that a log cannot store. */
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
     types::Notices notices() const override;
+    std::optional<types::Recording> recording() const override;
+    bool adjusts(const std::string& property) const override { return property == "record"; }
 
 private:
     /** The stream of an input. */
@@ -72,6 +78,7 @@ private:
     bool logsProperties();
     bool heals() const;
     void followHealth();
+    void followRecording();             ///< Asks the disk for its space at most four times a second.
     void recordProperties();            ///< The properties of all tasks that changed since the last call.
     log::Metadata runMetadata() const;  ///< Common to all streams of the run.
     /** Returns the metadata of the log's next stream, with the current plans. */
@@ -92,8 +99,11 @@ private:
     std::vector<std::string> frame_notices_;
     LogHealth health_;                                        ///< As reported.
     std::map<std::string, types::PropertyValue> configured_;  ///< The property values at configure.
-    size_t declared_ = 0;                                     ///< Streams in the log.
-    bool has_started_ = false;                                ///< Since it was configured.
+    mutable std::mutex recording_mutex_;
+    std::optional<types::Recording> recording_;  ///< As shown, under the mutex.
+    std::chrono::steady_clock::time_point next_recording_;
+    size_t declared_ = 0;       ///< Streams in the log.
+    bool has_started_ = false;  ///< Since it was configured.
 };
 
 /** Registers the tasks of this folder. */

@@ -8,7 +8,7 @@
 #include "components/framework/Registry.hpp"
 #include "components/mavlink/Body.hpp"
 #include "components/pose/ListenerTask.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::mavlink {
 

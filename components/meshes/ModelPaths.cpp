@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "types/NamedFile.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::meshes {
 namespace {

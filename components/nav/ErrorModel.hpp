@@ -8,7 +8,7 @@
 
 #include "types/Time.hpp"
 #include "types/geometry/Angle.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::nav {
 

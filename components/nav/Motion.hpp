@@ -5,9 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "types/geometry/Mount.hpp"
 #include "types/samples/Pose.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::nav {
 

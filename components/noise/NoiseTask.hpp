@@ -10,7 +10,7 @@
 #include "components/framework/TaskContext.hpp"
 #include "components/noise/Noise.hpp"
 #include "types/samples/Sonar.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::noise {
 
@@ -22,7 +22,7 @@ namespace insonify::noise {
  *  is given. Without any noise the ping itself is passed on, not a copy. Changed properties apply from the next ping. A
  *  warning reports a ping whose loudest echo is below the mean of the added noise: once, and again only after pings
  *  with louder echoes. */
-class NoiseTask final : public framework::TaskContext, public framework::Divisible {
+class NoiseTask final : public framework::TaskContext, public framework::Divisible, public framework::Adjustable {
 public:
     using TaskContext::TaskContext;
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "types/geometry/Angle.hpp"
-#include "types/geometry/Quaternion.hpp"
 #include "types/text/Csv.hpp"
 
 namespace insonify::pose {
@@ -172,6 +171,8 @@ void TrajectoryConfig::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"waypoints", "is given together with file; give one of the two"});
     if (!file && waypoints.empty())
         diagnostics.push_back({"file", "is not given; give a file or at least one waypoint"});
+    if (!file && world_frame != types::WorldFrame::AsIs)
+        diagnostics.push_back({"world_frame", "is that of a file; waypoints are x north, y west, z up"});
     for (size_t i = 1; i < waypoints.size(); ++i)
         if (!(waypoints[i].time > waypoints[i - 1].time))
             diagnostics.push_back({"waypoints[" + std::to_string(i) + "].time",
@@ -232,7 +233,9 @@ double Trajectory::inLoop(double time) const {
     return length > 0 && time > first ? first + std::fmod(time - first, length) : time;
 }
 
-Trajectory Trajectory::fromFile(const std::filesystem::path& file, bool smooth, const TrajectoryTimes& times) {
+Trajectory Trajectory::fromFile(const std::filesystem::path& file, bool smooth, const TrajectoryTimes& times,
+                                types::WorldFrame frame) {
+    const types::Axes axes{frame};
     Form form = Form::Csv;
     const auto recognise = [&](std::string_view text) { return tableOf(form = formOf(text)); };
     std::vector<Stamp> stamps;
@@ -241,7 +244,8 @@ Trajectory Trajectory::fromFile(const std::filesystem::path& file, bool smooth, 
         const glm::dquat orientation =
             form == Form::Tum ? glm::dquat(row[7], row[4], row[5], row[6]) : glm::dquat(row[4], row[5], row[6], row[7]);
         odd_lengths += types::isOddlyLong(orientation);
-        stamps.push_back({row[0], {row[1], row[2], row[3]}, orientation / glm::length(orientation)});
+        stamps.push_back({row[0], axes.rockFromWorld({row[1], row[2], row[3]}),
+                          axes.rockFromOrientation(orientation / glm::length(orientation))});
     }
     TrajectoryTimes of_form = times;
     if (form != Form::Csv && !times.time_unit)

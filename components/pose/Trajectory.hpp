@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "components/pose/SeaMotion.hpp"
+#include "types/geometry/WorldFrame.hpp"
 #include "types/samples/Pose.hpp"
 
 namespace insonify::pose {
@@ -68,6 +69,10 @@ struct TrajectoryTimes {
     bool operator==(const TrajectoryTimes&) const = default;
 };
 
+/** The axes of a file's poses. */
+inline constexpr types::Field world_frame_of_file{
+    "world_frame", "", "axes of the file's poses: as_is, x north, y west, z up; enu as ROS has it; or ned"};
+
 /** The source of a trajectory: either a file or waypoints. */
 struct TrajectoryConfig {
     std::optional<std::string> file;
@@ -76,6 +81,7 @@ struct TrajectoryConfig {
     bool smooth = false;
     std::optional<SeaMotionConfig> motion = {};
     TrajectoryTimes times = {};
+    types::WorldFrame world_frame = types::WorldFrame::AsIs;
 
     static void describe(auto& self, auto& visit) {
         visit({"file", "",
@@ -83,6 +89,7 @@ struct TrajectoryConfig {
               self.file);
         visit({"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
         TrajectoryTimes::describe(self.times, visit);
+        visit(world_frame_of_file, self.world_frame);
         visit({"loop", "", "whether the trajectory restarts at its first stamp after the last; else it ends there"},
               self.loop);
         visit({"smooth", "",
@@ -142,10 +149,11 @@ public:
      * header and separated by spaces: `time x y z qx qy qz qw`; EuRoC's ground truth, whose header begins with
      * `#timestamp`: times in ns, places, quaternions with w first, and columns that are ignored. Lines of the last two
      * that begin with # are comments. Normalises quaternions and skips blank lines.
+     *  @param frame axes of the poses
      *  @throws types::ConfigError with line and column of every diagnostic: a field that is missing, superfluous or not
      *  a finite number, a time that does not increase, a quaternion shorter than 1e-6. */
     static Trajectory fromFile(const std::filesystem::path& file, bool smooth = false,
-                               const TrajectoryTimes& times = {});
+                               const TrajectoryTimes& times = {}, types::WorldFrame frame = types::WorldFrame::AsIs);
 
     /** Returns the pose of "body" in frame "world" at `time` [s] since the start of the run. It has a velocity in the
      *  world [m/s] and an angular velocity in the body [rad/s], both zero outside the stamps. Does not set

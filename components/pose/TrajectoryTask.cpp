@@ -62,7 +62,8 @@ void TrajectoryTask::check(types::Diagnostics& diagnostics) const {
 }
 
 Trajectory TrajectoryTask::trajectory() const {
-    Trajectory made = config->file ? Trajectory::fromFile(inputPath(*config->file), config->smooth, config->times)
+    Trajectory made = config->file ? Trajectory::fromFile(inputPath(*config->file), config->smooth, config->times,
+                                                          config->world_frame)
                                    : Trajectory(config->waypoints, config->smooth, config->times);
     if (const std::string reason = reasonAgainst(made, config->times); !reason.empty())
         throw types::ConfigError(config->file ? inputPath(*config->file).string() : "",

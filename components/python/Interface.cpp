@@ -13,7 +13,7 @@
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/python/Samples.hpp"
 #include "components/recordings/RecordingReader.hpp"
-#include "types/OwnProcess.hpp"
+#include "types/Thread.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::python {

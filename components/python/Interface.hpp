@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "components/python/Handle.hpp"
+#include "components/python/Samples.hpp"
 
 namespace insonify::python {
 

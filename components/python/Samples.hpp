@@ -1,13 +1,32 @@
 #pragma once
+#include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "components/console/Json.hpp"
 #include "components/log/Reader.hpp"
 #include "components/output/tasks/PictureConfig.hpp"
-#include "components/python/Handle.hpp"
 #include "types/samples/Sonar.hpp"
 #include "types/samples/SonarTruth.hpp"
 
 namespace insonify::python {
+
+/** Numbers owned by a handle, row by row. */
+struct Array {
+    const char* name;
+    const char* type;  ///< In numpy's notation: "f4".
+    const void* numbers;
+    uint64_t shape[3];
+    uint32_t dimensions;
+};
+
+/** An object held by Python: facts and arrays. */
+class Handle {
+public:
+    virtual ~Handle() = default;
+    virtual console::Json facts() const = 0;
+    virtual std::vector<Array> arrays() const { return {}; }
+};
 
 /** Makes a handle of a ping: facts `{kind: ping, time, ...}`, arrays `bins` [beams, bins], `bearings` [rad] and
  *  `ranges` [m], which is the slant range at the middle of each bin.

@@ -10,7 +10,7 @@
 #include "components/receiver/Receiver.hpp"
 #include "types/samples/Sonar.hpp"
 #include "types/samples/SonarSettings.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::receiver {
 
@@ -21,7 +21,7 @@ namespace insonify::receiver {
  *  next valid ping recovers from it. A receiver without effect passes on the ping itself, not a copy. Changed
  *  properties apply from the next ping. A warning reports pings that are blanked completely, saturate, or contain only
  *  code 0: once, and again only after good pings. */
-class ReceiverTask final : public framework::TaskContext, public framework::Divisible {
+class ReceiverTask final : public framework::TaskContext, public framework::Divisible, public framework::Adjustable {
 public:
     using TaskContext::TaskContext;
 

@@ -13,7 +13,7 @@
 #include "types/Check.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/geometry/BeamArc.hpp"
-#include "types/geometry/Quaternion.hpp"
+#include "types/geometry/WorldFrame.hpp"
 
 namespace insonify::recordings {
 namespace {

@@ -78,7 +78,7 @@ void ReplayTask::open() {
 
 std::optional<types::Playback> ReplayTask::playback() const {
     if (span_s_ < 0) return std::nullopt;
-    return types::Playback{std::clamp(types::Time{at_us_}.seconds(), 0.0, span_s_.load()), span_s_};
+    return types::Playback{std::clamp(types::Time{at_us_}.seconds(), 0.0, span_s_.load()), span_s_, is_paused_};
 }
 
 framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {

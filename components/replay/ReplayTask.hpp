@@ -15,7 +15,6 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/framework/config/StreamNames.hpp"
-#include "components/log/LoggerClock.hpp"
 #include "components/log/PoseSources.hpp"
 #include "components/log/Reader.hpp"
 #include "types/text/Describe.hpp"
@@ -146,7 +145,7 @@ private:
     /** Start of the log's time on the wall clock, without pauses; negative: it stands, -1 - the time since its start.
      *  The tasks of the deployment read it with every look at the clock, without a lock. */
     std::atomic<int64_t> clock_us_{-1};
-    bool is_paused_ = false;
+    std::atomic<bool> is_paused_{false};
     std::atomic<int64_t> first_us_{0};   ///< The instant at which the replay starts, on the log's clock.
     std::atomic<int64_t> played_us_{0};  ///< The instant being played; 0: none yet.
     std::atomic<int64_t> at_us_{0};      ///< The last sample played, after the log's first.

@@ -11,7 +11,7 @@
 #include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "types/geometry/WorldPlaces.hpp"
+#include "types/geometry/WorldFrame.hpp"
 #include "types/samples/Samples.hpp"
 
 namespace insonify::ros {

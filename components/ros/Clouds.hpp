@@ -57,7 +57,7 @@ void addPoint(std::initializer_list<float> numbers, PointCloud2& message);
 void endCloud(uint32_t rows, PointCloud2& message);
 
 /** Writes x, y, z in the axes of the world frame, named map [m], and the intensity of each point's echo. The fields are
- *  FLOAT32; x, y and z are FLOAT64 if a point is farther from the origin than 32 bits resolve (WorldPlaces.hpp). */
+ *  FLOAT32; x, y and z are FLOAT64 if a point is farther from the origin than 32 bits resolve (WorldFrame.hpp). */
 void convert(const types::PointCloud& cloud, WorldFrame frame, PointCloud2& message);
 /** Reads x, y and z, and intensity if present, of 32 or 64 bits. */
 void convert(const PointCloud2& message, WorldFrame frame, types::PointCloud& cloud);

@@ -8,7 +8,6 @@
 #include "components/ros/MarineAcousticMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
-#include "types/geometry/Mount.hpp"
 #include "types/samples/Dvl.hpp"
 #include "types/samples/Fix.hpp"
 #include "types/samples/Imu.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 #include "types/samples/Pose.hpp"
 
 namespace insonify::ros {

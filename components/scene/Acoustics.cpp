@@ -13,7 +13,6 @@
 
 #include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/Seabed.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/DidYouMean.hpp"
 

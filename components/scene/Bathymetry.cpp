@@ -14,7 +14,6 @@
 #include "components/scene/SurfaceMaps.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/geometry/WorldFrame.hpp"
-#include "types/geometry/WorldPlaces.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::scene {

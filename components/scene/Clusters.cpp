@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "types/geometry/PosedMesh.hpp"
-#include "types/geometry/Weld.hpp"
 
 namespace insonify::scene {
 namespace {

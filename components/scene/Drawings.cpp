@@ -11,7 +11,6 @@
 
 #include "components/scene/Acoustics.hpp"
 #include "types/geometry/Extent.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/text/DidYouMean.hpp"
 
 namespace insonify::scene {

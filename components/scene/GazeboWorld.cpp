@@ -46,6 +46,18 @@ std::shared_ptr<const Scene> sharedWorld(const GazeboConfig& config, const std::
     return scene;
 }
 
+WorldSonars readWorldSonars(const std::filesystem::path& file) {
+    WorldSonars read;
+    loader::load("sdf").entry<void(const std::filesystem::path&, WorldSonars&)>("insonify_read_sonars")(file, read);
+    return read;
+}
+
+std::string requestSdf(const GazeboConfig& config) {
+    std::string text;
+    loader::load("gazebo").entry<void(const GazeboConfig&, std::string&)>("insonify_request_sdf")(config, text);
+    return text;
+}
+
 void setWorldReader(WorldReader reader) { givenReader() = reader; }
 
 }  // namespace insonify::scene

@@ -2,8 +2,10 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "components/scene/Scene.hpp"
+#include "types/samples/Pose.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/Describe.hpp"
 
@@ -22,6 +24,42 @@ struct GazeboConfig {
     void check(types::Diagnostics& diagnostics) const;
     bool operator==(const GazeboConfig&) const = default;
 };
+
+/** A sonar that a world's SDF describes: `<sensor type="custom" gz:type="insonify">` or `ignition:type`. */
+struct SonarSensor {
+    /** A property of the sonar's tasks. */
+    struct Setting {
+        std::string path;   ///< "water.depth" of the sonar, "noise.seed" of its noise, "receiver.tvg.max_db".
+        std::string value;  ///< In YAML.
+        int line = 0;       ///< In the SDF.
+    };
+    std::string name;        ///< With its scope, "rov::base::fls".
+    std::string link;        ///< Of its link, "rov::base".
+    types::Mount mount;      ///< In its link.
+    double update_rate = 0;  ///< Simulated [Hz]; 0: each pose of the world.
+    std::string topic;       ///< Empty: none is given.
+    std::string type = "sonar::SonarTask";
+    std::vector<Setting> settings;
+    std::string file;  ///< Empty for a world that Gazebo runs.
+    int line = 0;
+};
+
+/** What a world's SDF says of sonars. */
+struct WorldSonars {
+    std::string world;                ///< Name.
+    std::vector<SonarSensor> sonars;  ///< In the order of the file.
+    std::vector<std::string> models;  ///< Of the top level that may move: not `<static>`.
+    std::vector<std::string> others;  ///< Sensors of other types, with scope and type.
+    std::vector<std::string> notices;
+};
+
+/** Reads the sonars of an SDF file, which the component library sdf does. Throws types::ConfigError with all
+ *  diagnostics for a file that is no world, and for wrong sensors. */
+WorldSonars readWorldSonars(const std::filesystem::path& file);
+
+/** Returns the SDF of a world that Gazebo runs, with the models that it includes; the component library gazebo requests
+ *  it. Throws types::ConfigError as sharedWorld(). */
+std::string requestSdf(const GazeboConfig& config);
 
 /** Returns the models of a world, which the component library gazebo requests from Gazebo. Tasks that hold the scene of
  *  one world at the same time share it. Relative paths of meshes start at `folder`. Throws types::ConfigError with the

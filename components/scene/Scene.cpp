@@ -19,7 +19,6 @@
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/gltf/Gltf.hpp"
 #include "types/geometry/Angle.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/DidYouMean.hpp"
 

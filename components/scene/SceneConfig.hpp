@@ -11,7 +11,7 @@
 #include "components/scene/SurfaceMaps.hpp"
 #include "components/scene/motion/Animator.hpp"
 #include "types/geometry/Datum.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::scene {
 

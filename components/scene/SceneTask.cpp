@@ -12,12 +12,11 @@
 #include <utility>
 #include <variant>
 
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/framework/execution/Activity.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
-#include "types/Elapsed.hpp"
-#include "types/geometry/Quaternion.hpp"
+#include "types/Time.hpp"
 #include "types/geometry/WorldFrame.hpp"
 #include "types/text/DidYouMean.hpp"
 

@@ -20,7 +20,7 @@
 #include "components/scene/motion/Animator.hpp"
 #include "types/geometry/Snapshot.hpp"
 #include "types/text/ConfigError.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::scene {
 

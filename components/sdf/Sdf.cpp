@@ -36,8 +36,8 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/Surface.hpp"
 #include "components/sdf/SdfFile.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::sdf {
 namespace {

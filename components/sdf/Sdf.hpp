@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "components/scene/GazeboWorld.hpp"
 #include "components/scene/Scene.hpp"
 
 namespace insonify::sdf {
@@ -29,5 +30,10 @@ Urdf readUrdf(const std::filesystem::path& file, const std::string& text);
  *  Geometry::notices lists includes, meshes and pictures that are not found, and the warnings of libsdformat. Files are
  *  searched by meshes::ModelPaths. */
 scene::Scene readSdf(const std::filesystem::path& file);
+
+/** See scene::readWorldSonars(). Elements of the block `<gz:insonify>` of a sensor, with any prefix, are properties:
+ *  `type` is the sonar's task, `noise` and `receiver` are blocks of those tasks, and all others are of the sonar.
+ *  Numbers with spaces between them are lists, and elements of one name too. */
+scene::WorldSonars readSonars(const std::filesystem::path& file);
 
 }  // namespace insonify::sdf

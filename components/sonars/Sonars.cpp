@@ -9,7 +9,7 @@
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/config/Embed.hpp"
 #include "components/framework/config/YamlText.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 INSONIFY_EMBED(insonify_sonars, INSONIFY_SONARS)
 

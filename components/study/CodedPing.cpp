@@ -8,7 +8,7 @@
 
 #include "components/recordings/RecordingReader.hpp"
 #include "types/geometry/BeamArc.hpp"
-#include "types/geometry/Quaternion.hpp"
+#include "types/geometry/WorldFrame.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::study {

@@ -13,7 +13,7 @@
 #include "components/viewer/SceneMesh.hpp"
 #include "components/viewer/Server.hpp"
 #include "types/Thread.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -55,7 +55,11 @@ Json taskOf(const types::TaskStatus& task) {
     Json json = {{"name", task.record.name}, {"type", task.record.type}, {"state", task.state},
                  {"error", task.error},      {"cycle_s", task.cycle_s},  {"latency_s", numberOrNull(task.latency_s)},
                  {"outputs", outputs},       {"properties", properties}};
-    if (task.playback) json["playback"] = {{"at_s", task.playback->at_s}, {"length_s", task.playback->length_s}};
+    if (const auto& playback = task.playback)
+        json["playback"] = {{"at_s", playback->at_s}, {"length_s", playback->length_s}, {"paused", playback->paused}};
+    if (const auto& recording = task.recording)
+        json["recording"] = {
+            {"file", recording->file}, {"bytes", recording->bytes}, {"free_bytes", recording->free_bytes}};
     if (task.plan) json["plan"] = planOf(*task.plan);
     return json;
 }
@@ -140,7 +144,8 @@ std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, 
                                   {"unit", info.unit},
                                   {"doc", info.doc},
                                   {"min", numberOrNull(info.min)},
-                                  {"max", numberOrNull(info.max)}});
+                                  {"max", numberOrNull(info.max)},
+                                  {"fixed", std::ranges::find(task.fixed, info.name) != task.fixed.end()}});
         tasks.push_back({{"name", task.name}, {"properties", properties}, {"operations", task.operations}});
     }
     return dump({{"type", "interfaces"}, {"control", control}, {"tasks", tasks}});

@@ -9,8 +9,8 @@
 #include "components/ros/Stamps.hpp"
 #include "components/viewer/FoxgloveMessages.hpp"
 #include "types/geometry/PosedMesh.hpp"
-#include "types/geometry/WorldPlaces.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/geometry/WorldFrame.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::viewer {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "components/viewer/Frame.hpp"
 #include "components/viewer/Server.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::viewer {
 

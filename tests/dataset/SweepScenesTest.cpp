@@ -3,7 +3,7 @@
 #include <functional>
 #include <set>
 
-#include "components/dataset/commands/SweepFile.hpp"
+#include "components/dataset/commands/DatasetRun.hpp"
 #include "tests/support/Refused.hpp"
 #include "types/text/ConfigError.hpp"
 

@@ -9,7 +9,7 @@
 #include "components/ros/Pings.hpp"
 #include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 
 using namespace insonify;
 using namespace insonify::dds;

@@ -6,7 +6,7 @@
 #include "components/log/Reader.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Python.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 
 using namespace insonify;
 using namespace insonify::deployer;

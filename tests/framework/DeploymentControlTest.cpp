@@ -3,7 +3,9 @@
 
 #include <thread>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
+#include "components/framework/Properties.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Waiting.hpp"
 
@@ -43,6 +45,40 @@ TEST(DeploymentControlTest, ReportsTasksPortsAndConnections) {
     const auto interfaces = control->interfaces();
     EXPECT_EQ(interfaces[0].name, "source");
     EXPECT_NE(std::ranges::find(interfaces[0].operations, "stop void()"), interfaces[0].operations.end());
+}
+
+struct DialConfig {
+    double a = 1, b = 2;
+    static void describe(auto& self, auto& visit) {
+        visit({"a", "m", "any"}, self.a);
+        visit({"b", "m", "any"}, self.b);
+    }
+};
+
+/** Takes `a` while it runs. */
+struct Dial final : TaskContext, Adjustable {
+    using TaskContext::TaskContext;
+    Properties<DialConfig> config{this};
+    bool adjusts(const std::string& property) const override { return property == "a"; }
+};
+
+TEST(DeploymentControlTest, NamesThePropertiesThatNoRunningTaskTakes) {
+    Registry registry = test::testRegistry();
+    registry.add<Dial>("test::Dial", "");
+    Deployment deployment(DeploymentSpec::parse(R"(
+tasks:
+  source: {type: test::Source, activity: {period: 0.001}}
+  dial: {type: test::Dial, activity: {period: 1}}
+connections: []
+)",
+                                                "a.yml"),
+                          registry);
+    const auto interfaces = deployment.interfaces();
+    EXPECT_EQ(interfaces[1].fixed, std::vector<std::string>{"b"});
+    std::vector<std::string> all;
+    for (const types::PropertyInfo& property : interfaces[0].properties) all.push_back(property.name);
+    EXPECT_EQ(interfaces[0].fixed, all) << "a task that offers nothing takes nothing";
+    EXPECT_FALSE(all.empty());
 }
 
 TEST(DeploymentControlTest, AcceptsWarningsFromOtherThreadsWhileRunsBeginAndEnd) {

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "components/framework/config/ConfigReader.hpp"
-#include "components/framework/config/Quantity.hpp"
 #include "components/framework/config/YamlText.hpp"
 
 namespace insonify::framework {

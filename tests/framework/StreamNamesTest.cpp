@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/framework/config/StreamNames.hpp"
 #include "tests/framework/Tasks.hpp"
 

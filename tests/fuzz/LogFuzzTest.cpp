@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/PoseSources.hpp"
 #include "tests/support/Fuzz.hpp"
 #include "types/text/ConfigError.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/framework/config/PropertySections.hpp"
+#include "components/framework/config/PropertySources.hpp"
 #include "tests/support/Fuzz.hpp"
 
 namespace insonify::fuzz {

@@ -16,7 +16,7 @@ const std::map<std::string, std::set<std::string>> neighbours = {
     {"dds", {"ros"}},
     {"device", {"console", "output", "recordings", "sonars"}},  // readJson, ByteFile
     {"framework", {"loader"}},
-    {"gazebo", {"meshes", "scene"}},
+    {"gazebo", {"meshes", "ros", "scene"}},
     {"log", {"ros"}},
     {"logger", {"log"}},
     {"mavlink", {"device"}},  // its network
@@ -73,7 +73,7 @@ bool mayInclude(const Source& source, const Source& target) {
     if (mayIncludeAll(source)) return true;
     if (from == to)
         return from == "framework" || source.isTaskHalf() || !(target.isTaskHalf() || target.isCommandHalf());
-    const std::set<std::string> of_any_program = {"OwnProcess", "Thread"};
+    const std::set<std::string> of_any_program = {"Thread"};
     if (to == "types") return from != "gpu" || of_any_program.contains(target.stem());
     if ((from == "study" || from == "dataset") && target.isTaskHalf()) return false;
     return from != "types" && from != "gpu" && neighboursOf(source).contains(to);
@@ -154,7 +154,7 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/gpu/Context.hpp", "types/samples/Sonar.hpp"));
     EXPECT_TRUE(allowed("components/gpu/Context.cpp", "types/Thread.hpp"));
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/log/Reader.hpp"));
-    EXPECT_FALSE(allowed("components/study/error/ErrorStudy.cpp", "components/sonar/tasks/SonarTask.hpp"));
+    EXPECT_FALSE(allowed("components/study/error/ErrorStudy.cpp", "components/sonar/tasks/PingTask.hpp"));
     EXPECT_TRUE(allowed("components/study/error/ErrorStudy.cpp", "components/sonar/renderer/SonarRenderer.hpp"));
     EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/console/Json.hpp"));
     EXPECT_TRUE(allowed("components/study/commands/ErrorCommand.cpp", "components/study/error/ErrorStudy.hpp"));

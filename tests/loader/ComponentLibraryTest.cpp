@@ -188,6 +188,10 @@ TEST_F(ComponentLibraryTest, ReportsHowToInstallAnAbsentLibrary) {
     writeFile(folder_ / "b.world", "<sdf version='1.9'><world name='w'></world></sdf>\n");
     EXPECT_THAT(call({"scene", "b.world"}),
                 isRefused(HasSubstr("b.world: needs the component library sdf, which is not here")));
+    writeFile(folder_ / "hull.ply", "ply\n");
+    EXPECT_THAT(
+        call({"scene", "hull.ply"}),
+        isRefused(HasSubstr("hull.ply: needs the component library meshes, which is not here; `scripts/setup ")));
     for (const char* command : {"study", "dataset", "device"}) {
         EXPECT_THAT(call({command, "error", "--scene", "flat_bottom"}),
                     isRefused(HasSubstr(std::string(command) + ": is in the component library " + command +
@@ -266,6 +270,16 @@ TEST_F(ComponentLibraryTest, TheListHasInstalledAbsentAndBrokenLibraries) {
     EXPECT_EQ(call({"describe"}).code, 0);
 }
 
+TEST(ComponentTableTest, HasEveryLibraryThatThisBuildMakes) {
+    size_t made = 0;
+    for (const auto& entry : fs::directory_iterator(components)) {
+        if (entry.path().extension() != ".so") continue;
+        ++made;
+        EXPECT_NE(loader::findComponent(entry.path().stem().string()), nullptr) << entry.path();
+    }
+    EXPECT_GT(made, 0u);
+}
+
 TEST_F(ComponentLibraryTest, ListsTheMissingLibrariesOfADeployment) {
     add("nav");
     writeFile(folder_ / "a.yml", R"(tasks:
@@ -279,9 +293,10 @@ TEST_F(ComponentLibraryTest, ListsTheMissingLibrariesOfADeployment) {
 }
 
 TEST_F(ComponentLibraryTest, ASceneOrVideoNeedsTheLibraryOfItsEnding) {
-    const std::map<std::string, std::string> needed{
-        {"a.world", "sdf\n"}, {"a.sdf", "sdf\n"}, {"a.urdf", "sdf\n"},  {"a.URDF", "sdf\n"},  {"a.Sdf", "sdf\n"},
-        {"a.glb", ""},        {"a.GLTF", ""},     {"a.avi", "video\n"}, {"a.MP4", "video\n"}, {"a.sdf.txt", ""}};
+    const std::map<std::string, std::string> needed{{"a.world", "sdf\n"},  {"a.sdf", "sdf\n"},   {"a.urdf", "sdf\n"},
+                                                    {"a.URDF", "sdf\n"},   {"a.Sdf", "sdf\n"},   {"a.obj", "meshes\n"},
+                                                    {"a.STL", "meshes\n"}, {"a.glb", ""},        {"a.GLTF", ""},
+                                                    {"a.avi", "video\n"},  {"a.MP4", "video\n"}, {"a.sdf.txt", ""}};
     for (const auto& [file, library] : needed) {
         writeFile(folder_ / "a.yml", "tasks:\n  a: {type: scene::SceneTask, properties: {file: " + file + "}}\n");
         EXPECT_EQ(call({"libraries", "a.yml"}).out, library) << file;

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/PoseSources.hpp"
 #include "tests/support/Bag.hpp"
 #include "types/text/ConfigError.hpp"

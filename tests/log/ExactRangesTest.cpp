@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/Stream.hpp"
 #include "components/log/Writer.hpp"
 #include "components/log/mcap/Reader.hpp"

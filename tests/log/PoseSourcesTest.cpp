@@ -4,7 +4,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "components/log/Check.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/PoseSources.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"

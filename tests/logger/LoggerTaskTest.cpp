@@ -51,6 +51,38 @@ types::SonarPtr ping(int64_t time) {
     return sample;
 }
 
+TEST(LoggerTaskTest, ReportsWhatItHasWrittenAndTheSpaceLeft) {
+    LoggerConfig config;
+    config.max_file_size = 1e6;
+    Bench bench(config);
+    Source<std::string> source(bench.task, "text");
+    EXPECT_FALSE(bench.task.recording());
+    ASSERT_TRUE(bench.task.configure() && bench.task.start()) << bench.task.lastError();
+    for (int i = 0; i < 25; ++i) {
+        source.write(std::string(100'000, ' '));
+        bench.task.update();
+    }
+    ASSERT_TRUE(test::becomesTrue([&] {
+        bench.task.update();
+        return bench.task.recording()->bytes > 2'500'000;
+    }));
+    const types::Recording seen = *bench.task.recording();
+    EXPECT_EQ(std::filesystem::path(seen.file).filename(), "x.2.log");
+    EXPECT_GT(seen.free_bytes, 0u);
+    bench.finish();
+    uint64_t on_disk = 0;
+    for (const char* const name : {"x.0.log", "x.1.log", "x.2.log"})
+        on_disk += std::filesystem::file_size(bench.folder / name);
+    EXPECT_LE(seen.bytes, on_disk);
+    EXPECT_GE(seen.bytes + 1'000, on_disk) << "apart from what ends the files";
+}
+
+TEST(LoggerTaskTest, OnlyRecordCanBeSetWhileItRuns) {
+    Bench bench;
+    EXPECT_TRUE(bench.task.adjusts("record"));
+    for (const char* const fixed : {"file", "queue", "flush_period", "mcap"}) EXPECT_FALSE(bench.task.adjusts(fixed));
+}
+
 TEST(LoggerTaskTest, StreamsStateTheWidthOfBinsThatAreNotWholeMicroseconds) {
     for (const double width : {0.005, 0.0495}) {
         Bench bench;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <random>
 
-#include "components/log/Check.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/Reader.hpp"
 #include "components/logger/LoggerTask.hpp"
 #include "tests/logger/LimitedDisk.hpp"
@@ -12,7 +12,7 @@
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::logger {
 namespace {

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/log/Check.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/logger/PropertyLog.hpp"
 #include "tests/support/Folder.hpp"

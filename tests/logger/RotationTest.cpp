@@ -4,7 +4,7 @@
 #include <map>
 #include <numeric>
 
-#include "components/log/Check.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "components/logger/LogThread.hpp"

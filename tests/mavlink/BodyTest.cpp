@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "components/mavlink/Body.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::mavlink {
 namespace {

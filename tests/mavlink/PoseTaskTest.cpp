@@ -8,7 +8,7 @@
 #include "tests/mavlink/Vehicle.hpp"
 #include "tests/support/Listening.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 
 using namespace insonify;
 using namespace insonify::mavlink;

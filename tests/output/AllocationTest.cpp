@@ -2,7 +2,7 @@
 // this project's code are. Another thread writes picture files.
 #include <gmock/gmock.h>
 
-#include "components/output/tasks/ScanMosaicTask.hpp"
+#include "components/output/tasks/PairPictureTask.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Ports.hpp"

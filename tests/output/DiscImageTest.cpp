@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/output/pictures/DiscImage.hpp"
+#include "components/output/pictures/FanImage.hpp"
 #include "tests/output/Pixels.hpp"
 
 namespace insonify::output {

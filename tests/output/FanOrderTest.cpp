@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 
 #include "components/output/maps/ScanMap.hpp"
-#include "components/output/maps/Similarity.hpp"
-#include "components/output/pictures/DiscImage.hpp"
 #include "components/output/pictures/FanImage.hpp"
 #include "components/output/pictures/PlainPicture.hpp"
 #include "components/output/pictures/TruthImage.hpp"

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/output/tasks/ScanMosaicTask.hpp"
+#include "components/output/tasks/PairPictureTask.hpp"
 #include "tests/output/PictureBench.hpp"
 #include "tests/output/Room.hpp"
 #include "tests/support/Refused.hpp"

@@ -1,6 +1,6 @@
 #include <random>
 
-#include "components/output/maps/Similarity.hpp"
+#include "components/output/pictures/PlainPicture.hpp"
 #include "tests/output/Pixels.hpp"
 
 namespace insonify::output {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "components/output/maps/ScanMosaic.hpp"
-#include "components/output/pictures/DiscImage.hpp"
 #include "components/output/pictures/FanImage.hpp"
 #include "components/output/pictures/WaterfallImage.hpp"
 #include "components/output/tasks/PictureTask.hpp"

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/output/tasks/TruthImageTask.hpp"
+#include "components/output/tasks/PairPictureTask.hpp"
 #include "tests/output/PictureBench.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Allocations.hpp"

@@ -243,6 +243,36 @@ TEST(TrajectoryTest, FilesOfTumAndEurocHaveThePosesOfTheCsv) {
     }
 }
 
+TEST(TrajectoryTest, AFileInTheAxesOfRosOrOfAircraftHasTheSamePath) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> any(-50, 50);
+    std::string rock = header, enu = header, ned = header;
+    for (int i = 0; i < 50; ++i) {
+        const glm::dvec3 p(any(random), any(random), any(random));  // north, west, up
+        const glm::dquat q = glm::normalize(glm::dquat(any(random), any(random), any(random), any(random)));
+        const double half = std::sqrt(0.5);
+        const glm::dquat to_enu = glm::dquat(half, 0, 0, half) * q;  // north, the x of Rock, is the y of ENU
+        rock += lineOf({double(i), p.x, p.y, p.z, q.w, q.x, q.y, q.z}, ",") + "\n";
+        enu += lineOf({double(i), -p.y, p.x, p.z, to_enu.w, to_enu.x, to_enu.y, to_enu.z}, ",") + "\n";
+        ned += lineOf({double(i), p.x, -p.y, -p.z, q.w, q.x, -q.y, -q.z}, ",") + "\n";
+    }
+    const TextFile file(rock);
+    const Trajectory wanted = Trajectory::fromFile(file.path);
+    for (const auto& [text, frame] : {std::pair(enu, types::WorldFrame::Enu), std::pair(ned, types::WorldFrame::Ned)}) {
+        const TextFile other(text);
+        const Trajectory path = Trajectory::fromFile(other.path, false, {}, frame);
+        ASSERT_EQ(path.stamps().size(), 50u);
+        for (size_t i = 0; i < 50; ++i) {
+            EXPECT_EQ(path.stamps()[i].position, wanted.stamps()[i].position);
+            EXPECT_GT(std::abs(glm::dot(path.stamps()[i].orientation, wanted.stamps()[i].orientation)), 1 - tiny);
+        }
+    }
+    types::Diagnostics diagnostics;
+    TrajectoryConfig{.waypoints = {Waypoint{}}, .world_frame = types::WorldFrame::Enu}.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics.front().path, "world_frame");
+}
+
 TEST(TrajectoryTest, WrongFilesOfTumAndEurocAreRefusedWithLineAndColumn) {
     struct Wrong {
         std::string text;

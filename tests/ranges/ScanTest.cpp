@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/ros/Clouds.hpp"
 #include "components/ros/Pings.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "tests/support/Draw.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

@@ -2,7 +2,7 @@
 #include "components/recordings/Xtf.hpp"
 #include "tests/recordings/RecordedFileTest.hpp"
 #include "tests/support/Pings.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::recordings {
 namespace {

@@ -181,6 +181,7 @@ TEST(ReplayClockTest, PausedLogTimeAdvancesByStep) {
         bench.task.update();
         EXPECT_THAT(stampsIn(poses), ElementsAre(10));
         bench.task.pause(true);
+        EXPECT_TRUE(bench.task.playback()->paused);
         bench.updateAt(1'500'000);
         EXPECT_THAT(stampsIn(poses), ElementsAre());
         bench.task.step();
@@ -189,6 +190,7 @@ TEST(ReplayClockTest, PausedLogTimeAdvancesByStep) {
         bench.updateAt(2'000'000);
         EXPECT_THAT(stampsIn(poses), ElementsAre()) << "one step, one instant";
         bench.task.pause(false);
+        EXPECT_FALSE(bench.task.playback()->paused);
         bench.updateAt(2'000'005);
         EXPECT_THAT(stampsIn(poses), ElementsAre(30));
     }

@@ -1,9 +1,9 @@
 // Every type of types::SampleTypes in a log of each format, converted from one to the other, exported and replayed.
 #include <gmock/gmock.h>
 
-#include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/Export.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/TypeNames.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "components/replay/ReplayTask.hpp"

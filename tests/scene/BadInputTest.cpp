@@ -4,7 +4,7 @@
 #include <random>
 
 #include "tests/scene/SceneFiles.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -2,11 +2,11 @@
 #include <gmock/gmock.h>
 
 #include "components/sonar/tasks/AltimeterTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "components/sonar/tasks/ProfilerTask.hpp"
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "components/sonar/tasks/SideScanTask.hpp"
 #include "components/sonar/tasks/Sonar3dTask.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

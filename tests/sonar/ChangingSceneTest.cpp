@@ -14,7 +14,7 @@
 #include "components/sonar/rays/SceneTrees.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/surfaces/MeshFacts.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Needs.hpp"
 #include "tests/support/Surfaces.hpp"

@@ -5,7 +5,7 @@
 
 #include "components/sonar/bins/LineArray.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"

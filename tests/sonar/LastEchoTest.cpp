@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "components/framework/execution/Activity.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <filesystem>
 
-#include "components/sonar/rays/MeshesAhead.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
 #include "components/sonar/surfaces/MeshFacts.hpp"
 #include "components/study/Shapes.hpp"

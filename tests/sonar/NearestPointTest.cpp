@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "components/scene/Clusters.hpp"
-#include "components/sonar/surfaces/NearestPoint.hpp"
+#include "components/sonar/surfaces/MeshFacts.hpp"
 #include "components/sonar/surfaces/ObjectPlacements.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 #include "tests/support/Scenes.hpp"

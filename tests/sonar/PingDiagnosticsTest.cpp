@@ -5,7 +5,7 @@
 #include <random>
 
 #include "components/scene/Clusters.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Deformed.hpp"
 #include "tests/support/Hills.hpp"

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -9,7 +9,7 @@
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/geometry/Angle.hpp"

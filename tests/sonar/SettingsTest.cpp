@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "components/sonar/tasks/PingTask.hpp"
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "components/sonar/tasks/Sonar3dTask.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "types/geometry/Angle.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "components/sonar/tasks/SonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/TaskBench.hpp"
 

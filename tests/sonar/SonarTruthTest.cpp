@@ -7,7 +7,7 @@
 #include <random>
 
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

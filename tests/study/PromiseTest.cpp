@@ -10,7 +10,7 @@
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/renderer/Metrics.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "components/study/StudyScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

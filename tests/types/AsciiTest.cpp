@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "tests/support/Folder.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 #include "types/text/RosNames.hpp"
 
 namespace insonify::types {

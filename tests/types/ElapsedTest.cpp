@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 
 namespace insonify::types {
 namespace {

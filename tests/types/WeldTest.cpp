@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "types/geometry/Weld.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::types {
 namespace {

@@ -47,7 +47,7 @@ struct FormConfig {
     }
 };
 
-class FormTask final : public framework::TaskContext {
+class FormTask final : public framework::TaskContext, public framework::Adjustable {
 public:
     using TaskContext::TaskContext;
     framework::Properties<FormConfig> config{this};

@@ -57,11 +57,19 @@ struct PageTest : testing::Test {
         browser->press("Enter");
         EXPECT_EQ(value(byId(list) + ".value"), option);
     }
+    /** Chooses a setting in the dialog of settings. */
+    void set(const std::string& setting, const std::string& choice) {
+        browser->click(byId("settings"));
+        ASSERT_TRUE(becomes(byId("dialog") + ".open"));
+        value(byId("set_" + setting) + ".value = '" + choice + "', " + byId("set_" + setting) + ".onchange()");
+        click("close");
+        EXPECT_EQ(value("insonify.settings." + setting), choice);
+    }
     /** Moves a slider of steps of 1 by keys. */
     void slide(const std::string& id, int to) {
-        browser->click(byId(id));
-        browser->press("Home");
-        browser->press("ArrowRight", to - std::stoi(value(byId(id) + ".min").get<std::string>()));
+        value(byId(id) + ".focus()");
+        const int steps = to - std::stoi(value(byId(id) + ".value").get<std::string>());
+        browser->press(steps > 0 ? "ArrowRight" : "ArrowLeft", std::abs(steps));
         EXPECT_EQ(value(byId(id) + ".value"), std::to_string(to));
     }
     /** Replaces the content of a field and presses Enter. */

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <opencv2/imgcodecs.hpp>
+#include <regex>
 
 #include "tests/support/Folder.hpp"
 #include "tests/viewer/Page.hpp"
@@ -36,7 +37,7 @@ TEST_F(PageTest, DrawsAFanAcrossTheSeamBehindTheSonarWithEmptyGaps) {
         for (const double bearing : {-172.0, -179.0, 181.5}) EXPECT_EQ(pixelAt(6.75, bearing), white) << bearing;
         for (const double bearing : {179.0, 172.0, 155.0}) EXPECT_EQ(pixelAt(6.75, bearing), black) << bearing;
         EXPECT_NE(pixelAt(6.75, 165), black) << "between beams there is no picture";
-        EXPECT_THAT(readAt(6.75, -175), HasSubstr("-175.0° stbd"));
+        EXPECT_THAT(readAt(6.75, -175), HasSubstr("   175.0° stbd"));
         EXPECT_EQ(readAt(6.75, 165), "");
     }
 }
@@ -45,10 +46,11 @@ TEST_F(PageTest, ColourMapAndGainChangeThePicture) {
     choose("map", "gray");
     EXPECT_EQ(pixelAt(6.75, 0), json({255, 255, 255}));
     EXPECT_EQ(pixelAt(5.7, 0), json({0, 0, 0}));
-    slide("gain", -20);  // of 45 dB from black to white
+    slide("high", 20);
+    slide("low", -25);  // of 45 dB from black to white
     EXPECT_NEAR(pixelAt(6.75, 0)[0].get<int>(), 255 * 25 / 45, 5);
-    EXPECT_EQ(text("gain_db"), "-20 dB");
-    slide("span", 90);
+    EXPECT_EQ(text("contrast"), "-25 to 20 dB");
+    slide("low", -70);
     EXPECT_NEAR(pixelAt(6.75, 0)[0].get<int>(), 255 * 70 / 90, 5);
 }
 
@@ -70,9 +72,31 @@ TEST_F(PageTest, TheCursorShowsRangeBearingAndLevel) {
     EXPECT_EQ(readAt(15.5, 0), "") << "beyond the last bin";
 }
 
-TEST_F(PageTest, ShowsSignedBearingsAndTheRange) {
-    EXPECT_THAT(readAt(6.75, -8), HasSubstr("-8"));
-    EXPECT_THAT(readAt(6.75, -8), HasSubstr("stbd"));
+TEST_F(PageTest, BearingsHaveASideOrASignAsChosen) {
+    const auto labels = [&] {
+        return value(R"((() => {
+            const {fan} = insonify, {prototype} = CanvasRenderingContext2D, draw = prototype.fillText, texts = [];
+            prototype.fillText = (text) => texts.push(text);
+            fan.draw();
+            prototype.fillText = draw;
+            return texts.filter((text) => text.endsWith('°')).slice(0, 2);
+        })())");
+    };
+    struct Case {
+        const char *choice, *port, *starboard;
+        json labels;
+    };
+    for (const Case& one : {Case{"sides", "   8.0° port ", "   8.0° stbd ", {"45°", "30°"}},
+                            {"starboard", "   -8.0° ", "   +8.0° ", {"+45°", "+30°"}},
+                            {"port", "   +8.0° ", "   -8.0° ", {"-45°", "-30°"}},
+                            {"true", "   352.0° ", "   008.0° ", {"045°", "030°"}}}) {
+        SCOPED_TRACE(one.choice);
+        set("bearings", one.choice);
+        const auto tenths = [](std::string text) { return std::regex_replace(text, std::regex("[.][0-9]°"), ".0°"); };
+        EXPECT_THAT(tenths(readAt(6.75, 8.05)), HasSubstr(one.port));
+        EXPECT_THAT(tenths(readAt(6.75, -8.05)), HasSubstr(one.starboard));
+        EXPECT_EQ(labels(), one.labels);
+    }
     EXPECT_EQ(text("reach"), "15.0 m, 32 x 100, 150 mm");
 }
 
@@ -155,7 +179,7 @@ TEST_F(PageTest, TwoClicksMeasureDistanceAndDirection) {
     const json found = value("insonify.fan.measured()");
     EXPECT_NEAR(found["distance"], 6, 0.06);
     EXPECT_NEAR(types::degrees(found["bearing"].get<double>()), -30, 1);
-    EXPECT_THAT(text("measured"), testing::AllOf(HasSubstr(" m apart, towards -"), HasSubstr("stbd, 0")));
+    EXPECT_THAT(text("measured"), testing::AllOf(HasSubstr(" m apart, towards "), HasSubstr("° stbd, 0")));
     double heading = 0;
     const std::string reported = text("measured");
     ASSERT_EQ(std::sscanf(reported.c_str() + reported.find("stbd, ") + 6, "%lf° true", &heading), 1) << reported;
@@ -200,7 +224,7 @@ TEST_F(PageTest, MeasuresAlikeOnScreensOfAnyScale) {
                     std::to_string(scale)));
         EXPECT_EQ(pixelAt(6.75, 0), brightest) << scale;
         EXPECT_EQ(pixelAt(5.7, 0), darkest) << scale;
-        EXPECT_THAT(readAt(6.75, -8), testing::AllOf(HasSubstr("6.7"), HasSubstr("-8."), HasSubstr("stbd"))) << scale;
+        EXPECT_THAT(readAt(6.75, -8), testing::AllOf(HasSubstr("6.7"), HasSubstr(" 8."), HasSubstr("stbd"))) << scale;
         click("measure");
         clickAt(6, 30);
         clickAt(6, -30);
@@ -238,7 +262,7 @@ TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {
 TEST_F(PageTest, SavesAFrozenPictureWithTheAttitudeShown) {
     ASSERT_TRUE(becomes("document.getElementById('attitude').textContent.includes('depth2.00 m')"));
     click("freeze");
-    value(R"(import('./places.js').then(({Places}) => {
+    value(R"(import('./ping.js').then(({Places}) => {
         const {of} = Places.prototype;
         Places.prototype.of = function(...asked) { return {...of.apply(this, asked), position: [0, 0, -9]}; };
         const {fan} = insonify, draw = CanvasRenderingContext2D.prototype.fillText;
@@ -248,7 +272,7 @@ TEST_F(PageTest, SavesAFrozenPictureWithTheAttitudeShown) {
         };
         HTMLAnchorElement.prototype.click = () => {};
     }))");
-    slide("gain", 3);
+    slide("high", 3);
     click("snapshot");
     ASSERT_TRUE(becomes("self.caption"));
     EXPECT_THAT(value("self.caption").get<std::string>(), HasSubstr("depth 2.00 m"));
@@ -258,10 +282,10 @@ TEST_F(PageTest, ShowsHeadingDepthAndAttitudeOverThePicture) {
     ASSERT_TRUE(becomes("!document.getElementById('attitude').hidden"));
     EXPECT_TRUE(
         becomes("document.getElementById('attitude').textContent === "
-                "'heading000.0°depth2.00 mpitch0.0°roll0.0°'"))
+                "'heading000.0°depth2.00 mpitch0.0°roll0.0°speed2.00 m/s'"))
         << text("attitude");
     // Turned to starboard by 90 degrees, then nose down by 20, then starboard down by 10: z, y, x of the body.
-    const json turned = value(R"(import('./attitude.js').then(({attitudeOf}) => {
+    const json turned = value(R"(import('./instruments.js').then(({attitudeOf}) => {
         const half = (deg) => deg * Math.PI / 360, product = ([ax, ay, az, aw], [bx, by, bz, bw]) =>
             [aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw,
              aw * bw - ax * bx - ay * by - az * bz];

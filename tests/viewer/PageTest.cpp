@@ -160,7 +160,7 @@ TEST_F(PageTest, ATimelineDraggedBackKeepsFollowingTheLog) {
 
 TEST_F(PageTest, RangeGainAndFrequencyComeFirst) {
     // The properties of the shown sonar, in this order, from any task that has them.
-    const json found = value(R"(import('./first.js').then(({First}) => {
+    const json found = value(R"(import('./fields.js').then(({First}) => {
         const property = (name) => ({name, type: 'double', unit: 'x', doc: ''}), task = (name, ...names) => ({name, properties: names.map(property)});
         const first = new First({}, document.createElement('span'));
         first.setInterfaces({control: true, tasks: [task('other', 'range'), task('sonar', 'bins', 'frequency_khz', 'range'), task('receiver', 'gain_db')]});
@@ -168,7 +168,7 @@ TEST_F(PageTest, RangeGainAndFrequencyComeFirst) {
         return [[...first.place.children].map((one) => one.title.split(':')[0]), first.place.querySelector('input').value];
     }))");
     EXPECT_EQ(found, json({{"sonar.range", "receiver.gain_db", "sonar.frequency_khz"}, "50"}));
-    const json sorted = value(R"(import('./tables.js').then(({rank}) =>
+    const json sorted = value(R"(import('./fields.js').then(({rank}) =>
         ['bins', 'frequency_khz', 'range', 'gain_db', 'more'].map((name) => ({name})).sort((a, b) => rank(a) - rank(b)).map((one) => one.name)))");
     EXPECT_EQ(sorted, json({"range", "gain_db", "frequency_khz", "bins", "more"}));
 }

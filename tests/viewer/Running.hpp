@@ -31,15 +31,17 @@ struct QualityConfig {
 struct LevelConfig {
     double level = 1;
     bool record = false;
+    double fixed = 4;
     QualityConfig quality{256, {}};
     static void describe(auto& self, auto& visit) {
         visit({"level", "1", "of the echo", 0, 100}, self.level);
         visit({"record", "", "what a logger calls so"}, self.record);
+        visit({"fixed", "m", "is not set while running"}, self.fixed);
         visit({"quality", "", "rows or a budget"}, self.quality);
     }
 };
 
-class LevelTask final : public framework::TaskContext {
+class LevelTask final : public framework::TaskContext, public framework::Adjustable, public framework::Recorder {
 public:
     using TaskContext::TaskContext;
     framework::Properties<LevelConfig> config{this};
@@ -51,13 +53,20 @@ public:
             return asked_++ % 2 == 0 ? "" : fmt::format("at {:.0f} deg, {:.1f} m", bearing_deg, range);
         }};
 
+    std::optional<types::Recording> recording() const override {
+        return types::Recording{"dives/dive.3.log", written_, 50'000'000'000 - written_};
+    }
+    bool adjusts(const std::string& property) const override { return property != "fixed"; }
+
 private:
     int asked_ = 0;
+    std::atomic<uint64_t> written_{0};  // 100 MB in a second of simulated time
     bool propertiesHook() override {
         if (config->level == 66) throw std::runtime_error("66 is no level for today");
         return true;
     }
     void updateHook() override {
+        if (config->record) written_ += 1'000'000;
         const auto sample = blockPing(now().microseconds);
         for (float& bin : sample->bins) bin *= static_cast<float>(config->level);
         ping.write(sample);
@@ -74,7 +83,10 @@ struct WaterConfig {
 };
 
 /** Sand 5 m below the surface with a stone, and a vehicle that moves north over it. */
-class WorldTask final : public framework::TaskContext, public framework::Planned, public framework::Player {
+class WorldTask final : public framework::TaskContext,
+                        public framework::Planned,
+                        public framework::Player,
+                        public framework::Adjustable {
 public:
     using TaskContext::TaskContext;
     framework::Properties<WaterConfig> config{this};

@@ -25,14 +25,16 @@ TEST(StatusTextTest, AStatusHasTasksPlansAndLosses) {
     task.plan.emplace();
     task.plan->omitted = {{"multipath", "not configured"}};
     task.plan->predicted_error = std::numeric_limits<double>::quiet_NaN();
-    task.playback = {1.5, 60};
+    task.playback = {1.5, 60, true};
+    task.recording = {"x.0.log", 5, 7};
     status.tasks = {task};
     status.connections = {{"a.b", "c.d", "buffer", 3, 4}};
     const json text = json::parse(statusText(status, {2, 1, 5}));
     EXPECT_EQ(text["tasks"][0]["properties"]["range"], 50.5);
     EXPECT_EQ(text["tasks"][0]["plan"]["omitted"][0]["reason"], "not configured");
     EXPECT_TRUE(text["tasks"][0]["plan"]["predicted_error"].is_null());
-    EXPECT_EQ(text["tasks"][0]["playback"], (json{{"at_s", 1.5}, {"length_s", 60}}));
+    EXPECT_EQ(text["tasks"][0]["playback"], (json{{"at_s", 1.5}, {"length_s", 60}, {"paused", true}}));
+    EXPECT_EQ(text["tasks"][0]["recording"], (json{{"file", "x.0.log"}, {"bytes", 5}, {"free_bytes", 7}}));
     EXPECT_EQ(text["connections"][0]["lost"], 3);
     EXPECT_EQ(text["connections"][0]["passed_over"], 4);
     EXPECT_EQ(text["clients"], 2);
@@ -57,8 +59,9 @@ TEST(StatusTextTest, ReplacesTextThatIsNotUtf8) {
 
 TEST(StatusTextTest, InfiniteBoundsAreNull) {
     const double infinite = std::numeric_limits<double>::infinity();
-    const json text = json::parse(
-        interfacesText({{"sonar", {{"range", "double", "m", "", 0, infinite, "far edge"}}, {"start void()"}}}, true));
+    const json text = json::parse(interfacesText(
+        {{"sonar", {{"range", "double", "m", "", 0, infinite, "far edge"}}, {"start void()"}, {"range"}}}, true));
+    EXPECT_EQ(text["tasks"][0]["properties"][0]["fixed"], true);
     EXPECT_EQ(text["tasks"][0]["properties"][0]["min"], 0);
     EXPECT_TRUE(text["tasks"][0]["properties"][0]["max"].is_null());
 }

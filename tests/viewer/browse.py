@@ -13,6 +13,7 @@ Reads lines of JSON and answers each with one. SCRIPT runs before those of the p
     {"downloads": FOLDER}                  where the browser saves files
     {"size": [W, H, SCALE]}                sets the window's size, on a screen of SCALE pixels per CSS pixel
     {"screenshot": FILE}                   writes a PNG
+    {"tab": URL}                           opens another tab behind this one
 """
 
 import asyncio
@@ -187,6 +188,8 @@ class Page:
             return await self.act("Page.setDownloadBehavior", behavior="allow", downloadPath=asked["downloads"])
         if "size" in asked:
             return await self.size(*asked["size"])
+        if "tab" in asked:
+            return await self.act("Target.createTarget", url=asked["tab"], background=True)
         return await self.screenshot(asked["screenshot"])
 
 

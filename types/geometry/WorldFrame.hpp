@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 #include <numbers>
@@ -7,6 +9,33 @@
 #include "types/text/Describe.hpp"
 
 namespace insonify::types {
+
+/** Distance from the world's origin, along each axis, up to which numbers of 32 bits resolve half a millimetre [m].
+ * Beyond it, as in UTM coordinates, places in the world have 64 bits, or are relative to an origin near by that has
+ * them. */
+inline constexpr double resolved_in_32_bits = 8192;
+
+/** Whether a place needs more than 32 bits; false for a place that is not finite. */
+inline bool isFarOut(const glm::dvec3& place) {
+    const auto is_far = [](double x) { return std::isfinite(x) && std::abs(x) > resolved_in_32_bits; };
+    return is_far(place.x) || is_far(place.y) || is_far(place.z);
+}
+
+/** Returns whether a quaternion's length differs from 1 by more than 1 %: its components may be degrees, or in another
+ *  order. */
+inline bool isOddlyLong(const glm::dquat& orientation) { return std::abs(glm::length(orientation) - 1) > 0.01; }
+
+/** Rotation angles about z, then y, then x: R = Rz(yaw) Ry(pitch) Rx(roll), as in types::Mount [rad]. */
+struct Turns {
+    double yaw = 0, pitch = 0, roll = 0;
+};
+
+/** Returns the rotation angles of a unit quaternion. */
+inline Turns turnsOf(const glm::dquat& q) {
+    return {.yaw = std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)),
+            .pitch = std::asin(std::clamp(2 * (q.w * q.y - q.z * q.x), -1.0, 1.0)),
+            .roll = std::atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y))};
+}
 
 /** Axes of poses. Rock's axes are used internally: world x north, y west, z up; body x forward, y left, z up. */
 enum class WorldFrame {

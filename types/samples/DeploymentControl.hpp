@@ -19,6 +19,14 @@ struct PortStatus {
 struct Playback {
     double at_s = 0;      ///< Time since the start of the log [s].
     double length_s = 0;  ///< [s]
+    bool paused = false;  ///< Whether the log's time stands, apart from that of the deployment.
+};
+
+/** What a task that records has written, and how much it still can. */
+struct Recording {
+    std::string file;         ///< The one that is written now.
+    uint64_t bytes = 0;       ///< In all files of this run [B].
+    uint64_t free_bytes = 0;  ///< On the disk of the file [B].
 };
 
 struct TaskStatus {
@@ -28,7 +36,8 @@ struct TaskStatus {
     double latency_s = 0;      ///< From the stamp of the last written sample to the write, realtime only [s].
     std::optional<Plan> plan;  ///< The last plan of the task.
     std::vector<PortStatus> outputs;
-    std::optional<Playback> playback = std::nullopt;  ///< Only for a task that plays a log.
+    std::optional<Playback> playback = std::nullopt;    ///< Only for a task that plays a log.
+    std::optional<Recording> recording = std::nullopt;  ///< Only for a task that records.
 };
 
 struct ConnectionStatus {
@@ -51,6 +60,7 @@ struct TaskInterface {
     std::string name;
     std::vector<PropertyInfo> properties;  ///< Top-level properties; a block is one property.
     std::vector<std::string> operations;   ///< Name and signature: "seek void(double)".
+    std::vector<std::string> fixed = {};   ///< Names of the properties that cannot be set while the task runs.
 };
 
 /** A task's access to its deployment, through Environment::deployment. May be used on any thread, but not in the cycle

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "types/text/Ascii.hpp"
-
 namespace insonify::types {
 namespace {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::types {
 namespace {

@@ -13,8 +13,8 @@
 #include "components/command/CommandLine.hpp"
 #include "components/command/init/Starter.hpp"
 #include "components/console/Console.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::command {
 

@@ -1,5 +1,6 @@
+#include "components/dataset/commands/DatasetRun.hpp"
+
 // insonify dataset DEPLOYMENT --sweep SWEEP --out DIR; insonify dataset join PART... --out DIR
-#include "components/dataset/commands/DatasetCommand.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +14,6 @@
 #include "components/console/ProgressLine.hpp"
 #include "components/console/Shard.hpp"
 #include "components/dataset/Collection.hpp"
-#include "components/dataset/commands/DatasetRun.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "types/text/ConfigError.hpp"
 

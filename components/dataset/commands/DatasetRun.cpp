@@ -14,11 +14,9 @@
 
 #include "components/console/Json.hpp"
 #include "components/console/Sha256.hpp"
-#include "components/dataset/commands/SweepFile.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/framework/config/YamlText.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/pose/Trajectory.hpp"
@@ -121,7 +119,7 @@ std::string quoted(const std::string& text) { return console::Json(text).dump();
 pose::Trajectory trajectoryOf(const Sweep& sweep) {
     const TrajectoryPoses& asked = *sweep.trajectory;
     try {
-        return pose::Trajectory::fromFile(asked.file, false, asked.times);
+        return pose::Trajectory::fromFile(asked.file, false, asked.times, asked.world_frame);
     } catch (const types::ConfigError& error) {
         if (std::error_code none; fs::exists(asked.file, none)) throw;
         throw types::ConfigError({{"poses.trajectory.file", error.what(), sweep.file, asked.line, asked.column}});

@@ -1,17 +1,34 @@
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "components/console/Action.hpp"
 #include "components/dataset/Annotate.hpp"
 #include "components/dataset/Collection.hpp"
 #include "components/dataset/SampleFiles.hpp"
 #include "components/dataset/Samples.hpp"
 #include "components/dataset/Sweep.hpp"
 #include "components/deployer/Simulation.hpp"
+#include "components/scene/Scene.hpp"
 
 namespace insonify::dataset {
+
+/** Returns the parts of a scene that a sweep needs: the nodes to place with their places in the file, the nodes to keep
+ *  clear of, and the nodes to place on. Throws types::ConfigError if a node for objects to stand on is absent. */
+SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene);
+
+/** Returns the names of each object of a scene, and of the nodes above it. */
+std::vector<Lineage> lineages(const scene::Scene& scene);
+
+/** Returns the SHA-256 of all triangles, objects' places and materials of a scene. */
+std::string digestOf(const types::Geometry& geometry);
+
+/** Reads the sweep of a data set. Its paths are resolved against its folder. Throws types::ConfigError with all
+ *  diagnostics and their places. */
+Sweep readSweep(const std::filesystem::path& file);
 
 /** Returns the sweep with files for its scenes that have a recipe. The component library worlds makes a scene once per
  *  recipe, seed and generator. Scenes are kept in insonify/scenes of the user's cache. Throws types::ConfigError for a
@@ -87,5 +104,8 @@ private:
     std::vector<std::string> overrides_;                ///< Overrides of the current simulation.
     size_t scene_ = 0;                                  ///< Scene of the current simulation.
 };
+
+/** Adds the command `dataset` with its options to `app`; parsing it sets `action`. */
+void addCommand(CLI::App& app, console::Action& action);
 
 }  // namespace insonify::dataset

@@ -1,5 +1,3 @@
-#include "components/dataset/commands/SweepFile.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <optional>
 
 #include "components/console/Sha256.hpp"
+#include "components/dataset/commands/DatasetRun.hpp"
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/config/YamlText.hpp"
 #include "types/text/ConfigError.hpp"

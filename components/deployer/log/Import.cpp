@@ -9,17 +9,17 @@
 #include <memory>
 #include <type_traits>
 
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "components/log/Stream.hpp"
 #include "components/log/Writer.hpp"
 #include "components/logger/PropertyLog.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/recordings/RecordingReader.hpp"
 #include "components/sonar/tasks/AltimeterTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "components/sonar/tasks/SideScanTask.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
 #include "types/geometry/BeamArc.hpp"
 #include "types/samples/Range.hpp"
 #include "types/samples/SonarSettings.hpp"

@@ -4,7 +4,6 @@
 
 #include "components/deployer/Json.hpp"
 #include "components/log/Reader.hpp"
-#include "types/geometry/Mount.hpp"
 #include "types/samples/Pose.hpp"
 
 namespace insonify::deployer {
@@ -27,7 +26,7 @@ private:
 /** Returns the only stream of poses of a log, or the only one that a sonar writes. Null: there is none, or several. */
 const log::Stream* posesOfSonar(const log::Reader& log);
 
-/** Returns the mount in the metadata of a stream of pings (StreamMeaning.hpp). */
+/** Returns the mount in the metadata of a stream of pings (Export.hpp). */
 types::Mount mountOf(const Json& meaning);
 
 /** The sonar's pose in the world over time. */

@@ -11,19 +11,19 @@
 #include <utility>
 #include <variant>
 
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/Tasks.hpp"
+#include "components/deployer/log/Export.hpp"
 #include "components/deployer/log/ReplaySpec.hpp"
-#include "components/deployer/log/StreamMeaning.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/config/YamlText.hpp"
-#include "components/log/LoggerClock.hpp"
+#include "components/log/Reader.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
 #include "types/samples/TaskRecord.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::deployer {
 namespace {
@@ -63,7 +63,7 @@ std::string textOf(const types::PropertyValue& value) {
 }
 
 /** Removes a property, for a setter and `--set`. */
-const std::string absent = "null";
+const std::string absent_value = "null";
 
 /** The values of a property, as setters take them, and the time at which the logger received each. */
 using Values = std::vector<std::pair<types::Time, std::string>>;
@@ -88,7 +88,7 @@ void addAbsence(log::Reader& log, const std::string& property, Values& values) {
     const log::Stream* const presence = log.find(property + ".present");
     if (!presence || !presence->holds<bool>()) return;
     log.forEach<bool>(presence->name, [&](bool is_there, const log::SampleRef& at) {
-        if (!is_there) values.emplace_back(at.received, absent);
+        if (!is_there) values.emplace_back(at.received, absent_value);
     });
     std::ranges::stable_sort(values, {}, &Values::value_type::first);
 }
@@ -112,7 +112,7 @@ std::map<std::string, Values> historiesOf(log::Reader& log, const std::set<std::
         Values values = valuesOf(log, stream);
         if (values.empty()) continue;
         addAbsence(log, stream.name, values);
-        if (values.front().first > first.at(task)) values.insert(values.begin(), {first.at(task), absent});
+        if (values.front().first > first.at(task)) values.insert(values.begin(), {first.at(task), absent_value});
         histories.emplace(stream.name, std::move(values));
     }
     return histories;
@@ -225,7 +225,7 @@ struct Settings : RecordedSettings {
             const types::Time start = of_task.samples.empty() ? begin : std::max(begin, of_task.samples.front().time);
             const RecordedProperty history = historyOf(property, values, of_task, start);
             const auto now = present.find(property);
-            if ((now == present.end() ? absent : now->second) != history.start)
+            if ((now == present.end() ? absent_value : now->second) != history.start)
                 assignments.push_back(property + "=" + history.start);
             if (!history.changes.empty()) changed.push_back(history);
         }
@@ -247,7 +247,7 @@ struct Settings : RecordedSettings {
         for (const auto& history : histories) known.insert(splitPort(history.first).first);
         for (const std::string& property : optionalsOf(deployment, known))
             if (present.contains(property) && !histories.contains(property) && !settled.contains(property))
-                assignments.push_back(property + "=" + absent);
+                assignments.push_back(property + "=" + absent_value);
     }
 };
 

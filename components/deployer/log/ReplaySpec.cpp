@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <set>
 
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/Tasks.hpp"
 #include "types/samples/Range.hpp"
 #include "types/samples/Sonar.hpp"
 

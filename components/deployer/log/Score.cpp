@@ -13,10 +13,9 @@
 #include "components/deployer/log/Export.hpp"
 #include "components/log/Stream.hpp"
 #include "components/output/PictureFiles.hpp"
-#include "components/output/maps/Similarity.hpp"
 #include "components/output/pictures/Canvas.hpp"
-#include "components/output/pictures/DiscImage.hpp"
 #include "components/output/pictures/FanImage.hpp"
+#include "components/output/pictures/PlainPicture.hpp"
 
 namespace insonify::deployer {
 namespace {

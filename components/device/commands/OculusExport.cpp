@@ -1,13 +1,12 @@
-#include "components/device/commands/OculusExport.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "components/console/Json.hpp"
-#include "components/deployer/log/StreamMeaning.hpp"
+#include "components/deployer/log/Export.hpp"
 #include "components/device/OculusPing.hpp"
 #include "components/device/OculusRecording.hpp"
+#include "components/device/commands/DeviceCommand.hpp"
 #include "components/log/Reader.hpp"
 #include "types/text/ConfigError.hpp"
 

@@ -8,7 +8,7 @@
 #include "components/device/AskedPings.hpp"
 #include "components/device/micron/SeaNet.hpp"
 #include "components/device/wire/Network.hpp"
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 #include "types/samples/Sonar.hpp"
 #include "types/samples/SonarSettings.hpp"
 

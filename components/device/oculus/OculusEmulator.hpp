@@ -11,7 +11,6 @@
 #include "components/device/OculusPing.hpp"
 #include "components/device/oculus/OculusMessages.hpp"
 #include "components/sonars/Sonars.hpp"
-#include "types/Elapsed.hpp"
 #include "types/Time.hpp"
 #include "types/samples/Sonar.hpp"
 #include "types/samples/SonarSettings.hpp"

@@ -11,7 +11,7 @@
 #include "components/framework/Properties.hpp"
 #include "components/output/ByteFile.hpp"
 #include "types/samples/Sonar.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::device {
 

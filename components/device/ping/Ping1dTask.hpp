@@ -1,8 +1,8 @@
 #pragma once
 #include "components/device/ping/Ping1dEmulator.hpp"
 #include "components/device/ping/PingDeviceTask.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/framework/Properties.hpp"
-#include "components/framework/Upstream.hpp"
 
 namespace insonify::device {
 

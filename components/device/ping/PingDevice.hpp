@@ -7,7 +7,7 @@
 
 #include "components/device/AskedPings.hpp"
 #include "components/device/ping/PingProtocol.hpp"
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 #include "types/samples/Sonar.hpp"
 #include "types/samples/SonarSettings.hpp"
 

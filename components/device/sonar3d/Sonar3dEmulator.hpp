@@ -8,7 +8,7 @@
 #include "components/device/sonar3d/Rip2.hpp"
 #include "components/device/wire/Http.hpp"
 #include "components/sonars/Sonars.hpp"
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 #include "types/samples/DepthMap.hpp"
 #include "types/samples/SonarSettings.hpp"
 

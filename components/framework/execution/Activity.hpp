@@ -9,7 +9,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "types/OwnProcess.hpp"
 #include "types/Thread.hpp"
 #include "types/Time.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/framework/Port.hpp"
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 #include "types/text/Notice.hpp"
 
 namespace insonify::framework {

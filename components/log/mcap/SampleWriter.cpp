@@ -9,7 +9,7 @@
 #include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/Check.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::log::mcap {
 namespace {

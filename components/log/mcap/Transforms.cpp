@@ -11,7 +11,7 @@
 #include "components/ros/Messages.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Schema.hpp"
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 
 namespace insonify::log::mcap {
 namespace {

@@ -11,7 +11,7 @@
 #include "components/log/mcap/ChunkWriter.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::log::mcap {
 

@@ -1,16 +1,15 @@
-#include "components/log/Check.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 
+#include "components/log/Files.hpp"
 #include "components/log/pocolog/BlockFile.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Typelib.hpp"
 #include "components/log/pocolog/Wire.hpp"
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 
 namespace insonify::log::pocolog {
 namespace {

@@ -8,7 +8,7 @@
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "types/Check.hpp"
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 
 namespace insonify::log::pocolog {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "components/output/maps/ScanMap.hpp"
-#include "components/output/pictures/DiscImage.hpp"
+#include "components/output/pictures/FanImage.hpp"
 
 namespace insonify::output {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "components/output/maps/Chart.hpp"
+#include "components/output/pictures/Canvas.hpp"
 #include "types/geometry/Datum.hpp"
 #include "types/samples/Image.hpp"
 #include "types/samples/PointCloud.hpp"

@@ -13,6 +13,53 @@
 namespace insonify::output {
 namespace {
 
+struct Anchor {
+    int level;
+    cv::Vec3d bgr;
+};
+
+/** From black water over brown and orange to white, as in viewers of imaging sonars. */
+const Anchor amber[] = {{0, {6, 5, 6}},        {40, {6, 22, 44}},      {96, {8, 62, 120}},    {150, {14, 118, 204}},
+                        {200, {48, 180, 246}}, {235, {140, 226, 255}}, {255, {236, 252, 255}}};
+
+const Anchor copper[] = {{0, {0, 0, 0}}, {203, {101, 159, 255}}, {255, {127, 199, 255}}};
+const Anchor gray[] = {{0, {0, 0, 0}}, {255, {255, 255, 255}}};
+
+Palette interpolated(const Anchor* anchor) {
+    Palette palette;
+    for (int level = 0; level < 256; ++level) {
+        if (level > anchor[1].level) ++anchor;
+        const double share = double(level - anchor[0].level) / (anchor[1].level - anchor[0].level);
+        palette[static_cast<size_t>(level)] = cv::Vec3b(anchor[0].bgr * (1 - share) + anchor[1].bgr * share);
+    }
+    return palette;
+}
+
+Palette fromOpenCv(int map) {
+    cv::Mat levels(1, 256, CV_8U), colours;
+    for (int level = 0; level < 256; ++level) levels.at<uint8_t>(level) = static_cast<uint8_t>(level);
+    cv::applyColorMap(levels, colours, map);
+    Palette palette;
+    std::copy_n(colours.ptr<cv::Vec3b>(), palette.size(), palette.begin());
+    return palette;
+}
+
+}  // namespace
+
+Palette paletteOf(ColourMap map) {
+    switch (map) {
+        case ColourMap::Amber: return interpolated(amber);
+        case ColourMap::Copper: return interpolated(copper);
+        case ColourMap::Turbo: return fromOpenCv(cv::COLORMAP_TURBO);
+        case ColourMap::Viridis: return fromOpenCv(cv::COLORMAP_VIRIDIS);
+        case ColourMap::Inferno: return fromOpenCv(cv::COLORMAP_INFERNO);
+        case ColourMap::Gray: break;
+    }
+    return interpolated(gray);
+}
+
+namespace {
+
 constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double font_scale = 0.45;
 
@@ -88,6 +135,39 @@ void sideBySide(const Captioned& left, const Captioned& right, types::Image& pic
                     cv::LINE_AA);
         column += pixels.cols;
     }
+}
+
+const cv::Point Chart::colour_bar{10, FanLayout::title_height + 24};
+
+Chart::Chart(uint32_t width, ColourMap colour_map)
+    : width_(static_cast<int>(width + width % 2)), palette_(paletteOf(colour_map)) {}
+
+int Chart::rowsFor(double rows, double tallest) const {
+    return static_cast<int>(std::clamp(rows, colour_bar_size.height + 40.0, tallest * columns()));
+}
+
+cv::Mat Chart::open(types::Image& picture, types::Time time, int rows) {
+    area_ = {left_margin, FanLayout::title_height + top_margin, columns(), rows};
+    cv::Mat canvas = openCanvas(picture, {width_, area_.br().y + bottom_margin}, time);
+    paintBackground(canvas, palette_, colour_bar);
+    canvas(area_).setTo(cv::Scalar(0, 0, 0));
+    return canvas;
+}
+
+const cv::Vec3b& Chart::colour(double level) const {
+    return palette_[static_cast<size_t>(std::clamp(level, 0.0, 255.0))];
+}
+
+void Chart::labelBar(Overlay& overlay, double top, double bottom) {
+    for (int i = 0; i <= 4; ++i) {
+        const double y = colour_bar.y + i / 4.0 * (colour_bar_size.height - 1);
+        overlay.text(fmt::format("{:.2f} m", top + i / 4.0 * (bottom - top)),
+                     {colour_bar.x + colour_bar_size.width + 5.0, y}, Overlay::Anchor::Left);
+    }
+}
+
+void Chart::addTitle(Overlay& overlay, const std::string& text) {
+    overlay.text(text, {12, FanLayout::title_height / 2.0}, Overlay::Anchor::Left);
 }
 
 }  // namespace insonify::output

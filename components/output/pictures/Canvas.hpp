@@ -1,13 +1,23 @@
 #pragma once
+#include <array>
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "components/output/pictures/Colours.hpp"
 #include "components/output/pictures/LevelScale.hpp"
+#include "components/output/pictures/Overlay.hpp"
+#include "components/output/tasks/PictureConfig.hpp"
 #include "types/samples/Image.hpp"
 #include "types/samples/Sonar.hpp"
 
 namespace insonify::output {
+
+/** Blue, green and red of each of the 256 levels. */
+using Palette = std::array<cv::Vec3b, 256>;
+Palette paletteOf(ColourMap map);
+
+inline const cv::Scalar background{26, 19, 14};  ///< The background's blue, green, red.
+inline const cv::Scalar title_ground{44, 33, 25};
+inline const cv::Vec3b ink{226, 220, 210};  ///< Lines and text.
 
 /** Makes `picture` a BGR image of this size and time; returns a view of its pixels. */
 cv::Mat openCanvas(types::Image& picture, cv::Size size, types::Time time);
@@ -37,5 +47,34 @@ struct Captioned {
 /** Draws two BGR pictures side by side, with the time of the left picture. Fans whose bearings differ by rounding
  *  differ in height: the background fills the rest. */
 void sideBySide(const Captioned& left, const Captioned& right, types::Image& picture);
+
+/** A picture of one rectangle, with a title above it, a colour bar of lengths to its left and labels around it. */
+class Chart {
+public:
+    /** @param width of the picture [px]; an odd width is rounded up to even */
+    Chart(uint32_t width, ColourMap colour_map);
+
+    int columns() const { return width_ - left_margin - right_margin; }  ///< Width of the rectangle [px].
+    /** Clamps the rows of the rectangle: at least what the colour bar needs, at most `tallest` times the columns
+     *  [px]. */
+    int rowsFor(double rows, double tallest) const;
+    /** Makes `picture` an image of that time with a black rectangle of `rows` rows; returns a view of its pixels. */
+    cv::Mat open(types::Image& picture, types::Time time, int rows);
+    const cv::Rect& area() const { return area_; }  ///< The rectangle in the last picture.
+    /** Returns the colour of a level, clamped to 0 (darkest) to 255. */
+    const cv::Vec3b& colour(double level) const;
+    /** Labels the bar's colours with lengths in even steps [m]. */
+    static void labelBar(Overlay& overlay, double top, double bottom);
+    /** Draws the title above the rectangle. */
+    static void addTitle(Overlay& overlay, const std::string& text);
+
+    static constexpr int left_margin = 96, right_margin = 16, top_margin = 10, bottom_margin = 34;
+    static const cv::Point colour_bar;  ///< Upper left corner.
+
+private:
+    int width_;
+    Palette palette_;
+    cv::Rect area_;
+};
 
 }  // namespace insonify::output

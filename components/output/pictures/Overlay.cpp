@@ -6,20 +6,18 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "components/output/pictures/Colours.hpp"
+#include "components/output/pictures/Canvas.hpp"
 #include "types/geometry/Angle.hpp"
 
 namespace insonify::output {
 namespace {
 
-constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
-constexpr double font_scale = 0.42;
+constexpr int label_font = cv::FONT_HERSHEY_SIMPLEX;
+constexpr double label_scale = 0.42;
 constexpr int full = 235, ring_opacity = 74, spoke_opacity = 44, outline_opacity = 140;
-constexpr int sub_pixel_bits = 4;
+constexpr int label_bits = 4;
 
-cv::Point subPixel(cv::Point2d at) {
-    return {cvRound(at.x * (1 << sub_pixel_bits)), cvRound(at.y * (1 << sub_pixel_bits))};
-}
+cv::Point subPixel(cv::Point2d at) { return {cvRound(at.x * (1 << label_bits)), cvRound(at.y * (1 << label_bits))}; }
 
 /** Returns the degrees between spokes, so that their labels fit on the outer arc. */
 double spokeStep(double radius) {
@@ -74,7 +72,7 @@ void addOutline(Overlay& overlay, const FanLayout& layout) {
 }  // namespace
 
 void Overlay::line(cv::Point2d from, cv::Point2d to, int opacity) {
-    cv::line(cover_, subPixel(from), subPixel(to), opacity, 1, cv::LINE_AA, sub_pixel_bits);
+    cv::line(cover_, subPixel(from), subPixel(to), opacity, 1, cv::LINE_AA, label_bits);
 }
 
 void Overlay::arc(cv::Point2d centre, double radius, double right, double left, int opacity) {
@@ -84,22 +82,22 @@ void Overlay::arc(cv::Point2d centre, double radius, double right, double left, 
         const double bearing = right + (left - right) * i / steps;
         points.push_back(subPixel({centre.x - radius * std::sin(bearing), centre.y - radius * std::cos(bearing)}));
     }
-    cv::polylines(cover_, points, false, opacity, 1, cv::LINE_AA, sub_pixel_bits);
+    cv::polylines(cover_, points, false, opacity, 1, cv::LINE_AA, label_bits);
 }
 
 void Overlay::text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees) {
     constexpr int ring_width = 6, margin = 2;
     int baseline = 0;
-    const cv::Size size = cv::getTextSize(text, font, font_scale, 1, &baseline);
+    const cv::Size size = cv::getTextSize(text, label_font, label_scale, 1, &baseline);
     const double back = anchor == Anchor::Left ? 0 : anchor == Anchor::Centre ? size.width / 2.0 : size.width;
     const cv::Point start(cvRound(at.x - back), cvRound(at.y + size.height / 2.0));
     const cv::Rect box(start.x - margin, start.y - size.height - margin,
                        size.width + 2 * margin + (degrees ? ring_width : 0), size.height + baseline + 2 * margin);
     if ((box & taken_).area() > 0) return;
-    cv::putText(cover_, text, start, font, font_scale, full, 1, cv::LINE_AA);
+    cv::putText(cover_, text, start, label_font, label_scale, full, 1, cv::LINE_AA);
     if (degrees)
-        cv::circle(cover_, subPixel({start.x + size.width + 2.0, start.y - size.height + 1.0}), 2 << sub_pixel_bits,
-                   full, 1, cv::LINE_AA, sub_pixel_bits);
+        cv::circle(cover_, subPixel({start.x + size.width + 2.0, start.y - size.height + 1.0}), 2 << label_bits, full,
+                   1, cv::LINE_AA, label_bits);
 }
 
 void Overlay::finish() {

@@ -1,7 +1,7 @@
 #pragma once
 #include <opencv2/core.hpp>
 
-#include "components/output/maps/Chart.hpp"
+#include "components/output/pictures/Canvas.hpp"
 #include "types/samples/DepthMap.hpp"
 #include "types/samples/Image.hpp"
 

@@ -5,11 +5,10 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
+#include "components/output/tasks/PairPictureTask.hpp"
 #include "components/output/tasks/SamplePictureTask.hpp"
-#include "components/output/tasks/ScanMosaicTask.hpp"
 #include "components/output/tasks/SideScanImageTask.hpp"
-#include "components/output/tasks/TruthImageTask.hpp"
 #include "components/output/tasks/XtfTask.hpp"
 
 namespace insonify::output {

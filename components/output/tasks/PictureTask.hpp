@@ -8,12 +8,11 @@
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/output/pictures/DiscImage.hpp"
 #include "components/output/pictures/FanImage.hpp"
 #include "components/output/pictures/Painter.hpp"
 #include "components/output/pictures/WaterfallImage.hpp"
 #include "components/output/tasks/PictureConfig.hpp"
-#include "components/output/tasks/RecordingTask.hpp"
+#include "components/output/tasks/SamplePictureTask.hpp"
 #include "types/samples/Image.hpp"
 #include "types/samples/Sonar.hpp"
 

@@ -2,7 +2,7 @@
 #include <deque>
 #include <optional>
 
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/output/pictures/SideScanImage.hpp"
 #include "components/output/tasks/PictureTask.hpp"
 

@@ -1,6 +1,6 @@
 #include "components/output/tasks/XtfTask.hpp"
 
-#include "components/framework/Upstream.hpp"
+#include "components/framework/Graph.hpp"
 #include "components/output/PictureFiles.hpp"
 
 namespace insonify::output {

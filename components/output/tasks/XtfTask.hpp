@@ -8,7 +8,7 @@
 #include "components/output/ByteFile.hpp"
 #include "components/recordings/Xtf.hpp"
 #include "types/samples/Range.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::output {
 

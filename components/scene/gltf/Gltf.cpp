@@ -16,7 +16,6 @@
 #include "components/scene/UniqueNames.hpp"
 #include "components/scene/gltf/GltfAnimation.hpp"
 #include "components/scene/gltf/GltfFile.hpp"
-#include "components/scene/gltf/GltfMaterials.hpp"
 #include "components/scene/gltf/GltfMesh.hpp"
 #include "components/scene/motion/Animator.hpp"
 #include "types/text/ConfigError.hpp"

@@ -1,5 +1,3 @@
-#include "components/scene/gltf/GltfMaterials.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <stb_image.h>
@@ -13,6 +11,7 @@
 
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/SurfaceMaps.hpp"
+#include "components/scene/gltf/GltfMesh.hpp"
 #include "types/NamedFile.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/DidYouMean.hpp"

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "types/OwnProcess.hpp"
 #include "types/Thread.hpp"
 
 namespace insonify::sonar {

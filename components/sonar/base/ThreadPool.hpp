@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/sonar/base/Counters.hpp"
-#include "types/OwnProcess.hpp"
+#include "types/Thread.hpp"
 
 namespace insonify::sonar {
 

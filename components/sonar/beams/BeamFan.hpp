@@ -9,6 +9,7 @@
 #include "components/sonar/beams/Fan.hpp"
 #include "components/sonar/config/RenderOptions.hpp"
 #include "components/sonar/config/SonarConfig.hpp"
+#include "types/geometry/Snapshot.hpp"
 
 namespace insonify::sonar {
 
@@ -83,5 +84,15 @@ inline BeamAngles beamAngles(const glm::dvec3& at, bool conical) {
     const glm::dvec3 direction = at / std::max(glm::length(at), 1e-12);
     return {beamAzimuth(direction, conical), std::asin(std::clamp(direction.z, -1.0, 1.0))};
 }
+
+/** Orientation and height of the sonar of one ping in the water. */
+struct WaterView {
+    glm::dvec3 up{0, 0, 1};  ///< The world's z in sonar axes, unit [1].
+    double height = 0;       ///< Height of the sonar above the water surface, or above the world's z = 0 [m].
+};
+WaterView waterView(const types::Snapshot& snapshot);
+
+/** Returns the world's up in the axes of a frustum. */
+glm::dvec3 upwardIn(const ViewFrustum& frustum, const WaterView& water);
 
 }  // namespace insonify::sonar

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "components/sonar/beams/WaterView.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/bins/Cells.hpp"
 #include "components/sonar/bins/Truth.hpp"
 
@@ -21,7 +21,7 @@ struct EstimatorEntry {
     void (*sum)(const EchoRules& rules, const Cells& cells, const Covered& covered, const EchoSums& to);
 };
 
-/** The only path from samples to bins on the processor. Rays (TileCells.hpp) or pictures (PictureCells.hpp) fill a
+/** The only path from samples to bins on the processor. Rays (TileCells.hpp) or pictures (PictureDeposit.hpp) fill a
  *  batch of cells. The echoes of the cells, and what effects add to them, are added to the sums. */
 class CellDeposit {
 public:

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "components/sonar/base/RandomFields.hpp"
-#include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "types/Check.hpp"

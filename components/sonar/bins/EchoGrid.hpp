@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/bins/Accumulator.hpp"
 #include "components/sonar/bins/Beamformer.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/plan/Effect.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "types/geometry/Angle.hpp"

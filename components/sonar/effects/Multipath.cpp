@@ -1,5 +1,5 @@
 #include "components/sonar/multipath/Mirrors.hpp"
-#include "components/sonar/multipath/PathEchoes.hpp"
+#include "components/sonar/multipath/PathCells.hpp"
 #include "components/sonar/plan/Effect.hpp"
 
 namespace insonify::sonar {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "components/sonar/beams/WaterView.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
 #include "types/text/Hash.hpp"
 
 namespace insonify::sonar {

@@ -1,5 +1,3 @@
-#include "components/sonar/multipath/PathEchoes.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>

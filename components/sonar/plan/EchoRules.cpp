@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Check.hpp"

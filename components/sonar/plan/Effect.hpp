@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/sonar/beams/WaterView.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/geometry/Geometry.hpp"
 #include "types/geometry/Snapshot.hpp"

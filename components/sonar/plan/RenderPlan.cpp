@@ -5,7 +5,7 @@
 #include "components/sonar/plan/EchoRules.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "types/geometry/Angle.hpp"
-#include "types/text/Ascii.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::sonar {
 namespace {

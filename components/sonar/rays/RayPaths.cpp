@@ -7,7 +7,7 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 
-#include "components/sonar/beams/WaterView.hpp"
+#include "components/sonar/beams/BeamFan.hpp"
 #include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {

@@ -12,7 +12,6 @@
 #include "components/acoustics/SoundSpeed.hpp"
 #include "components/sonar/beams/BeamFan.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
-#include "components/sonar/beams/WaterView.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/plan/Effects.hpp"
 #include "types/geometry/Angle.hpp"

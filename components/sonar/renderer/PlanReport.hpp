@@ -9,7 +9,7 @@
 #include "components/sonar/surfaces/Sightlines.hpp"
 #include "types/geometry/Snapshot.hpp"
 #include "types/samples/Plan.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::sonar {
 

@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 #include <numeric>
 
-#include "components/sonar/surfaces/NearestPoint.hpp"
+#include "components/sonar/surfaces/MeshFacts.hpp"
 #include "components/sonar/surfaces/ObjectPlacements.hpp"
 #include "types/Check.hpp"
 #include "types/geometry/Angle.hpp"

@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-#include "types/geometry/Weld.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "components/acoustics/Plate.hpp"
-#include "components/sonar/beams/RangeResponse.hpp"
+#include "components/sonar/beams/BinGrid.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -10,6 +10,7 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/sonar/base/Counters.hpp"
 #include "components/sonar/bins/Detection.hpp"
@@ -52,6 +53,7 @@ namespace insonify::sonar {
 class PingTask : public TriggeredTask,
                  public framework::Planned,
                  public framework::Divisible,
+                 public framework::Adjustable,
                  public framework::ReturnSource {
 public:
     using TriggeredTask::TriggeredTask;
@@ -215,6 +217,17 @@ private:
     framework::SamplePool<types::SonarTruth> truths_;
     framework::SamplePool<types::SonarReturns> all_returns_;
     framework::SamplePool<types::SonarElements> signals_;
+};
+
+/** A forward-looking imaging sonar: a fan of beams per ping.
+ *
+ *  Bins hold E/S0 of the active sonar equation (`physical`) or means of S(n.d) (`cerqueira2017`), beam-first. The
+ *  sonar frame is x ahead, y to port, z up; bearings are positive to port. */
+class SonarTask final : public PingTask {
+public:
+    using PingTask::PingTask;
+    framework::Properties<SonarConfig> config{this};
+    SonarConfig sonarConfig() const override { return config->fan(); }
 };
 
 }  // namespace insonify::sonar

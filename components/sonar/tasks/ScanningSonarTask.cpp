@@ -8,11 +8,11 @@
 
 #include "components/sonar/surfaces/Motion.hpp"
 #include "components/sonar/tasks/AltimeterTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "components/sonar/tasks/ProfilerTask.hpp"
 #include "components/sonar/tasks/SideScanTask.hpp"
 #include "components/sonar/tasks/Sonar3dTask.hpp"
-#include "components/sonar/tasks/SonarTask.hpp"
-#include "types/Elapsed.hpp"
+#include "types/Time.hpp"
 #include "types/geometry/Angle.hpp"
 #include "types/text/ConfigError.hpp"
 

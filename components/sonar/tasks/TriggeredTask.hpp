@@ -12,7 +12,7 @@
 #include "components/sonar/renderer/QualityKeeper.hpp"
 #include "types/geometry/Snapshot.hpp"
 #include "types/samples/SonarSettings.hpp"
-#include "types/text/ThrottledWarning.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::sonar {
 

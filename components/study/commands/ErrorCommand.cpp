@@ -15,8 +15,8 @@
 #include "components/study/commands/StudyCommand.hpp"
 #include "components/study/error/ErrorAnalysis.hpp"
 #include "components/study/error/ErrorStudy.hpp"
-#include "types/text/Ascii.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::study {
 namespace {

@@ -1,8 +1,103 @@
 // insonify study error|likeness|multipath|omission|speckle|stability
 #include "components/study/commands/StudyCommand.hpp"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/FittedDeployment.hpp"
-#include "components/deployer/log/CodedLog.hpp"
+#include "components/deployer/Pipeline.hpp"
+#include "components/deployer/log/Export.hpp"
+#include "components/deployer/log/LoggedTrack.hpp"
+#include "components/log/Reader.hpp"
+#include "components/receiver/Receiver.hpp"
+#include "types/samples/Pose.hpp"
+#include "types/samples/Sonar.hpp"
+
+namespace insonify::deployer {
+
+/** The pings of a log, imported or recorded from a run, whose receiver output codes. */
+struct CodedLog {
+    std::vector<types::Sonar> pings;
+    std::vector<types::Pose> sonars = {};  ///< Poses of the sonar at the pings; an unusable pose is unknown.
+    std::vector<double> altitudes = {};    ///< Above the bottom at each ping [m]; 0: unknown.
+    receiver::CodeConfig code = {};        ///< As far as the log records it.
+    bool law_known = false;                ///< Whether the log records the law of the codes.
+    double frequency_khz = 0;              ///< 0: unknown.
+};
+
+/** Reads the first stream of a log whose bins are all codes, that is whole numbers from 0 to 65535, with the poses and
+ *  altitudes at its pings (LoggedTrack.hpp). Returns none if the file name is not that of a log. Throws
+ *  types::ConfigError for a log that cannot be read or has no such stream. */
+std::optional<CodedLog> codedLog(const std::filesystem::path& file);
+
+namespace {
+
+bool areCodes(const types::Sonar& ping) {
+    return std::ranges::all_of(ping.bins, [](float bin) { return bin >= 0 && bin <= 65535 && std::floor(bin) == bin; });
+}
+
+/** Returns the pings of a stream; none where a ping has bins that are not codes. */
+std::vector<types::Sonar> codesOf(log::Reader& log, size_t stream) {
+    std::vector<types::Sonar> pings;
+    for (const log::SampleRef& at : log.samples()) {
+        if (at.stream != stream) continue;
+        log.read(at, pings.emplace_back());
+        if (!areCodes(pings.back())) return {};
+    }
+    return pings;
+}
+
+/** Reads the code of the receiver that writes a stream from the log's own deployment. */
+void readLaw(const log::Reader& log, const std::string& stream, CodedLog& coded) {
+    const std::string text = log.metadatum("insonify_deployment");
+    if (text.empty()) return;
+    try {
+        framework::Registry registry = coreTasks();
+        const framework::Deployment deployment(framework::DeploymentSpec::parse(text, log.path().string()), registry);
+        const auto* receiver =
+            dynamic_cast<const receiver::ReceiverTask*>(deployment.task(framework::splitPort(stream).first));
+        if (!receiver || !receiver->config->code) return;
+        coded.code = *receiver->config->code;
+        coded.law_known = text.find("law:") != std::string::npos;  // an import omits what it does not know
+    } catch (const types::ConfigError&) {                          // the deployment's files or libraries are elsewhere
+    }
+}
+
+/** Reads the sonar's place at each ping, as far as the log has it. */
+void readPlaces(log::Reader& log, const log::Stream& pings, CodedLog& coded) {
+    const LoggedTrack track(log, posesOfSonar(log), mountOf(meaningOf(log, pings)));
+    const LoggedAltitudes altitudes(log);
+    for (const types::Sonar& ping : coded.pings) {
+        coded.sonars.push_back(track.at(ping.time));
+        coded.altitudes.push_back(altitudes.at(ping.time));
+    }
+}
+
+}  // namespace
+
+std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
+    if (!log::findLogFormat(file)) return std::nullopt;
+    const auto log = log::openWholeLog(file).log;
+    for (size_t i = 0; i < log->streams().size(); ++i) {
+        const log::Stream& stream = log->streams()[i];
+        if (!stream.holds<types::Sonar>()) continue;
+        CodedLog coded{.pings = codesOf(*log, i)};
+        if (coded.pings.empty()) continue;
+        readLaw(*log, stream.name, coded);
+        readPlaces(*log, stream, coded);
+        if (const auto at = stream.metadata.find("insonify_frequency_khz"); at != stream.metadata.end())
+            std::from_chars(at->second.data(), at->second.data() + at->second.size(), coded.frequency_khz);
+        return coded;
+    }
+    throw types::ConfigError(file.string(), "", "has no stream of pings of codes, which are whole numbers");
+}
+
+}  // namespace insonify::deployer
 
 namespace insonify::study {
 

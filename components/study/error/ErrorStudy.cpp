@@ -17,7 +17,6 @@
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/oracles/EmbreeTracer.hpp"
-#include "components/study/oracles/PathTracer.hpp"
 #include "components/study/oracles/PointTracer.hpp"
 #include "types/text/Hash.hpp"
 

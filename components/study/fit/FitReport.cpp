@@ -12,7 +12,7 @@
 #include "components/output/PictureFiles.hpp"
 #include "components/study/likeness/Likeness.hpp"
 #include "types/geometry/Angle.hpp"
-#include "types/geometry/Quaternion.hpp"
+#include "types/geometry/WorldFrame.hpp"
 #include "types/text/Describe.hpp"
 
 namespace insonify::study {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "components/study/fit/RecordingFit.hpp"
-#include "types/geometry/Mount.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::study {
 

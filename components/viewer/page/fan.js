@@ -1,6 +1,31 @@
 // The picture of a ping, drawn by the graphics device from its levels; rings and cursor on a canvas above.
-import {palette} from './colours.js';
 import {beamAt, levelAt, sameBeams, turned} from './ping.js';
+import {bearingText, courseText, degrees, lengthIn, lengthText, lengthUnit, shortest} from './settings.js';
+
+/** Colour maps: anchors [level, red, green, blue], linear in between; the first map is that of the picture files. */
+const anchors = {
+  amber: [[0, 6, 5, 6], [40, 44, 22, 6], [96, 120, 62, 8], [150, 204, 118, 14], [200, 246, 180, 48], [235, 255, 226, 140],
+          [255, 255, 252, 236]],
+  copper: [[0, 0, 0, 0], [203, 255, 159, 101], [255, 255, 199, 127]],
+  gray: [[0, 0, 0, 0], [255, 255, 255, 255]],
+  ice: [[0, 2, 6, 14], [70, 8, 44, 92], [140, 24, 118, 176], [205, 120, 206, 232], [255, 244, 255, 255]],
+  viridis: [[0, 68, 1, 84], [64, 59, 82, 139], [128, 33, 145, 140], [191, 94, 201, 98], [255, 253, 231, 37]],
+  inferno: [[0, 0, 0, 4], [51, 66, 10, 104], [102, 147, 38, 103], [153, 221, 81, 58], [204, 252, 165, 10], [255, 252, 255, 164]],
+};
+
+export const names = Object.keys(anchors);
+
+/** Returns 256 colours of 4 bytes. */
+export function palette(name) {
+  const list = anchors[name], colours = new Uint8Array(1024);
+  for (let level = 0, i = 0; level < 256; ++level) {
+    while (level > list[i + 1][0]) ++i;
+    const share = (level - list[i][0]) / (list[i + 1][0] - list[i][0]);
+    for (let c = 0; c < 3; ++c) colours[4 * level + c] = Math.round(list[i][c + 1] * (1 - share) + list[i + 1][c + 1] * share);
+    colours[4 * level + 3] = 255;
+  }
+  return colours;
+}
 
 const vertex = `#version 300 es
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4. - 1., 0, 1); }`;
@@ -15,11 +40,12 @@ uniform vec2 bearings;                      // the lowest and highest edge
 uniform vec2 bins;                          // count, metres
 uniform vec2 brightness;                    // brightness of level 0, and per level
 uniform bool polar;
+uniform float turn;                         // from a bearing to its direction in the picture
 out vec4 colour;
 const vec3 nothing = vec3(.027, .035, .043);
 void main() {
   vec2 p = (gl_FragCoord.xy - origin) / scale;
-  float range = polar ? p.y : length(p), bearing = polar ? -p.x : atan(p.x == 0. ? -1e-6 : -p.x, p.y);  // some devices have no atan(0, y)
+  float range = polar ? p.y : length(p), bearing = polar ? -p.x : atan(p.x == 0. ? -1e-6 : -p.x, p.y) - turn;  // some devices have no atan(0, y)
   if (!polar) bearing += 6.28318531 * ceil((bearings.x - bearing) / 6.28318531);  // the fan may cross +-180 degrees
   float share = (bearing - bearings.x) / (bearings.y - bearings.x);
   int bin = int(floor(range / bins.y));
@@ -29,7 +55,7 @@ void main() {
   if (beam < 0) return;
   int covered = clamp(int(1. / (scale.y * bins.y)), 1, 8);
   float level = 0.;
-  for (int k = 0; k < 8; ++k) if (k < covered) level = max(level, texelFetch(levels, ivec2(min(bin + k, int(bins.x) - 1), beam), 0).r);
+  for (int k = 0; k < covered; ++k) level = max(level, texelFetch(levels, ivec2(min(bin + k, int(bins.x) - 1), beam), 0).r);
   float bright = level == 0. ? 0. : clamp(brightness.x + level * 255. * brightness.y, 0., 1.);
   colour = texelFetch(colours, ivec2(int(bright * 255. + .5), 0), 0);
 }`;
@@ -54,9 +80,7 @@ function textureOf(gl, unit) {
   for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
 }
 
-const table_size = 4096, degrees = 180 / Math.PI;
-const shortest = (bearing) => bearing - 2 * Math.PI * Math.round(bearing / (2 * Math.PI));
-const bearingText = (any, bearing = shortest(any)) => `${(bearing * degrees).toFixed(1)}°` + (Math.abs(bearing) < 5e-4 ? '' : bearing > 0 ? ' port' : ' stbd');
+const table_size = 4096;
 /** Converts a place to metres ahead and to port, and back. */
 const metresOf = ({range, bearing}) => [range * Math.cos(bearing), range * Math.sin(bearing)];
 const placeOf = ([ahead, port]) => ({range: Math.hypot(ahead, port), bearing: Math.atan2(port, ahead)});
@@ -69,18 +93,23 @@ export class Fan {
     this.rings = true;
     this.span_db = 45;
     this.top_db = 0;
-    this.marks = [];  // the places of a measurement, at most two
+    this.turn = 0;       // from a bearing to its direction in the picture, positive to port [rad]
+    this.heading = undefined;  // of the sonar, clockwise from north [deg]; undefined: unknown
+    this.marks = [];     // the places of a measurement, at most two
+    this.targets = [];   // {name, range, bearing}
+    this.line = null;    // the place to which the range and bearing line leads
     this.whole();
     const gl = this.gl = canvas.getContext('webgl2', {antialias: false, preserveDrawingBuffer: true});
     if (!gl) return;  // rings, cursor and levels work nonetheless
     this.program = programOf(gl);
+    this.uniforms = {};
     gl.useProgram(this.program);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     for (let unit = 0; unit < 3; ++unit) textureOf(gl, unit);
     for (const [unit, name] of ['levels', 'beams', 'colours'].entries()) gl.uniform1i(this.at(name), unit);
     this.setColours('amber');
   }
-  at(name) { return this.gl.getUniformLocation(this.program, name); }
+  at(name) { return this.uniforms[name] ??= this.gl.getUniformLocation(this.program, name); }
 
   setColours(name) {
     const gl = this.gl;
@@ -117,6 +146,12 @@ export class Fan {
     this.zoom = 1;
     this.shift = [0, 0];  // of the picture's middle, in pixels of the canvas, like all offsets
   }
+  /** Turns the picture so that north is up, or ahead if `is_north_up` is false or no heading is known. */
+  orient(is_north_up, heading) {
+    this.heading = heading;
+    this.is_turned = is_north_up && heading !== undefined && !this.polar;
+    this.turn = this.is_turned ? -heading / degrees : 0;
+  }
   moveBy(dx, dy) { this.shiftTo([this.shift[0] + dx, this.shift[1] + dy]); }
   /** Zooms by a factor about a pixel that stays in place. */
   zoomBy(factor, about) {
@@ -148,7 +183,8 @@ export class Fan {
       return {scale, origin: [margin + this.high * scale[0], margin]};
     }
     const box = {x0: 0, x1: 0, y0: 0, y1: 0};
-    for (let i = 0; i <= 90; ++i) {
+    if (this.is_turned) Object.assign(box, {x0: -far, x1: far, y0: -far, y1: far});  // one scale on all headings
+    else for (let i = 0; i <= 90; ++i) {
       const bearing = this.low + (this.high - this.low) * i / 90, x = -far * Math.sin(bearing), y = far * Math.cos(bearing);
       Object.assign(box, {x0: Math.min(box.x0, x), x1: Math.max(box.x1, x), y0: Math.min(box.y0, y), y1: Math.max(box.y1, y)});
     }
@@ -160,12 +196,12 @@ export class Fan {
   /** Returns the canvas pixel, from the lower left corner, that shows a place. */
   pixelOf(range, bearing) {
     const {scale, origin} = this.place();
-    const p = this.polar ? [-turned(this.ping, bearing), range] : [-range * Math.sin(bearing), range * Math.cos(bearing)];
+    const p = this.polar ? [-turned(this.ping, bearing), range] : [-range * Math.sin(bearing + this.turn), range * Math.cos(bearing + this.turn)];
     return [origin[0] + p[0] * scale[0], origin[1] + p[1] * scale[1]];
   }
   placeAt(x, y) {
     const {scale, origin} = this.place(), p = [(x - origin[0]) / scale[0], (y - origin[1]) / scale[1]];
-    return this.polar ? {range: p[1], bearing: -p[0]} : {range: Math.hypot(...p), bearing: Math.atan2(-p[0], p[1])};
+    return this.polar ? {range: p[1], bearing: -p[0]} : {range: Math.hypot(...p), bearing: shortest(Math.atan2(-p[0], p[1]) - this.turn)};
   }
 
   fit() {
@@ -190,6 +226,7 @@ export class Fan {
     gl.uniform2f(this.at('bins'), ping.bins, ping.bin_m);
     gl.uniform2f(this.at('brightness'), (ping.top_db - 255 * ping.step_db - this.top_db) / this.span_db + 1, ping.step_db / this.span_db);
     gl.uniform1i(this.at('polar'), this.polar);
+    gl.uniform1f(this.at('turn'), this.turn);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
@@ -217,22 +254,54 @@ export class Fan {
     line(arc.map((b) => [far, b]));
     if (this.high - this.low < 6.2) for (const b of [this.low, this.high]) line([[0, b], [far, b]]);
     if (this.rings) this.drawRings(far, arc, line, label);
+    if (this.is_turned) this.drawNorth(context);
     if (this.cursor) this.drawCross(context, this.cursor, 'rgba(242, 176, 74, .8)');
+    if (this.line) this.drawLine(this.line, arc, context, line, label);
+    this.drawTargets(context);
     this.drawMarks(context, line, label);
   }
 
+  /** Draws the range and bearing line from the sonar, with the circle of its range. */
+  drawLine({range, bearing}, arc, context, line, label) {
+    context.strokeStyle = context.fillStyle = '#7fd4e8';
+    line([[0, bearing], [range, bearing]]);
+    line(arc.map((b) => [range, b]));
+    label(`${lengthText(range)}  ${bearingText(bearing, this.heading)}`, range, bearing, 0, -8);
+  }
+  drawTargets(context) {
+    context.strokeStyle = context.fillStyle = '#8df08a';
+    for (const {name, range, bearing} of this.targets) {
+      if (range > this.ping.bins * this.ping.bin_m) continue;
+      const [x, up] = this.pixelOf(range, bearing), y = this.overlay.height - up, size = 6 * devicePixelRatio;
+      context.beginPath();
+      context.arc(x, y, size, 0, 2 * Math.PI);
+      context.stroke();
+      context.fillText(name, x, y - 1.5 * size);
+    }
+  }
+  drawNorth(context) {
+    const size = devicePixelRatio, x = 20 * size, y = 62 * size;
+    context.fillStyle = context.strokeStyle = '#e4ebf1';
+    context.fillText('N', x, y - 14 * size);
+    context.beginPath();
+    for (const [dx, dy] of [[0, 12], [0, -10], [-4, -3], [0, -10], [4, -3]]) context.lineTo(x + dx * size, y + dy * size);
+    context.stroke();
+  }
+
   drawRings(far, arc, line, label) {
-    const seen = far / this.zoom, step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].find((s) => seen / s <= 6) ?? 1000;
+    const seen = lengthIn(far) / this.zoom, unit = lengthIn(1), step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].find((s) => seen / s <= 6) ?? 1000;
     const middle = this.placeAt(this.canvas.width / 2, this.canvas.height / 2).bearing;
     const labelled = this.zoom > 1.5 ? Math.max(this.low, Math.min(this.high, middle)) : this.low;
-    for (let r = step; r < far * 0.999; r += step) {
+    for (let n = step; n < lengthIn(far) * 0.999; n += step) {
+      const r = n / unit;
       line(arc.map((b) => [r, b]));
-      label(`${+r.toFixed(1)} m`, r, labelled, this.polar ? -2 : 16, this.polar ? -3 : 4);
+      label(`${+n.toFixed(1)} ${lengthUnit()}`, r, labelled, this.polar ? -2 : 16, this.polar ? -3 : 4);
     }
     const turn = (this.high - this.low) * degrees > 200 ? 45 : 15;
     for (let d = Math.ceil(this.low * degrees / turn) * turn; d <= this.high * degrees; d += turn) {
       line([[far * 0.985, d / degrees], [far, d / degrees]]);
-      label(`${d > 180 ? d - 360 : d}°`, far, d / degrees, this.polar ? 0 : -14 * Math.sin(d / degrees), this.polar ? -6 : -8 * Math.cos(d / degrees) + 3);
+      const shown = d / degrees + this.turn;
+      label(bearingText(d / degrees, this.heading, 0).replace(/ .*/, ''), far, d / degrees, this.polar ? 0 : -14 * Math.sin(shown), this.polar ? -6 : -8 * Math.cos(shown) + 3);
     }
   }
 
@@ -256,7 +325,7 @@ export class Fan {
     context.strokeStyle = context.fillStyle = colour;
     line(Array.from({length: 65}, (_, i) => between(i / 64)).map(({range, bearing}) => [range, bearing]));
     const middle = between(0.5);
-    label(`${this.measured().distance.toFixed(2)} m`, middle.range, middle.bearing, 0, -8);
+    label(lengthText(this.measured().distance), middle.range, middle.bearing, 0, -8);
   }
   /** Returns the distance [m] and the direction [rad], positive to port of ahead, from the first mark to the second;
    *  null without two marks. */
@@ -265,20 +334,45 @@ export class Fan {
     const [a, b] = this.marks.map(metresOf), way = placeOf([b[0] - a[0], b[1] - a[1]]);
     return {distance: way.range, bearing: way.bearing};
   }
-  /** @param heading of the sonar, clockwise from north [deg]; undefined: unknown */
-  measuredText(heading) {
-    const told = this.marks.map(({range, bearing}) => `${range.toFixed(2)} m   ${bearingText(bearing)}`), way = this.measured();
-    if (way) told.push(`${way.distance.toFixed(2)} m apart, towards ${bearingText(way.bearing)}` +
-        (heading === undefined ? '' : `, ${((heading - way.bearing * degrees + 720) % 360).toFixed(1).padStart(5, '0')}° true`));
+  measuredText() {
+    const told = this.marks.map(({range, bearing}) => `${lengthText(range)}   ${bearingText(bearing, this.heading)}`), way = this.measured();
+    if (way) told.push(`${lengthText(way.distance)} apart, towards ${bearingText(way.bearing, this.heading)}` +
+        (this.heading === undefined ? '' : `, ${courseText(this.heading - way.bearing * degrees)} true`));
     return told.join('\n');
   }
 
-  /** Returns range, bearing (positive to port, as in pictures) and level under the cursor as text. */
+  /** Returns range, bearing and level under the cursor as text. */
   cursorText() {
     if (!this.cursor || !this.ping) return '';
     const {range, bearing} = this.placeAt(...this.cursor), level = levelAt(this.ping, range, bearing);
     if (level === null) return '';
-    return `${range.toFixed(2)} m   ${bearingText(bearing)}   ` +
+    return `${lengthText(range)}   ${bearingText(bearing, this.heading)}   ` +
         (level === -Infinity ? 'no echo' : `${level.toFixed(1)} dB`);
+  }
+
+  /** Draws the levels of one beam over range, from the darkest level of the picture to the strongest echo; returns what it
+   *  shows as text. The beam is that under the cursor, else the last one that was. */
+  drawProfile(canvas) {
+    const {ping} = this, w = canvas.width = Math.round(canvas.clientWidth * devicePixelRatio), h = canvas.height = Math.round(canvas.clientHeight * devicePixelRatio);
+    const under = this.cursor && beamAt(ping, this.placeAt(...this.cursor).bearing);
+    if (under >= 0 && under !== null) this.profiled = under;
+    const beam = Math.min(this.profiled ?? Math.floor(ping.beams / 2), ping.beams - 1), levels = ping.data.subarray(beam * ping.bins, (beam + 1) * ping.bins);
+    const context = canvas.getContext('2d'), low = this.top_db - this.span_db, high = Math.max(this.top_db, ping.top_db);
+    const decibels = (level) => ping.top_db - (255 - level) * ping.step_db, yOf = (db) => h - 2 - (h - 6) * Math.max(0, Math.min(1, (db - low) / (high - low)));
+    context.strokeStyle = '#45535f';
+    context.beginPath();
+    for (let db = Math.ceil(low / 20) * 20; db < high; db += 20) context.rect(0, yOf(db), w, 0);
+    context.stroke();
+    context.strokeStyle = '#f2b04a';
+    context.beginPath();
+    levels.forEach((level, i) => context.lineTo((i + 0.5) / ping.bins * w, level ? yOf(decibels(level)) : h - 2));
+    context.stroke();
+    const at = levels.reduce((best, level, i) => level > levels[best] ? i : best, 0), bearing = (ping.edges[2 * beam] + ping.edges[2 * beam + 1]) / 2;
+    if (this.cursor) {
+      context.fillStyle = '#7fd4e8';
+      context.fillRect(this.placeAt(...this.cursor).range / (ping.bins * ping.bin_m) * w, 0, devicePixelRatio, h);
+    }
+    return `beam ${beam + 1} of ${ping.beams}, ${bearingText(bearing, this.heading)}, ${Math.round(low) + 0} to ${Math.round(high) + 0} dB; ` +
+        (levels[at] ? `strongest ${decibels(levels[at]).toFixed(1)} dB at ${lengthText((at + 0.5) * ping.bin_m)}` : 'no echo');
   }
 }

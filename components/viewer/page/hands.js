@@ -1,13 +1,14 @@
-// Pointer gestures on the picture: the wheel or two fingers zoom, dragging moves it, a click measures, with Shift it explains.
+// Pointer gestures and keys on the picture: the wheel or two fingers zoom, dragging moves it, a click does what the tool is
+// for, with Shift it explains. Arrows move a cursor, and Enter is a click there.
 
-const click_px = 4;
+const click_px = 4, key_px = 8;
 
 export class Hands {
   /** @param changed called when the picture must be drawn again */
   constructor(fan, changed) {
     this.fan = fan;
     this.changed = changed;
-    this.measuring = false;
+    this.tool = '';  // measure, target, line; empty: none
     this.down = new Map();  // pointers, by id
     const on = (kind, heard) => fan.canvas.addEventListener(kind, heard, {passive: false});
     on('pointermove', (event) => this.move(event));
@@ -16,7 +17,8 @@ export class Hands {
     on('pointercancel', (event) => this.down.delete(event.pointerId));
     on('pointerleave', () => this.leave());
     on('wheel', (event) => this.wheel(event));
-    on('dblclick', () => this.measuring || this.whole());
+    on('dblclick', () => this.tool || this.whole());
+    on('keydown', (event) => this.key(event));
   }
   /** Returns the place in pixels of the canvas, from its lower left corner. */
   at({offsetX, offsetY}) { return [offsetX * devicePixelRatio, this.fan.canvas.height - offsetY * devicePixelRatio]; }
@@ -36,7 +38,7 @@ export class Hands {
     const [dx, dy] = [at[0] - finger.at[0], at[1] - finger.at[1]];
     const other = [...this.down.values()].find((one) => one !== finger);
     if (other) this.pinch(finger.at, at, other.at);
-    else if (!this.measuring || finger.far > click_px) this.fan.moveBy(dx, dy);
+    else if (!this.tool || finger.far > click_px) this.fan.moveBy(dx, dy);
     finger.far += Math.hypot(dx, dy);
     finger.at = at;
     this.tell();
@@ -48,14 +50,14 @@ export class Hands {
   lift(event) {
     const finger = this.down.get(event.pointerId);
     this.down.delete(event.pointerId);
-    if (finger?.far <= click_px) this.click(event);
+    if (finger?.far <= click_px) this.click(this.at(event), event.shiftKey);
     if (event.pointerType === 'touch') this.fan.cursor = null;
     this.changed();
   }
-  click(event) {
-    if (event.shiftKey) return this.on_shift_click?.(this.at(event));
-    this.on_click?.();
-    if (this.measuring) this.fan.mark(this.at(event));
+  click(at, has_shift) {
+    if (has_shift) return this.on_shift_click?.(at);
+    this.on_click?.(at);
+    if (this.tool === 'measure') this.fan.mark(at);
   }
   leave() {
     if (!this.down.size) this.fan.cursor = null;
@@ -63,7 +65,11 @@ export class Hands {
   }
   wheel(event) {
     event.preventDefault();
-    this.fan.zoomBy(Math.exp(-event.deltaY * 0.0015), this.at(event));
+    this.zoom(Math.exp(-event.deltaY * 0.0015), this.at(event));
+  }
+  /** Zooms about a pixel, else about the cursor or the middle. */
+  zoom(factor, about = this.fan.cursor ?? [this.fan.canvas.width / 2, this.fan.canvas.height / 2]) {
+    this.fan.zoomBy(factor, about);
     this.tell();
     this.changed();
   }
@@ -72,15 +78,35 @@ export class Hands {
     this.tell();
     this.changed();
   }
-  measure(on) {
-    this.measuring = on;
+  /** Chooses a tool; empty: none. */
+  use(tool) {
+    this.tool = tool;
     this.fan.marks = [];
     this.tell();
     this.changed();
   }
+
+  /** Handles a key of the picture that has the focus; other keys are for the page. */
+  key(event) {
+    const {fan} = this, {canvas} = fan, step = key_px * devicePixelRatio * (event.repeat ? 3 : 1);
+    const by = {ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step]}[event.key];
+    if ((!by && event.key !== 'Enter') || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    fan.cursor ??= [canvas.width / 2, canvas.height / 2];
+    if (by) this.moveCursor(by);
+    else this.click(fan.cursor, event.shiftKey);
+    this.changed();
+    this.on_key?.();
+  }
+  /** Moves the cursor, and the picture where the cursor would leave it. */
+  moveCursor(by) {
+    const {fan} = this, size = [fan.canvas.width, fan.canvas.height], wanted = fan.cursor.map((x, i) => x + by[i]);
+    fan.cursor = wanted.map((x, i) => Math.max(0, Math.min(size[i], x)));
+    fan.moveBy(...wanted.map((x, i) => fan.cursor[i] - x));
+  }
   /** Updates the cursor and the gestures' state on the page. */
   tell() {
-    this.fan.canvas.className = this.measuring ? 'measuring' : this.fan.zoom > 1 ? 'near' : '';
+    this.fan.canvas.className = this.tool ? 'measuring' : this.fan.zoom > 1 ? 'near' : '';
     this.on_zoom?.(this.fan.zoom);
   }
 }

@@ -1,4 +1,5 @@
-// A received ping, or several pings of a scanning head combined.
+// Received pings, the poses they were made from, and the last minute of them.
+import {owner, upstream} from './status.js';
 
 /** Converts a message. Beams are from starboard to port; `edges` has the starboard and the port edge of each [rad]. */
 export function pingOf(message) {
@@ -61,4 +62,70 @@ export function levelAt(ping, range, bearing) {
   if (beam < 0 || bin < 0 || bin >= ping.bins) return null;
   const level = ping.data[beam * ping.bins + bin];
   return level ? ping.top_db - (255 - level) * ping.step_db : -Infinity;
+}
+
+/** The last poses or snapshots. */
+export class Places {
+  constructor() { this.all = []; }
+  add(place) {
+    this.all.push(place);
+    const old = this.all.at(-65);
+    if (old?.buffer) this.all[this.all.length - 65] = {...old, buffer: undefined, shapes: undefined};  // shapes take memory
+    if (this.all.length > 8192) this.all.splice(0, 4096);
+  }
+  newest() { return this.all.at(-1); }
+  /** Returns the speed [m/s] over the half second before a pose; undefined: there are no earlier poses of its source. */
+  speed({source, time_us, position}) {
+    const before = this.all.findLast((one) => one.source === source && one.time_us <= time_us - 5e5);
+    return before && before.time_us > time_us - 5e6 ? Math.hypot(...position.map((p, i) => p - before.position[i])) / (time_us - before.time_us) * 1e6 : undefined;
+  }
+  /** Returns the entry of the ping's stamp, else the last before it; from tasks upstream of the ping, if any of them
+   *  write entries. */
+  of(ping, connections) {
+    const tasks = upstream(connections, ping.source), ours = ({source}) => tasks.has(owner(source));
+    const list = this.all.some(ours) ? this.all.filter(ours) : this.all;
+    return list.findLast((one) => one.time_us === ping.time_us) ?? list.findLast((one) => one.time_us < ping.time_us) ?? list.at(-1);
+  }
+}
+
+/** The last minute of pings as {ping, at}, oldest first. Where it would take more than `most_bytes`, pings are left out
+ *  evenly before its newest quarter, so that it stays a minute. The newest ping always stays. */
+export class History {
+  constructor(seconds = 60, most_bytes = 256e6) {
+    Object.assign(this, {seconds, most_bytes, entries: [], bytes: 0});
+  }
+  /** @param at when it arrived [s] */
+  add(ping, at) {
+    this.entries.push({ping, at});
+    this.bytes += ping.data.length;
+    while (this.entries[0].at < at - this.seconds) this.remove(0);
+    while (this.bytes > this.most_bytes && this.entries.length > 1) this.remove(this.closest());
+  }
+  remove(i) { this.bytes -= this.entries.splice(i, 1)[0].ping.data.length; }
+  /** Returns the index of the entry, apart from the oldest and the newest quarter, whose neighbours are closest. */
+  closest() {
+    const {entries} = this, gap = (i) => entries[i + 1].at - entries[i - 1].at;
+    let found = entries.length > 2 ? 1 : 0;
+    for (let i = 2; i < 0.75 * entries.length && i + 1 < entries.length; ++i) if (gap(i) < gap(found)) found = i;
+    return found;
+  }
+  clear() {
+    this.entries = [];
+    this.bytes = 0;
+  }
+  get newest() { return this.entries.at(-1); }
+  /** Returns the last entry that had arrived at a time [s], else the oldest; undefined without any. */
+  at(time) { return this.entries.findLast((one) => one.at <= time) ?? this.entries[0]; }
+  /** Returns the entry before or after one that may no longer be there; undefined: there is none. */
+  beside(entry, step) {
+    return step < 0 ? this.entries.findLast((one) => one.at < entry.at) : this.entries.find((one) => one.at > entry.at);
+  }
+  /** Returns an entry's ping as it was shown: of a scanning head the disc that the beams until then made. */
+  shown({ping, at}) {
+    if (ping.beams !== 1) return ping;
+    const scan = new Scan();
+    let disc = null;
+    for (const one of this.entries) if (one.at <= at) disc = scan.add(one.ping);
+    return disc ?? scan.add(ping);
+  }
 }

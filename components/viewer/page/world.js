@@ -1,7 +1,6 @@
 // The scene, the sonar's fan in it, the water and the vehicles' paths in three dimensions; z is up.
-import {palette} from './colours.js';
+import {palette} from './fan.js';
 import {sameBeams} from './ping.js';
-import {Vehicle} from './vehicle.js';
 
 const tints = {sand: 0xb09a6c, mud: 0x7d7058, clay: 0x8a7460, gravel: 0x8f877a, stone: 0x85817a, rock: 0x7a756d, concrete: 0x9da1a2,
                steel: 0x86684e, rubber: 0x34373a, wood: 0x7c5c3c};
@@ -14,6 +13,48 @@ void main() {
   float bright = level == 0. ? 0. : clamp(brightness.x + level * 255. * brightness.y, 0., 1.);
   gl_FragColor = vec4(texture2D(colours, vec2((bright * 255. + .5) / 256., .5)).rgb, .12 + .83 * bright);
 }`;
+
+const most_places = 20000, vehicle_tints = [0xf2c230, 0x4fc3f7, 0xef6c8f, 0x9ccc65, 0xb39ddb];
+
+/** One source of poses: a body, and the path behind it. */
+class Vehicle {
+  /** @param number of earlier vehicles */
+  constructor(THREE, number) {
+    const colour = vehicle_tints[number % vehicle_tints.length];
+    this.body = this.makeBody(THREE, colour);
+    this.places = new THREE.BufferAttribute(new Float32Array(3 * most_places), 3);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', this.places);
+    this.path = new THREE.Line(geometry, new THREE.LineBasicMaterial({color: colour, fog: false}));
+    this.path.frustumCulled = false;
+    this.group = new THREE.Group();
+    this.group.add(this.body, this.path);
+    this.count = 0;
+  }
+  makeBody(THREE, colour) {
+    const hull = new THREE.CylinderGeometry(0.16, 0.16, 1, 16), nose = new THREE.ConeGeometry(0.16, 0.3, 16);
+    for (const geometry of [hull, nose]) geometry.rotateZ(-Math.PI / 2);
+    nose.translate(0.65, 0, 0);
+    const material = new THREE.MeshPhongMaterial({color: colour}), group = new THREE.Group();
+    group.add(new THREE.Mesh(hull, material), new THREE.Mesh(nose, material));
+    return group;
+  }
+
+  /** Moves the body. A time that goes back begins another path: a run was restarted, or a log was sought in. */
+  moveTo({time_us, position, orientation}) {
+    this.body.position.fromArray(position);
+    this.body.quaternion.fromArray(orientation);
+    if (time_us < this.time_us) this.count = 0;
+    this.time_us = time_us;
+    if (this.count === most_places) {
+      this.places.array.copyWithin(0, 3 * most_places / 2);
+      this.count = most_places / 2;
+    }
+    this.places.array.set(position, 3 * this.count++);
+    this.places.needsUpdate = true;
+    this.path.geometry.setDrawRange(0, this.count);
+  }
+}
 
 /** Loads three.js, which the viewer may have been built without. */
 export async function loadThree() {
@@ -54,6 +95,7 @@ export class World {
     this.azimuth = -2.55;   // of the camera around the sonar [rad]
     this.elevation = 0.62;
     this.distance = 24;
+    this.is_north_up = false;
     this.dirty = true;
     this.steer();
   }
@@ -77,6 +119,13 @@ export class World {
       event.preventDefault();
       this.approach(Math.exp(event.deltaY * 0.001));
     });
+  }
+  /** Handles a key: arrows turn, + and - zoom. Returns whether it did. */
+  key(name) {
+    const step = 12, turns = {ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step]}[name];
+    if (turns) this.turn(...turns);
+    else if (name === '+' || name === '-') this.approach(name === '+' ? 1 / 1.25 : 1.25);
+    return turns !== undefined || name === '+' || name === '-';
   }
   turn(dx, dy) {
     this.azimuth -= dx * 0.006;
@@ -162,6 +211,17 @@ export class World {
     this.dirty = true;
   }
 
+  /** @param targets those with a position [m] */
+  showTargets(targets) {
+    const {THREE} = this;
+    this.marks ??= new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({color: 0x8df08a, size: 9, sizeAttenuation: false, fog: false, depthTest: false, transparent: true}));
+    this.marks.geometry.setAttribute('position', new THREE.Float32BufferAttribute(targets.flatMap(({position}) => position ?? []), 3));
+    this.marks.frustumCulled = false;
+    this.marks.renderOrder = 1;  // after all else: a mark may be below the sea floor
+    this.scene.add(this.marks);
+    this.dirty = true;
+  }
+
   /** Shows the ping in the world; level 0 of the display is as faint as visible. */
   showPing(ping, top_db, span_db, map) {
     const {THREE} = this, key = [ping.bins, ping.bin_m, ping.beam_height].join();
@@ -218,6 +278,7 @@ export class World {
     return lines;
   }
 
+  /** Returns whether there was something to draw. */
   draw() {
     const {clientWidth: w, clientHeight: h} = this.canvas, {THREE} = this;
     if (this.drawn_size !== `${w} ${h} ${devicePixelRatio}`) {
@@ -228,13 +289,14 @@ export class World {
       this.camera.updateProjectionMatrix();
       this.dirty = true;
     }
-    if (!this.dirty || !w || !h) return;
+    if (!this.dirty || !w || !h) return false;
     this.dirty = false;
     const heading = new THREE.Vector3(1, 0, 0).applyQuaternion(this.sonar.quaternion);
     const target = this.sonar.position.clone().addScaledVector(heading, this.distance * 0.45);
-    const c = Math.cos(this.elevation) * this.distance, turn = this.azimuth + Math.atan2(heading.y, heading.x);
+    const c = Math.cos(this.elevation) * this.distance, turn = this.azimuth + (this.is_north_up ? 0 : Math.atan2(heading.y, heading.x));
     this.camera.position.set(target.x + c * Math.cos(turn), target.y + c * Math.sin(turn), target.z + this.distance * Math.sin(this.elevation));
     this.camera.lookAt(target);
     this.renderer.render(this.scene, this.camera);
+    return true;
   }
 }

@@ -1,7 +1,7 @@
 // Cutting and repairing of MCAP files.
 #include <gmock/gmock.h>
 
-#include "components/log/Check.hpp"
+#include "components/log/Files.hpp"
 #include "tests/log/mcap/SmallFile.hpp"
 
 namespace insonify::log::mcap {

@@ -1,6 +1,6 @@
 #pragma once
-#include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/mcap/SampleWriter.hpp"
 #include "tests/support/Folder.hpp"
 

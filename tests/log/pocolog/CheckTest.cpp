@@ -3,7 +3,7 @@
 #include <cstring>
 #include <set>
 
-#include "components/log/Check.hpp"
+#include "components/log/Files.hpp"
 #include "tests/log/pocolog/SmallLog.hpp"
 
 namespace insonify::log::pocolog {

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <zlib.h>
 
-#include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "tests/log/pocolog/SmallLog.hpp"
 #include "tests/support/Refused.hpp"

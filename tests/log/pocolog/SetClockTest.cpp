@@ -3,9 +3,9 @@
 
 #include <fstream>
 
-#include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
-#include "components/log/LoggerClock.hpp"
+#include "components/log/Files.hpp"
+#include "components/log/Reader.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"

@@ -3,7 +3,7 @@
 
 #include <csignal>
 
-#include "components/log/Check.hpp"
+#include "components/log/Files.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Typelib.hpp"
 #include "components/log/pocolog/Writer.hpp"
