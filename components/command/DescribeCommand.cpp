@@ -14,6 +14,7 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/config/ConfigReader.hpp"
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Scene.hpp"
@@ -135,9 +136,27 @@ int listMaterials(bool json) {
     return 0;
 }
 
-int describe(const std::string& type, bool json) {
+struct Options {
+    std::string type, deployment;
+    std::vector<std::string> libraries;
+    bool json = false;
+};
+
+/** Adds the tasks of the libraries that are named, and of those that a deployment names. */
+void loadLibraries(const Options& options, framework::Registry& registry) {
+    for (const std::string& library : options.libraries) registry.loadLibrary(library);
+    if (options.deployment.empty()) return;
+    const std::string file = deploymentIn(options.deployment);
+    for (const std::string& library : framework::DeploymentSpec::load(file).libraries)
+        registry.loadLibrary(std::filesystem::path(file).parent_path() / library);
+}
+
+int describe(const Options& options) {
+    const std::string& type = options.type;
+    const bool json = options.json;
     if (scene::findSceneFormat(type)) return showScene(type, json);
-    const framework::Registry registry = allTasks();
+    framework::Registry registry = allTasks();
+    loadLibraries(options, registry);
     if (type.empty()) return listTasks(registry, json);
     if (type == "materials") return listMaterials(json);
     for (const auto& entry : registry.list()) {
@@ -151,21 +170,24 @@ int describe(const std::string& type, bool json) {
         throw types::ConfigError("", type, "is in " + loader::absence(owner));
     std::vector<std::string> known{"materials"};
     for (const auto& entry : registry.list()) known.push_back(entry.type);
-    throw types::ConfigError("", type, "is no task type; " + framework::suggestion(type, known));
+    throw types::ConfigError("", type,
+                             "is no task type; " + framework::suggestion(type, known) +
+                                 "; a task of your own is read with --library FILE or --deployment FILE");
 }
 
 }  // namespace
 
 void addDescribeCommand(CLI::App& app, Action& action) {
-    struct Options {
-        std::string type;
-        bool json = false;
-    };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("describe", "Lists the tasks; or a task's ports, properties and operations");
     command->add_option("TYPE", options->type, "a task type, `materials` for the names of materials, or a scene file");
+    command->add_option("--library", options->libraries, "a shared object with tasks of your own; may be given again")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    command->add_option("--deployment", options->deployment, "also the tasks of the `libraries` of this deployment")
+        ->type_name("FILE");
     command->add_flag("--json", options->json, "for machines");
-    command->callback([options, &action] { action = [options] { return describe(options->type, options->json); }; });
+    command->callback([options, &action] { action = [options] { return describe(*options); }; });
 }
 
 }  // namespace insonify::command

@@ -67,12 +67,31 @@ std::string recordingHelp() {
     return help;
 }
 
-/** Opens a log, and prints a notice where it cannot be read to its end. */
+/** Opens a log, and prints a notice of further files, and where it cannot be read to its end. */
 std::unique_ptr<log::Reader> opened(const std::string& file) {
     recordings::refuseRecording(file);
-    auto log = log::openLog(file);
-    if (!log->complete()) console::printDiagnostic("notice: {}: {}\n", file, log->diagnostic());
-    return log;
+    log::WholeLog whole = log::openWholeLog(file);
+    if (!whole.notice.empty()) console::printDiagnostic("notice: {}\n", whole.notice);
+    if (!whole.log->complete()) console::printDiagnostic("notice: {}: {}\n", file, whole.log->diagnostic());
+    return std::move(whole.log);
+}
+
+/** Returns the files of logs: all of each sequence whose first file is given, unless others of it are given as well. */
+std::vector<std::string> filesOf(const std::vector<std::string>& given) {
+    std::vector<std::string> all;
+    for (const std::string& file : given) {
+        const log::WholeLog whole = log::openWholeLog(file, log::AtDamage::Skip);
+        const auto isGiven = [&](const fs::path& each) {
+            return std::ranges::find(given, each.string()) != given.end();
+        };
+        if (std::ranges::any_of(whole.files.begin() + 1, whole.files.end(), isGiven)) {
+            all.push_back(file);
+            continue;
+        }
+        if (!whole.notice.empty()) console::printDiagnostic("notice: {}\n", whole.notice);
+        for (const fs::path& each : whole.files) all.push_back(each.string());
+    }
+    return all;
 }
 
 /** Returns what could be poses in a log of another program; empty for a log of Insonify, whose streams have the names
@@ -114,20 +133,36 @@ void printMetadata(const log::Reader& log) {
     }
 }
 
-int logInfo(const std::string& file, bool json, bool metadata) {
-    const auto log = opened(file);
-    const std::vector<log::FoundPoses> poses = foreignPoses(*log);
+struct Options {
+    std::string file, deployment, stream, poses, to, samples;
+    std::vector<std::string> files, streams;
+    std::string from, until;
+    std::string for_mcap;  ///< A given option that only an MCAP file takes; empty: none.
+    log::McapConfig mcap;
+    bool json = false, metadata = false, ground = false, utm = false;
+};
+
+Json printInfo(log::Reader& log, bool json, bool metadata) {
+    const std::vector<log::FoundPoses> poses = foreignPoses(log);
     if (!json) {
-        printTable(*log);
+        printTable(log);
         if (!poses.empty())
             console::printResult("\ncould be the poses of a body in `insonify replay`:\n{}", log::tableOf(poses));
-        if (metadata) printMetadata(*log);
-        return 0;
+        if (metadata) printMetadata(log);
+        return {};
     }
-    Json all = infoJson(*log);
+    Json all = infoJson(log);
     all["poses"] = posesJson(poses);
-    if (metadata) all["metadata"] = metadataJson(*log);
-    print(all);
+    if (metadata) all["metadata"] = metadataJson(log);
+    return all;
+}
+
+/** Several logs are a list in JSON. */
+int logInfo(const Options& options) {
+    Json all = Json::array();
+    for (const std::string& file : options.files)
+        all.push_back(printInfo(*opened(file), options.json, options.metadata));
+    if (options.json) print(all.size() == 1 ? all.front() : all);
     return 0;
 }
 
@@ -157,15 +192,6 @@ void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
             "notice: {} gets a line for each bin, some {:.0f} million, {:.1f} GB; an .npz takes {:.2g} GB\n",
             to.string(), bins / 1e6, bins * line / 1e9, bins * sizeof(float) / 1e9);
 }
-
-struct Options {
-    std::string file, deployment, stream, poses, to, samples;
-    std::vector<std::string> files, streams;
-    std::string from, until;
-    std::string for_mcap;  ///< A given option that only an MCAP file takes; empty: none.
-    log::McapConfig mcap;
-    bool json = false, metadata = false, ground = false, utm = false;
-};
 
 using Paths = std::vector<fs::path>;  ///< Written files.
 /** A format that a stream is exported to, by the ending of the file, in lower case. */
@@ -230,7 +256,16 @@ int exportMessages(const Options& options) {
     makeFolderOf(options.to);
     log::Selection selection;
     if (!options.stream.empty()) selection.streams.insert(options.stream);
-    const log::Copied copied = log::copyLog({options.file}, options.to, {.selection = selection, .anew = options.mcap});
+    log::McapConfig mcap = options.mcap;
+    mcap.is_bag = !log::isBesideAnotherBag(options.to);
+    if (!mcap.is_bag)
+        console::printDiagnostic(
+            "notice: {}: the folder has the metadata.yaml of another bag, so this file gets none; "
+            "`ros2 bag reindex` in a folder of its own makes it a bag\n",
+            options.to);
+    const std::vector<std::string> files = filesOf({options.file});
+    const log::Copied copied =
+        log::copyLog({files.begin(), files.end()}, options.to, {.selection = selection, .anew = mcap});
     reportLost(copied);
     console::printResult("{}: {} messages\n", options.to, copied.samples);
     return 0;
@@ -343,7 +378,8 @@ void reportOverlaps(const std::vector<std::string>& files) {
     }
 }
 
-int logCut(const Options& options) {
+int logCut(Options options) {
+    options.files = filesOf(options.files);
     if (options.files.size() > 1) reportOverlaps(options.files);
     const log::Copied copied = copyTo(options.to, {options.files.begin(), options.files.end()},
                                       {.selection = selectionOf(options), .needs_samples = true});
@@ -436,8 +472,7 @@ void addLogCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* log = app.add_subcommand("log", "Inspects, cuts and repairs logs")->require_subcommand(1);
 
-    CLI::App* info = add(*log, action, options, "info", "Streams, types, counts, time span and rate",
-                         [](const Options& asked) { return logInfo(asked.file, asked.json, asked.metadata); });
+    CLI::App* info = add(*log, action, options, "info", "Streams, types, counts, time span and rate", logInfo);
     info->add_flag("--json", options->json, "for machines");
     info->add_flag("--metadata", options->metadata, "deployment, seed and plan, and what the numbers mean, with units");
 
@@ -482,7 +517,8 @@ void addLogCommand(CLI::App& app, Action& action) {
         add(*log, action, options, "check", "Reads a log strictly and names the first wrong byte", logCheck);
     check->add_flag("--json", options->json, "for machines");
 
-    for (CLI::App* command : {info, out, repair, check})
+    info->add_option("FILE", options->files, "logs: pocolog, MCAP or .db3 files, or folders of bags")->required();
+    for (CLI::App* command : {out, repair, check})
         command->add_option("FILE", options->file, "a pocolog, MCAP or .db3 file, or the folder of a bag")->required();
 }
 

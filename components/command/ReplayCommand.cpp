@@ -260,8 +260,8 @@ void choosePoses(log::Reader& log, Asked& options) {
 
 int replay(Asked options) {
     recordings::refuseRecording(options.replay.log);
-    const auto opened = log::openLog(options.replay.log, log::AtDamage::Stop, options.replay.world_frame);
-    log::Reader& log = *opened;
+    const log::WholeLog opened = log::openWholeLog(options.replay.log, log::AtDamage::Stop, options.replay.world_frame);
+    log::Reader& log = *opened.log;
     if (options.deployment.empty()) return listPoses(log);
     refuseFolderOf(options.replay.log, options.out);
     choosePoses(log, options);

@@ -19,6 +19,7 @@
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/RunFiles.hpp"
 #include "components/deployer/StopSignal.hpp"
+#include "components/deployer/Supervision.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/config/YamlText.hpp"
 #include "components/pose/TrajectoryTask.hpp"
@@ -266,6 +267,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     refuseUnwritable(options.summary, deployment.spec().file);
 
     const std::atomic<bool>& stop = stopOnSignals();
+    Supervision supervision(options.health);
     const FolderListing before = options.quiet || options.shard ? FolderListing() : listingOf(folder.path());
     console::startPrinting();
     deployment.configure();
@@ -279,6 +281,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     callAll(deployment, options);
 
     const std::vector<types::Notices> reported = noticesOf(deployment);
+    supervision.watch(deployment, stop);
     framework::RunResult result = runAll(deployment, options, stop);
     const Summary summary(deployment, result);
     if (!options.quiet) printNew(deployment, reported);
@@ -295,6 +298,11 @@ void addRunCommand(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("run", "Runs a deployment, or a shard of it");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     options->addTo(*command);
+    command
+        ->add_option("--health", options->health,
+                     "the state of the run in JSON: in a file that is replaced each second, or by HTTP on a port, 200 "
+                     "while all tasks run and none hangs, else 503")
+        ->type_name("FILE|[ADDRESS:]PORT");
     CLI::Option* const calls =
         command
             ->add_option(

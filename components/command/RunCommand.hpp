@@ -16,6 +16,7 @@ namespace insonify::command {
 struct RunOptions {
     std::string deployment;             ///< File.
     std::string out;                    ///< Folder for the run's files; empty: a new one.
+    std::string health;                 ///< File or port for the state of the run, see Supervision; empty: neither.
     std::string summary;                ///< File for the summary in JSON; empty: none.
     std::vector<std::string> set;       ///< "task.property.path=value"
     std::vector<std::string> recorded;  ///< As `set`, below it: settings of the log that is rendered again.

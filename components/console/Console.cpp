@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <cstdlib>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -39,6 +41,31 @@ int writeAll(int file, std::string_view text) {
         }
     }
     return 0;
+}
+
+/** Whether the standard error is the journal of systemd, which takes the priority of a line from its beginning. */
+bool isJournal() {
+    const char* const journal = std::getenv("JOURNAL_STREAM");
+    struct stat error {};
+    return journal && fstat(STDERR_FILENO, &error) == 0 &&
+           std::to_string(error.st_dev) + ":" + std::to_string(error.st_ino) == journal;
+}
+
+/** Returns a text with the priority of each line, as in sd-daemon(3): "<4>warning: ...". A line that begins with a
+ * space continues the one before. */
+std::string withPriorities(const std::string& text) {
+    std::string lines, priority = "<3>";
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+        const std::string_view line = std::string_view(text).substr(begin, end - begin);
+        if (!line.starts_with(' '))
+            priority = line.starts_with("notice: ")                                  ? "<5>"
+                       : line.starts_with("warning: ") || line.starts_with("lost: ") ? "<4>"
+                                                                                     : "<3>";
+        lines.append(priority).append(line);
+        begin = end;
+    }
+    return lines;
 }
 
 /** The queue of diagnostics and the text of results. Never destroyed: its thread may wait for a console when the
@@ -136,7 +163,7 @@ private:
     bool write(const Text& text) {
         const std::string before(has_progress_ ? wipe : "");
         has_progress_ = false;
-        return writeAll(STDERR_FILENO, before + text.text) == 0;
+        return writeAll(STDERR_FILENO, before + (is_journal_ ? withPriorities(text.text) : text.text)) == 0;
     }
 
     void noteWritten(const Text& text, bool is_written) {
@@ -183,6 +210,7 @@ private:
         }
     }
 
+    const bool is_journal_ = isJournal();
     std::mutex mutex_;
     std::condition_variable work_, done_;
     std::thread thread_;

@@ -16,8 +16,11 @@ const std::atomic<bool>& stopOnSignals() {
     struct sigaction action {};
     action.sa_handler = raiseStop;
     action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
+    struct sigaction before {};
+    sigaction(SIGHUP, nullptr, &before);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it
     return stop;
 }
 

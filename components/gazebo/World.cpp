@@ -62,7 +62,9 @@ bool castsShadows(const wire::Model& model) {
 
 class SceneReader {
 public:
-    explicit SceneReader(const std::filesystem::path& folder) : builder_(folder / "world") {}
+    /** A Gazebo that runs has resolved its paths, which may be anywhere. */
+    explicit SceneReader(const std::filesystem::path& folder)
+        : builder_(folder / "world", meshes::ModelPaths::Reach::Anywhere) {}
 
     World read(const wire::Scene& message) {
         for (const wire::Light& light : message.light()) names_.insert(light.name());

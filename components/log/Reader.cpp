@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <iterator>
 
 #include "components/log/Stream.hpp"
@@ -161,6 +162,11 @@ std::vector<std::filesystem::path> filesOfBag(const std::filesystem::path& folde
             files.push_back(folder / name.as<std::string>());
     } catch (const YAML::Exception&) {  // the files are looked for
     }
+    for (const auto& file : files)
+        if (const auto below = file.lexically_normal().lexically_relative(folder.lexically_normal());
+            below.empty() || *below.begin() == "..")
+            throw types::ConfigError(folder / "metadata.yaml", "relative_file_paths",
+                                     "names " + file.string() + ", which is outside of the bag, and is not read");
     std::error_code none;
     std::string names;
     if (files.empty())
@@ -180,14 +186,18 @@ std::vector<std::filesystem::path> filesOfBag(const std::filesystem::path& folde
     return files;
 }
 
-/** The files of one bag as one log, in the order of their times. Streams of one name are one stream. */
+using Parts = std::vector<std::unique_ptr<Reader>>;
+
+void sortByTime(Parts& parts) {
+    std::ranges::stable_sort(parts, {}, [](const auto& part) {
+        return part->samples().empty() ? types::Time{} : part->samples().front().received;
+    });
+}
+
+/** Several files as one log, in their order. Streams of one name are one stream. */
 class JoinedLog final : public Reader {
 public:
-    JoinedLog(const std::filesystem::path& folder, std::vector<std::unique_ptr<Reader>> parts)
-        : Reader(folder), parts_(std::move(parts)) {
-        std::ranges::stable_sort(parts_, {}, [](const auto& part) {
-            return part->samples().empty() ? types::Time{} : part->samples().front().received;
-        });
+    JoinedLog(const std::filesystem::path& path, Parts parts) : Reader(path), parts_(std::move(parts)) {
         for (const auto& part : parts_) add(*part);
     }
 
@@ -220,13 +230,15 @@ private:
         const auto same = std::ranges::find(streams_, stream.name, &Stream::name);
         if (same != streams_.end() && same->type != stream.type)
             throw types::ConfigError(part.path(), stream.name,
-                                     "is " + stream.type + "; in another file of the bag it is " + same->type);
-        if (same != streams_.end()) return static_cast<size_t>(same - streams_.begin());
+                                     "is " + stream.type + "; in another file of the log it is " + same->type);
+        if (same != streams_.end()) {
+            for (const char* of_samples : {bin_width_key, speed_of_sound_key})
+                if (same->metadatum(of_samples) != stream.metadatum(of_samples)) same->metadata.erase(of_samples);
+            return static_cast<size_t>(same - streams_.begin());
+        }
         Stream empty = stream;
         empty.count = empty.set_backs = 0;
         empty.first = empty.last = empty.set_back = {};
-        for (const char* of_samples : {bin_width_key, speed_of_sound_key})
-            empty.metadata.erase(of_samples);  // restored
         streams_.push_back(std::move(empty));
         layouts_.push_back(part.layout(index));
         return streams_.size() - 1;
@@ -236,7 +248,7 @@ private:
         std::visit([&, part = part, place = place](auto* sample) { part->read(place, *sample); }, room);
     }
 
-    std::vector<std::unique_ptr<Reader>> parts_;
+    Parts parts_;
     std::vector<std::pair<Reader*, SampleRef>> places_;  ///< Of each sample, by its number.
     std::vector<std::string> layouts_;                   ///< Of each stream.
 };
@@ -274,9 +286,60 @@ Storage storageOf(const std::filesystem::path& path) {
 std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage, types::WorldFrame foreign) {
     std::error_code none;
     if (!std::filesystem::is_directory(path, none)) return openFile(path, at_damage, foreign);
-    std::vector<std::unique_ptr<Reader>> parts;
+    Parts parts;
     for (const std::filesystem::path& file : filesOfBag(path)) parts.push_back(openFile(file, at_damage, foreign));
+    sortByTime(parts);
     return parts.size() == 1 ? std::move(parts.front()) : std::make_unique<JoinedLog>(path, std::move(parts));
+}
+
+std::optional<unsigned> sequenceNumber(const std::filesystem::path& log) {
+    const std::string digits = log.stem().extension().string();
+    unsigned number = 0;
+    const auto [end, error] = std::from_chars(digits.data() + !digits.empty(), digits.data() + digits.size(), number);
+    if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+    return number;
+}
+
+std::map<unsigned, std::filesystem::path> sequenceOf(const std::filesystem::path& log) {
+    std::map<unsigned, std::filesystem::path> files;
+    if (!sequenceNumber(log)) return files;
+    std::error_code failed;
+    const auto nameOf = [](const std::filesystem::path& file) { return file.stem().stem().string(); };
+    const auto folder = log.parent_path();
+    for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, failed)) {
+        const std::filesystem::path file = folder / entry.path().filename();
+        if (const auto number = sequenceNumber(file); number && file.extension() == log.extension() &&
+                                                      nameOf(file) == nameOf(log) && entry.is_regular_file(failed))
+            files[*number] = file;
+    }
+    return files;
+}
+
+WholeLog openWholeLog(const std::filesystem::path& path, AtDamage at_damage, types::WorldFrame foreign) {
+    Parts parts;
+    parts.push_back(openLog(path, at_damage, foreign));
+    WholeLog whole{nullptr, {path}, {}};
+    const auto files = sequenceOf(path);
+    const auto isOfThisRun = [&](const Reader& part) {
+        const auto same = [&](const char* key) { return part.metadatum(key) == parts.front()->metadatum(key); };
+        return same("insonify_deployment") && same("insonify_seed");
+    };
+    if (!files.empty() && files.begin()->first == *sequenceNumber(path))
+        for (auto next = std::next(files.begin()); next != files.end(); ++next) {
+            auto part = openLog(next->second, at_damage, foreign);
+            if (!isOfThisRun(*part)) {
+                whole.notice = next->second.string() + " is of another run, and is not taken with " + path.string();
+                break;
+            }
+            parts.push_back(std::move(part));
+            whole.files.push_back(next->second);
+        }
+    if (parts.size() > 1)
+        whole.notice = path.string() + " is continued in " + std::to_string(parts.size() - 1) + " files up to " +
+                       whole.files.back().filename().string() + ", which are taken with it" +
+                       (whole.notice.empty() ? "" : "; " + whole.notice);
+    whole.log = parts.size() == 1 ? std::move(parts.front()) : std::make_unique<JoinedLog>(path, std::move(parts));
+    return whole;
 }
 
 std::optional<std::filesystem::path> propertyLog(const Reader& log) {

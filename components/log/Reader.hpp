@@ -144,6 +144,23 @@ inline bool isMcap(const std::filesystem::path& path) { return storageOf(path) =
 std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop,
                                 types::WorldFrame foreign = types::WorldFrame::Enu);
 
+// A log that is continued in several files, x.0.log, x.1.log and so on.
+/** Returns a file's number in its sequence: 3 for x.3.log; none for x.log. */
+std::optional<unsigned> sequenceNumber(const std::filesystem::path& log);
+/** Returns the files of a log's sequence by their numbers, of which some may be missing; none for x.log. */
+std::map<unsigned, std::filesystem::path> sequenceOf(const std::filesystem::path& log);
+
+/** A log of one file or several. */
+struct WholeLog {
+    std::unique_ptr<Reader> log;
+    std::vector<std::filesystem::path> files;  ///< In their order.
+    std::string notice;                        ///< Which others were taken, and which are of another run; may be empty.
+};
+/** Opens a log as openLog() does. The first file of a sequence stands for all of them, as long as they are of the same
+ *  run; its path is that of the log. Any other file is opened alone. */
+WholeLog openWholeLog(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop,
+                      types::WorldFrame foreign = types::WorldFrame::Enu);
+
 /** Returns the property log of a log: properties.0.log next to it, if it is from the same run; none: there is none. */
 std::optional<std::filesystem::path> propertyLog(const Reader& log);
 

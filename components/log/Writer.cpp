@@ -24,4 +24,11 @@ std::unique_ptr<Writer> createLog(const std::filesystem::path& path, const McapC
     return std::make_unique<pocolog::Writer>(path);
 }
 
+bool isBesideAnotherBag(const std::filesystem::path& log) try {
+    mcap::Bag{log};
+    return false;
+} catch (const types::ConfigError&) {
+    return true;
+}
+
 }  // namespace insonify::log

@@ -78,6 +78,7 @@ struct McapConfig : ros::MessageOptions {
     bool transforms = true;
     std::map<std::string, McapStream> streams;  ///< By name, "task.port".
     types::RosNames names;                      ///< Namespace and frame prefix of the deployment; not a key.
+    bool is_bag = true;                         ///< False: without metadata.yaml; not a key.
 
     static void describe(auto& self, auto& visit) {
         MessageOptions::describe(self, visit);
@@ -93,5 +94,8 @@ struct McapConfig : ros::MessageOptions {
 /** Creates a log, or takes the name of one, which is emptied when the first bytes are written; the name decides the
  *  format, *.mcap or pocolog. Throws ConfigError when this fails or a Writer of any process has it open. */
 std::unique_ptr<Writer> createLog(const std::filesystem::path& path, const McapConfig& mcap = {});
+
+/** Whether the folder of a new MCAP file has the metadata.yaml of another bag, so that createLog() would refuse it. */
+bool isBesideAnotherBag(const std::filesystem::path& log);
 
 }  // namespace insonify::log

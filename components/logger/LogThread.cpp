@@ -15,18 +15,8 @@ namespace {
 
 /** Returns the files that follow `log` from an earlier run by their number, also after missing numbers. */
 std::map<unsigned, std::filesystem::path> sequelsOf(const std::filesystem::path& log) {
-    std::map<unsigned, std::filesystem::path> sequels;
-    if (!sequenceNumber(log)) return sequels;
-    std::error_code failed;
-    const auto nameOf = [](const std::filesystem::path& file) { return file.stem().stem().string(); };
-    const auto folder = log.has_parent_path() ? log.parent_path() : std::filesystem::path(".");
-    for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
-        const std::filesystem::path file = folder / entry.path().filename();
-        const auto number = sequenceNumber(file);
-        if (number > sequenceNumber(log) && file.extension() == log.extension() && nameOf(file) == nameOf(log) &&
-            entry.is_regular_file(failed))
-            sequels[*number] = file;
-    }
+    auto sequels = log::sequenceOf(log);
+    std::erase_if(sequels, [&](const auto& file) { return file.first <= *log::sequenceNumber(log); });
     return sequels;
 }
 
@@ -38,7 +28,7 @@ std::chrono::nanoseconds nanoseconds(double seconds) {
 
 /** Returns x.1.log for x.0.log and for x.log. */
 std::filesystem::path sequelOf(const std::filesystem::path& log) {
-    if (sequenceNumber(log)) return nextInSequence(log);
+    if (log::sequenceNumber(log)) return nextInSequence(log);
     return log.parent_path() / (log.stem().string() + ".1" + log.extension().string());
 }
 
@@ -56,7 +46,11 @@ void removeSequels(const std::filesystem::path& log) {
 }
 
 Rotation::Rotation(const LoggerConfig& config, log::Writer& log)
-    : log_(log), max_size_(config.max_file_size), max_duration_(config.max_file_duration) {}
+    : log_(log),
+      max_size_(config.max_file_size),
+      max_duration_(config.max_file_duration),
+      max_total_(config.max_total_size),
+      first_(log::sequenceNumber(log.path()).value_or(0)) {}
 
 bool Rotation::due(types::Time now) const {
     return (max_size_ && static_cast<double>(log_.size()) >= *max_size_) ||
@@ -67,7 +61,26 @@ void Rotation::before(types::Time now) {
     if (!began_) began_ = now;
     if (!due(now)) return;
     began_ = now;  // also of a file that is opened later, because that fails now
+    if (max_total_) removeOldest();
     log_.next(nextInSequence(log_.path()));
+}
+
+void Rotation::removeOldest() const {
+    const double room = *max_total_ - *max_size_;  // without that of the file that begins
+    auto files = log::sequenceOf(log_.path());
+    std::erase_if(files, [&](const auto& file) { return file.first < first_; });
+    const auto sizeOf = [&](const std::filesystem::path& file) {  // a file exceeds its limit by a part of a sample
+        std::error_code none;
+        const uintmax_t size = file == log_.path() ? log_.size() : std::filesystem::file_size(file, none);
+        return std::min(static_cast<double>(size), *max_size_);
+    };
+    double total = 0;
+    for (const auto& [number, file] : files) total += sizeOf(file);
+    for (auto oldest = files.begin(); total > room && oldest != files.end() && oldest->second != log_.path();
+         ++oldest) {
+        const double size = sizeOf(oldest->second);
+        if (log::removeLog(oldest->second)) total -= size;
+    }
 }
 
 LogThread::LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period, AtFailure at_failure,

@@ -33,9 +33,12 @@ public:
 
 private:
     bool due(types::Time now) const;
+    /** Removes the oldest files of the run, so that all of them with the next one are at most `max_total_size`. */
+    void removeOldest() const;
 
     log::Writer& log_;
-    std::optional<double> max_size_, max_duration_;
+    std::optional<double> max_size_, max_duration_, max_total_;
+    unsigned first_;                    ///< Number of the run's first file.
     std::optional<types::Time> began_;  ///< When the file's first sample was received.
 };
 

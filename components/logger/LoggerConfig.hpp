@@ -1,5 +1,4 @@
 #pragma once
-#include <charconv>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -11,26 +10,17 @@
 
 namespace insonify::logger {
 
-/** Returns a file's number in its sequence: 3 for x.3.log; none for x.log. */
-inline std::optional<unsigned> sequenceNumber(const std::filesystem::path& log) {
-    const std::string digits = log.stem().extension().string();
-    unsigned number = 0;
-    const auto [end, error] = std::from_chars(digits.data() + !digits.empty(), digits.data() + digits.size(), number);
-    if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-    return number;
-}
-
 /** x.3.log -> x.4.log, x.3.mcap -> x.4.mcap; the file must have a number. */
 inline std::filesystem::path nextInSequence(const std::filesystem::path& log) {
     const std::string name = log.stem().stem().string();
     return log.parent_path() /
-           (name + "." + std::to_string(uint64_t{*sequenceNumber(log)} + 1) + log.extension().string());
+           (name + "." + std::to_string(uint64_t{*log::sequenceNumber(log)} + 1) + log.extension().string());
 }
 
 struct LoggerConfig {
     std::string file;
     std::string property_file = "properties.0.log";
-    std::optional<double> max_file_size, max_file_duration;
+    std::optional<double> max_file_size, max_file_duration, max_total_size;
     double flush_period = 1;
     std::optional<double> sync_period;
     int queue = 64;
@@ -50,6 +40,11 @@ struct LoggerConfig {
               self.max_file_size);
         visit({"max_file_duration", "s", "after this time the log continues in NAME.1.log and so on", 0.1, 1e9},
               self.max_file_duration);
+        visit({"max_total_size", "B",
+               "of all files of the log: before it would be above this, the oldest are removed; at least twice "
+               "max_file_size",
+               2e6, 1e15},
+              self.max_total_size);
         visit({"flush_period", "s", "at most this much is lost when the process is killed", 0.001, 1},
               self.flush_period);
         visit({"sync_period", "s",
@@ -69,9 +64,14 @@ struct LoggerConfig {
         if (!log::findLogFormat(file))
             diagnostics.push_back({"file", "is '" + file + "'; it must be a file name that ends in " +
                                                log::logEndings() + ", as in harbour.0.log"});
-        else if ((max_file_size || max_file_duration) && !sequenceNumber(file))
+        else if ((max_file_size || max_file_duration) && !log::sequenceNumber(file))
             diagnostics.push_back(
                 {"file", "is '" + file + "'; a log of several files must have a number, as in x.0.log"});
+        if (max_total_size && !max_file_size)
+            diagnostics.push_back({"max_total_size", "needs max_file_size: a log of one file has no oldest one"});
+        else if (max_total_size && *max_total_size < 2 * *max_file_size)
+            diagnostics.push_back({"max_total_size", "must be at least twice max_file_size: " +
+                                                         std::to_string(static_cast<uint64_t>(2 * *max_file_size))});
         if (!property_file.empty() && (!log::findLogFormat(property_file) || log::isMcap(property_file) ||
                                        property_file.find('/') != std::string::npos))
             diagnostics.push_back({"property_file", "is '" + property_file +

@@ -1,5 +1,6 @@
 #include "components/meshes/AssimpFile.hpp"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Exceptional.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -17,6 +18,7 @@
 #include <type_traits>
 
 #include "components/scene/gltf/Gltf.hpp"
+#include "types/NamedFile.hpp"
 
 namespace insonify::meshes {
 
@@ -104,10 +106,29 @@ std::string withoutTextures(const std::filesystem::path& file) {
     return text;
 }
 
+/** Opens the files that belong to a mesh file, such as the materials that an .obj names. */
+class OwnFiles final : public Assimp::DefaultIOSystem {
+public:
+    explicit OwnFiles(std::filesystem::path file) : file_(std::move(file)) {}
+
+    bool Exists(const char* named) const override { return isOwn(named) && DefaultIOSystem::Exists(named); }
+    Assimp::IOStream* Open(const char* named, const char* mode) override {
+        return isOwn(named) ? DefaultIOSystem::Open(named, mode) : nullptr;
+    }
+
+private:
+    bool isOwn(const char* named) const {
+        std::error_code error;
+        return types::belongsTo(named, file_) && std::filesystem::is_regular_file(named, error);
+    }
+    std::filesystem::path file_;
+};
+
 }  // namespace
 
 FileMeshes readByAssimp(const std::filesystem::path& file, MeshAxes axes) {
     Assimp::Importer importer;
+    importer.SetIOHandler(new OwnFiles(file));  // the importer deletes it
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, axes == MeshAxes::AsStored);  // else y-up
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);                          // not ids
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |

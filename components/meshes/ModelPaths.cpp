@@ -1,7 +1,5 @@
 #include "components/meshes/ModelPaths.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
@@ -11,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "types/NamedFile.hpp"
 #include "types/text/DidYouMean.hpp"
 
 namespace insonify::meshes {
@@ -18,7 +17,11 @@ namespace {
 
 using std::filesystem::path;
 
-bool isThere(const path& place) { return access(place.c_str(), F_OK) == 0; }
+/** Whether there is a file or a folder; a pipe or a device is neither. */
+bool isThere(const path& place) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(place, error) || std::filesystem::is_directory(place, error);
+}
 
 std::optional<path> ifThere(path place) { return isThere(place) ? std::optional(std::move(place)) : std::nullopt; }
 
@@ -168,11 +171,12 @@ std::optional<path> findInFuel(const FuelUrl& url) {
 
 }  // namespace
 
-ModelPaths::ModelPaths(const path& world) {
+ModelPaths::ModelPaths(const path& world, Reach reach) : reach_(reach) {
     const auto add = [this](const path& folder) {
         if (std::ranges::find(folders_, folder) == folders_.end()) folders_.push_back(folder);
     };
     for (const char* variable : model_variables) std::ranges::for_each(foldersIn(variable), add);
+    trusted_ = folders_;
     const path folder = std::filesystem::absolute(world).lexically_normal().parent_path();
     add(folder);
     if (isThere(folder / "model.config")) add(folder.parent_path());
@@ -182,15 +186,34 @@ ModelPaths::ModelPaths(const path& world) {
         if (isThere(at / "models")) add(at / "models");
         if (at == root_) break;
     }
+    own_.assign(folders_.begin() + static_cast<ptrdiff_t>(trusted_.size()), folders_.end());
+    std::error_code error;
+    const path real = std::filesystem::weakly_canonical(world, error).parent_path();  // of a world that is a link
+    for (const path& own : {real, rootAbove(real)})
+        if (!own.empty()) own_.push_back(own);
     for (const path& own :
          {home() / ".gazebo/models", path("/usr/share/gazebo-11/models"), path("/usr/share/gazebo-11")})
-        if (isThere(own)) add(own);
+        if (isThere(own)) add(own), trusted_.push_back(own);
+    for (const char* variable : {"AMENT_PREFIX_PATH", "ROS_PACKAGE_PATH"})
+        for (const path& packages : foldersIn(variable)) trusted_.push_back(packages);
+    for (const path& cache : fuelCaches()) trusted_.push_back(cache);
 }
 
 std::optional<path> ModelPaths::find(const std::string& uri, const path& named_in) const {
-    if (const auto found = findRaw(uri, named_in)) return found;
-    const std::string plain = decoded(uri);
-    return plain == uri ? std::nullopt : findRaw(plain, named_in);
+    auto found = findRaw(uri, named_in);
+    if (const std::string plain = decoded(uri); !found && plain != uri) found = findRaw(plain, named_in);
+    return found && mayRead(*found, named_in) ? found : std::nullopt;
+}
+
+bool ModelPaths::mayRead(const path& file, const path& named_in) const {
+    if (reach_ == Reach::Anywhere) return true;
+    const auto isWithin = [plain = file.lexically_normal()](const path& folder) {
+        const path below = plain.lexically_relative(folder.lexically_normal());
+        return !below.empty() && *below.begin() != "..";
+    };
+    const auto isOwn = [&](const path& folder) { return types::isBelow(file, folder); };
+    return std::ranges::any_of(trusted_, isWithin) || std::ranges::any_of(own_, isOwn) ||
+           (named_in.is_absolute() && types::belongsTo(file, named_in));
 }
 
 namespace {
@@ -253,7 +276,9 @@ std::string ModelPaths::searched(const std::string& uri) const {
     if (uri.starts_with("package://") || uri.starts_with("model://"))
         text += ", and as packages of ROS by AMENT_PREFIX_PATH and ROS_PACKAGE_PATH" +
                 (root_.empty() ? "" : " and below " + root_.string());
-    return text + "; INSONIFY_MODEL_PATH adds folders, which contain the folders of the models";
+    return text +
+           "; files outside of these are not read; INSONIFY_MODEL_PATH adds folders, which contain the folders of the "
+           "models";
 }
 
 }  // namespace insonify::meshes

@@ -83,7 +83,8 @@ using Shape = std::variant<OtherShape, BoxShape, EllipsoidShape, CylinderShape, 
 class WorldBuilder {
 public:
     /** Searches files from `world`, see ModelPaths. */
-    explicit WorldBuilder(const std::filesystem::path& world) : paths_(world), meshes_(geometry_) {}
+    explicit WorldBuilder(const std::filesystem::path& world, ModelPaths::Reach reach = ModelPaths::Reach::OwnPlaces)
+        : paths_(world, reach), meshes_(geometry_) {}
 
     /** Adds a node and returns its index. `parent` is -1 at the top. */
     int addNode(const std::string& name, int parent, const glm::dmat4& world_from_node);

@@ -280,8 +280,36 @@ std::string Receiver::text(const Flaws& flaws, const types::Sonar& intensities) 
         100 * flaws.saturated, maxCode(), loudest, code_.full_scale_db);
 }
 
+namespace {
+
+/** Reports a value that its bounds permit but no sonar has, and that usually is a typo: a picture of it is all white
+ *  or all black. */
+void noteUnusual(const char* property, double value, double low, double high, const char* unit, types::Notices& all) {
+    if (value < low || value > high)
+        all.push_back(types::warning(
+            fmt::format("{} is {:g} {}; receivers have {:g} to {:g}, so echoes are probably saturated or lost",
+                        property, value, unit, low, high)));
+}
+
+}  // namespace
+
 types::Notices Receiver::notices() const {
     types::Notices all;
+    noteUnusual("gain_db", config_.gain_db, -100, 150, "dB", all);
+    if (const auto& tvg = config_.tvg) {
+        noteUnusual("tvg.log_coefficient", tvg->log_coefficient, 0, 80, "dB", all);
+        noteUnusual("tvg.db_per_m", tvg->db_per_m, 0, 5, "dB/m", all);
+        noteUnusual("tvg.max_db", tvg->max_db, -100, 250, "dB", all);
+    }
+    if (config_.code && config_.output == Output::Code)
+        noteUnusual("code.full_scale_db", config_.code->full_scale_db, -250, 150, "dB", all);
+    if (const auto& automatic = config_.automatic_gain) {
+        noteUnusual("automatic_gain.target_db", automatic->target_db, -250, 150, "dB", all);
+        noteUnusual("automatic_gain.max_db", automatic->max_db, 0, 150, "dB", all);
+    }
+    if (config_.saturation_db) noteUnusual("saturation_db", *config_.saturation_db, -250, 150, "dB", all);
+    if (config_.output == Output::ReceivedLevelDb)
+        noteUnusual("source_level_db", config_.source_level_db, 0, 260, "dB", all);
     if (const auto r = config_.tvg ? clampRange(*config_.tvg, range_max_) : std::nullopt)
         all.push_back(
             fmt::format("tvg reaches its max_db of {:g} dB at {:.4g} m and stays there", config_.tvg->max_db, *r));

@@ -93,8 +93,10 @@ void ReplayTask::checkDatum(const log::Reader& log, types::Diagnostics& diagnost
 }
 
 std::pair<std::unique_ptr<log::Reader>, types::Notices> ReplayTask::opened() const {
-    auto log = log::openLog(inputPath(config->file), log::AtDamage::Stop, config->world_frame);
+    log::WholeLog whole = log::openWholeLog(inputPath(config->file), log::AtDamage::Stop, config->world_frame);
+    auto log = std::move(whole.log);
     types::Notices notices;
+    if (!whole.notice.empty()) notices.push_back(whole.notice);
     for (const log::PoseSource& source : config->poses)
         for (types::Notice& notice : log::addPoses(*log, source, config->world_frame, config->datum))
             notices.push_back(std::move(notice));

@@ -2,6 +2,7 @@
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_string.h>
 #include <fmt/format.h>
 #include <gdal_frmts.h>
 #include <gdal_priv.h>
@@ -12,6 +13,7 @@
 #include <mutex>
 
 #include "components/scene/Scene.hpp"
+#include "types/NamedFile.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::survey {
@@ -60,6 +62,16 @@ void checkSize(GDALDataset& dataset, const std::filesystem::path& file) {
     if (size < expected) refuse(file, fmt::format("ends too early: has {} of {} bytes", size, expected));
 }
 
+/** Refuses a mosaic whose tiles are elsewhere on the machine or in the network: it could name any file. */
+void refuseForeignTiles(GDALDataset& dataset, const std::filesystem::path& file) {
+    const std::unique_ptr<char*, decltype(&CSLDestroy)> names(dataset.GetFileList(), CSLDestroy);
+    for (char** name = names.get(); name && *name; ++name)
+        if (!types::belongsTo(*name, file))
+            refuse(file, fmt::format("names {}, which is outside of its folder (links resolved), and is not read; put "
+                                     "the mosaic next to its tiles or above them",
+                                     *name));
+}
+
 struct Close {
     void operator()(GDALDataset* dataset) const { GDALClose(GDALDataset::ToHandle(dataset)); }
 };
@@ -90,6 +102,7 @@ GdalSurvey::GdalSurvey(const std::filesystem::path& file, int band) : file_(file
         refuse(file, "is no survey (" + reason() +
                          "); may be GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img or a mosaic of them, .vrt; "
                          "gdal_translate IN OUT.tif makes one of others");
+    refuseForeignTiles(*dataset_, file);
     checkSize(*dataset_, file);
     if (band > dataset_->GetRasterCount())
         refuse(file, fmt::format("has {} bands, but no band {}", dataset_->GetRasterCount(), band));

@@ -67,12 +67,17 @@ std::string tokenIn(std::string_view target) {
 }
 
 bool isOwnName(std::string_view host) {
-    in6_addr any{};
-    if (host.starts_with('[')) {
-        const std::string v6(host.substr(1, host.find(']') - 1));
-        return inet_pton(AF_INET6, v6.c_str(), &any) == 1;
+    const size_t end = host.starts_with('[') ? std::min(host.find(']'), host.size() - 1) + 1 : host.find(':');
+    const std::string name(host.substr(0, end));
+    if (end < host.size()) {
+        const std::string_view digits = host.substr(end + 1);
+        uint16_t port = 0;
+        const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
+        if (host[end] != ':' || error != std::errc() || rest != digits.data() + digits.size()) return false;
     }
-    const std::string name(host.substr(0, host.find(':')));
+    in6_addr any{};
+    if (name.starts_with('[') && name.ends_with(']'))
+        return inet_pton(AF_INET6, name.substr(1, name.size() - 2).c_str(), &any) == 1;
     return name == "localhost" || inet_pton(AF_INET, name.c_str(), &any) == 1;
 }
 

@@ -99,6 +99,19 @@ TEST(DetectionsBagTest, ABagHasDetectionsWithTheFrequencyAndTheMountOfTheirSonar
     }
 }
 
+TEST_F(McapCommandTest, AnExportNextToAnotherBagHasNoMetadata) {
+    ASSERT_THAT(call({"log", "export", "out/wall.0.log", "--to", "bags/first.mcap"}), succeeds());
+    const std::string metadata = readFile(folder / "bags/metadata.yaml");
+    EXPECT_THAT(metadata, HasSubstr("first.mcap"));
+    const Outcome second = call({"log", "export", "out/wall.0.log", "--to", "bags/second.mcap"});
+    EXPECT_THAT(second, prints(HasSubstr("bags/second.mcap: 9 messages")));
+    EXPECT_THAT(second.err, HasSubstr("notice: bags/second.mcap: the folder has the metadata.yaml of another bag"));
+    EXPECT_EQ(readFile(folder / "bags/metadata.yaml"), metadata) << "the other bag stays";
+    EXPECT_TRUE(readFile(folder / "bags/first.mcap") == readFile(folder / "bags/second.mcap"));
+    EXPECT_THAT(call({"log", "check", "bags/second.mcap"}), succeeds());
+    EXPECT_EQ(call({"log", "export", "out/wall.0.log", "--to", "bags/first.mcap"}).err, "") << "again, as itself";
+}
+
 TEST_F(McapCommandTest, MistakesAreNamed) {
     const auto expectError = [&](std::vector<std::string> words, const std::string& message) {
         EXPECT_THAT(call(std::move(words)), isRefused(HasSubstr(message)));
@@ -107,7 +120,7 @@ TEST_F(McapCommandTest, MistakesAreNamed) {
     expectError({"log", "export", "out/wall.0.log", "--stream", "no.port", "--to", "x.mcap"},
                 "there is no such stream");
     ASSERT_EQ(call({"log", "export", "out/wall.0.log", "--to", "wall.mcap"}).code, 0);
-    expectError({"log", "export", "out/wall.0.log", "--to", "other.mcap"}, "describes another bag");
+    expectError({"log", "cut", "out/wall.0.log", "--to", "other.mcap"}, "describes another bag");
     expectError({"log", "export", "wall.mcap", "--to", "wall.mcap"}, "it is the log that is read");
     fs::resize_file(folder / "wall.mcap", fs::file_size(folder / "wall.mcap") - 5);
     expectError({"log", "check", "wall.mcap"},

@@ -210,6 +210,19 @@ TEST(PagesTest, TheComponentBuildsAndRunsInADeployment) {
             .wait(),
         succeeds());
 
+    const auto described =
+        prints(testing::AllOf(testing::HasSubstr("example::MeanEchoTask: "), testing::HasSubstr("  beyond: ")));
+    EXPECT_THAT(callInsonify(folder, {"describe", "example::MeanEchoTask", "--library", "mean_echo.so"}), described);
+    EXPECT_THAT(callInsonify(folder, {"describe", "example::MeanEchoTask", "--deployment", "wall.yml"}), described);
+    EXPECT_THAT(callInsonify(folder, {"describe", "--json", "--library", "mean_echo.so"}).out,
+                testing::HasSubstr("example::MeanEchoTask"));
+    EXPECT_THAT(callInsonify(folder, {"describe", "example::MeanEchoTask"}),
+                isRefused(testing::HasSubstr("is read with --library FILE or --deployment FILE")));
+    EXPECT_THAT(callInsonify(folder, {"describe", "a::B", "--library", "none.so"}),
+                isRefused(testing::HasSubstr("none.so")));
+    EXPECT_THAT(callInsonify(folder, {"describe", "a::B", "--deployment", "none.yml"}),
+                isRefused(testing::HasSubstr("none.yml")));
+
     ASSERT_THAT(folder.run({"--pings", "2"}), succeeds());
     ASSERT_EQ(
         callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "mean.mean", "--to", "mean.csv"}).code, 0);

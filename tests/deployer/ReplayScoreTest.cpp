@@ -79,6 +79,53 @@ TEST_F(ReplayScoreTest, ASimulatedLogScoresRelativeL2ZeroAndCorrelationOne) {
     EXPECT_FALSE(fs::exists(folder_ / "scored/score_000006.png"));
 }
 
+/** A log of several files is what one of a single file is, for each command that takes its first file. */
+TEST_F(ReplayScoreTest, ARotatedLogIsOne) {
+    const std::vector<std::string> large = {"--pings", "12", "--set", "sonar.bin_count=2000"};
+    const auto recordTo = [&](const std::string& out, std::vector<std::string> more) {
+        std::vector<std::string> words = {"run", "wall.yml", "--out", out};
+        words.insert(words.end(), large.begin(), large.end());
+        words.insert(words.end(), more.begin(), more.end());
+        ASSERT_THAT(callInsonify(folder_, words), succeeds());
+    };
+    recordTo("one", {});
+    recordTo("many", {"--set", "log.max_file_size=1000000"});
+    ASSERT_TRUE(fs::exists(folder_ / "many/wall.2.log"));
+    const auto call = [&](std::vector<std::string> words) { return callInsonify(folder_, std::move(words)); };
+    const std::string notice = "notice: many/wall.0.log is continued in ";
+
+    const Outcome info = call({"log", "info", "many/wall.0.log", "--json"});
+    EXPECT_THAT(info.err, HasSubstr(notice));
+    EXPECT_EQ(json::parse(info.out)["streams"],
+              json::parse(call({"log", "info", "one/wall.0.log", "--json"}).out)["streams"]);
+    EXPECT_EQ(json::parse(call({"log", "info", "one/wall.0.log", "many/wall.1.log", "--json"}).out).size(), 2u);
+    EXPECT_THAT(call({"log", "info", "one/wall.0.log", "many/wall.1.log"}).out,
+                testing::AllOf(HasSubstr("one/wall.0.log: "), HasSubstr("many/wall.1.log: ")));
+    for (const char* log : {"one", "many"}) {
+        EXPECT_THAT(call({"log", "export", std::string(log) + "/wall.0.log", "--stream", "noise.noisy", "--to",
+                          std::string(log) + ".npz"}),
+                    succeeds());
+        EXPECT_THAT(call({"log", "export", std::string(log) + "/wall.0.log", "--to", std::string(log) + ".mcap"}),
+                    prints(HasSubstr(" messages")));
+        fs::remove(folder_ / "metadata.yaml");
+        EXPECT_THAT(call({"log", "cut", std::string(log) + "/wall.0.log", "--from", "0.35", "--to",
+                          std::string(log) + "_cut/x.0.log"}),
+                    succeeds());
+    }
+    EXPECT_TRUE(readFile(folder_ / "one.npz") == readFile(folder_ / "many.npz"));
+    EXPECT_TRUE(readFile(folder_ / "one.mcap") == readFile(folder_ / "many.mcap"));
+    EXPECT_TRUE(readFile(folder_ / "one_cut/x.0.log") == readFile(folder_ / "many_cut/x.0.log"));
+    std::vector<std::string> listed = {"log", "cut", "--to", "listed/x.0.log", "--from", "0.35"};
+    for (const auto& [number, file] : log::sequenceOf(folder_ / "many/wall.0.log"))
+        listed.push_back("many/" + file.filename().string());
+    EXPECT_EQ(call(listed).err.find("is continued in"), std::string::npos);
+    EXPECT_TRUE(readFile(folder_ / "one_cut/x.0.log") == readFile(folder_ / "listed/x.0.log"));
+
+    const Outcome scored = score("many/wall.0.log", {"--set", "sonar.bin_count=2000"});
+    EXPECT_THAT(scored, prints(HasSubstr("noise.noisy: 12 pings compared; relative L2 0 to 0, median 0\n")));
+    EXPECT_THAT(scored.err, HasSubstr("many/wall.0.log is continued in "));
+}
+
 TEST_F(ReplayScoreTest, PointTargetsAreInTheReplayAsInTheRun) {
     const std::string target = "scene.targets=[{name: buoy, position: [6, 0.5, 0], strength_db: 10}]";
     record({"--pings", "3", "--set", target});

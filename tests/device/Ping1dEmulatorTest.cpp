@@ -87,7 +87,33 @@ TEST_F(Ping1dEmulatorTest, ReadsBackItsSettings) {
     EXPECT_EQ(request<Ping1dGeneralInfo>().ping_interval, 250);
 }
 
+/** The order of the maker's own test of a device, ping-cpp's test-device-ping1d, by datagrams and over a line. */
+TEST_F(Ping1dEmulatorTest, TheRangeIsSetInManualModeOnly) {
+    for (const bool by_datagram : {true, false}) {
+        const auto succeeds = [&](const auto& message) {
+            bench_.give(pingBytes(message, 0, 0), 1, by_datagram);
+            const auto answers = bench_.received();
+            EXPECT_EQ(answers.size(), 1u);
+            return !answers.empty() && answers[0].message == PingAck::message;
+        };
+        const Ping1dRange before = request<Ping1dRange>();
+        EXPECT_TRUE(succeeds(Ping1dSetModeAuto{1}));
+        EXPECT_FALSE(succeeds(Ping1dSetRange{100, 2000}));
+        EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{100, 2000}),
+                  "mode_auto is 1, so the device sets the range; set mode_auto to 0");
+        EXPECT_EQ(request<Ping1dRange>().length, before.length);
+        EXPECT_TRUE(succeeds(Ping1dSetGain{1})) << "the firmware refuses nothing else";
+        EXPECT_TRUE(succeeds(Ping1dSetPingInterval{200}));
+        EXPECT_TRUE(succeeds(Ping1dSetSpeedOfSound{1'550'000}));
+        EXPECT_TRUE(succeeds(Ping1dSetModeAuto{0}));
+        EXPECT_TRUE(succeeds(Ping1dSetRange{100, 2000}));
+        EXPECT_EQ(request<Ping1dRange>().start, 100u);
+        EXPECT_TRUE(succeeds(Ping1dSetRange{0, 30'000}));
+    }
+}
+
 TEST_F(Ping1dEmulatorTest, RefusesValuesOutOfBoundsWithNameAndBounds) {
+    set(Ping1dSetModeAuto{0});
     EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{0, 999}), "scan_length is 999; must be 1000 to 100000");
     EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{99'500, 1000}), "scan_start is 99500; must be 0 to 99000");
     EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{50'000, 50'001}), "scan_length is 50001; must be 1000 to 50000");

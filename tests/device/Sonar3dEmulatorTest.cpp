@@ -73,6 +73,17 @@ TEST_F(Sonar3dEmulatorTest, ReportsDeviceInformation) {
     EXPECT_EQ(json("udp")["mode"], "multicast");
 }
 
+/** As Water Linked's extension of BlueOS searches the network: GET, and "Sonar 3D-15" in the product's name. */
+TEST_F(Sonar3dEmulatorTest, TheMakersFinderFindsIt) {
+    const HttpReply found = emulator_.answer({"GET", "/api/v1/about", ""}, now_);
+    EXPECT_EQ(found.status, 200);
+    EXPECT_THAT(Json::parse(found.body)["product_name"].get<std::string>(), HasSubstr("Sonar 3D-15"));
+    EXPECT_EQ(Json::parse(found.body), json("about"));
+    EXPECT_EQ(emulator_.answer({"POST", "/api/v1/about", "1"}, now_).status, 405);
+    for (const char* other : {"/api/v1/about/", "/api/v1/status", "/api/v1/", "/api/about", "/about", "/api/v1/udp"})
+        EXPECT_EQ(emulator_.answer({"GET", other, ""}, now_).status, 404) << other;
+}
+
 TEST_F(Sonar3dEmulatorTest, KeepsItsSettings) {
     const std::vector<std::pair<std::string, std::string>> settings = {
         {"acoustics/enabled", "true"},

@@ -33,11 +33,15 @@ std::map<std::string, std::string> settingsOf(const std::string& text) {
 
 TEST(ServiceTest, StopsWithSigintRestartsAfterAFailureAndMayUseRealtime) {
     const auto settings = settingsOf(readFile(unit));
-    const std::map<std::string, std::string> expected = {
-        {"[Service]KillSignal", "SIGINT"},          {"[Service]Restart", "on-failure"},
-        {"[Service]RestartPreventExitStatus", "2"}, {"[Service]LimitRTPRIO", "80"},
-        {"[Service]LimitMEMLOCK", "infinity"},      {"[Service]CPUAffinity", "0 1"},
-        {"[Install]WantedBy", "multi-user.target"}};
+    const std::map<std::string, std::string> expected = {{"[Service]Type", "notify"},
+                                                         {"[Service]WatchdogSec", "30"},
+                                                         {"[Service]KillSignal", "SIGINT"},
+                                                         {"[Service]Restart", "on-failure"},
+                                                         {"[Service]RestartPreventExitStatus", "2"},
+                                                         {"[Service]LimitRTPRIO", "80"},
+                                                         {"[Service]LimitMEMLOCK", "infinity"},
+                                                         {"[Service]CPUAffinity", "0 1"},
+                                                         {"[Install]WantedBy", "multi-user.target"}};
     EXPECT_THAT(settings, testing::IsSupersetOf(expected));
     EXPECT_TRUE(settings.at("[Service]ExecStart").starts_with("insonify run "))
         << "in /usr/bin or /usr/local/bin, both of which systemd searches";

@@ -112,6 +112,11 @@ TEST_F(Db3Test, TheFolderOfABagIsAcceptedInPlaceOfItsFile) {
     EXPECT_EQ(openLog(folder / "bag")->samples().size(), 100u);
     describe("bag_1.db3, bag_7.db3");
     EXPECT_THAT(refusalOf(folder / "bag"), HasSubstr("bag_7.db3: cannot be read"));
+    for (const std::string& foreign :
+         {std::string("../bag_0.db3"), (folder / "x.db3").string(), std::string("x/../../bag_0.db3")}) {
+        describe(foreign);
+        EXPECT_THAT(refusalOf(folder / "bag"), HasSubstr("which is outside of the bag, and is not read")) << foreign;
+    }
     describe("bag_0.db3.zstd");
     EXPECT_THAT(refusalOf(folder / "bag"), AllOf(HasSubstr("unpack it: zstd -d "), HasSubstr("bag_0.db3.zstd")));
     std::filesystem::create_directory(folder / "none");

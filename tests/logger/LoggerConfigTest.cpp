@@ -29,6 +29,17 @@ TEST(LoggerConfigTest, ALogOfSeveralFilesHasANumber) {
     EXPECT_EQ(nextInSequence("day/harbour.9.log"), "day/harbour.10.log");
 }
 
+TEST(LoggerConfigTest, AQuotaHoldsTwoFiles) {
+    LoggerConfig config;
+    config.file = "x.0.log";
+    config.max_total_size = 3e6;
+    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("needs max_file_size")));
+    config.max_file_size = 1.6e6;
+    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("twice max_file_size: 3200000")));
+    config.max_file_size = 1.5e6;
+    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
+}
+
 TEST(LoggerConfigTest, PropertiesHaveTheirOwnFile) {
     LoggerConfig config;
     config.file = "day/x.0.log";

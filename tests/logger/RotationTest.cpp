@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <map>
+#include <numeric>
 
 #include "components/log/Files.hpp"
 #include "components/log/pocolog/Reader.hpp"
@@ -17,8 +18,8 @@ namespace {
 
 struct RotationTest : testing::Test {
     /** Logs texts of 100 kB at intervals of 0.1 s to x.0.log and the following files. */
-    void log(LoggerConfig config, int count) {
-        config.file = "x.0.log";
+    void log(LoggerConfig config, int count, const std::string& name = "x.0.log") {
+        config.file = name;
         LoggerTask task("log");
         task.config.set(config);
         task.environment().output_folder = folder.path();
@@ -106,6 +107,75 @@ TEST_F(RotationTest, AnOldFileIsFollowedByTheNext) {
 TEST_F(RotationTest, WithoutALimitThereIsOneFile) {
     log({}, 25);
     EXPECT_THAT(countsOf(1), testing::ElementsAre(25));
+}
+
+TEST_F(RotationTest, TheFirstFileStandsForAllOfTheSameRun) {
+    LoggerConfig config;
+    config.max_file_size = 1e6;
+    log(config, 45);
+    const auto numbersIn = [&](int first) {
+        const log::WholeLog whole = log::openWholeLog(file(first));
+        std::vector<int> numbers;
+        whole.log->forEach<std::string>(
+            "source.port", [&](const std::string& text, const log::SampleRef&) { numbers.push_back(std::stoi(text)); });
+        EXPECT_EQ(whole.files.front(), file(first));
+        EXPECT_EQ(whole.log->path(), file(first));
+        EXPECT_EQ(whole.notice.empty(), whole.files.size() == 1);
+        return numbers;
+    };
+    std::vector<int> all(45);
+    std::iota(all.begin(), all.end(), 0);
+    EXPECT_EQ(numbersIn(0), all);
+    EXPECT_EQ(numbersIn(2), std::vector<int>(all.begin() + 20, all.begin() + 30)) << "alone, as before";
+    EXPECT_THAT(log::openWholeLog(file(0)).notice,
+                testing::HasSubstr("x.0.log is continued in 4 files up to x.4.log, which are taken with it"));
+    std::filesystem::remove(file(0));
+    std::filesystem::remove(file(2));
+    std::vector<int> left(all.begin() + 10, all.begin() + 20);
+    left.insert(left.end(), all.begin() + 30, all.end());
+    EXPECT_EQ(numbersIn(1), left) << "the first of those that are there, also after a missing number";
+    {
+        log::pocolog::Writer other(file(5));
+        const size_t stream = other.addStream<double>("source.other", {{"insonify_seed", "7"}});
+        other.write(stream, types::Time{1}, 1.0);
+        other.close();
+    }
+    EXPECT_EQ(numbersIn(1), left) << "without a file of another run";
+    EXPECT_THAT(log::openWholeLog(file(1)).notice,
+                testing::AllOf(testing::HasSubstr("up to x.4.log"), testing::HasSubstr("x.5.log is of another run")));
+}
+
+TEST_F(RotationTest, AQuotaKeepsTheNewestFiles) {
+    for (const bool is_mcap : {false, true})
+        for (const double quota : {2e6, 3e6, 4.5e6}) {
+            SCOPED_TRACE(quota);
+            LoggerConfig config;
+            config.max_file_size = 1e6;
+            config.max_total_size = quota;
+            log(config, 75, is_mcap ? "bag/x.0.mcap" : "x.0.log");
+            const auto first = folder / (is_mcap ? "bag/x.0.mcap" : "x.0.log");
+            const auto files = log::sequenceOf(first);
+            ASSERT_FALSE(files.empty());
+            uintmax_t total = 0;
+            for (const auto& [number, path] : files) total += std::filesystem::file_size(path);
+            EXPECT_LE(static_cast<double>(total), quota + 0.11e6 * static_cast<double>(files.size()))
+                << "and a sample each";
+            EXPECT_GE(static_cast<double>(total), quota - 1.11e6) << "no file is removed before it must";
+            EXPECT_EQ(files.rbegin()->first, 7u);
+            EXPECT_EQ(files.size(), files.rbegin()->first - files.begin()->first + 1);
+            std::vector<std::string> kept;
+            log::openWholeLog(files.begin()->second)
+                .log->forEach<std::string>("source.port", [&](const std::string& text, const log::SampleRef&) {
+                    kept.push_back(text.substr(0, text.find(' ')));
+                });
+            EXPECT_EQ(kept.front(), std::to_string(10 * files.begin()->first));
+            EXPECT_EQ(kept.back(), "74");
+            if (!is_mcap)
+                for (unsigned number = 0; number < files.begin()->first; ++number)
+                    EXPECT_FALSE(std::filesystem::exists(log::pocolog::indexPath(file(static_cast<int>(number)))));
+            else
+                EXPECT_EQ(log::openLog(folder / "bag")->samples().size(), kept.size()) << "metadata.yaml lists them";
+        }
 }
 
 TEST_F(RotationTest, RemovesFilesOfAnEarlierLongerLogWithTheirIndices) {

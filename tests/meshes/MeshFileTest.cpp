@@ -1,5 +1,7 @@
 // Meshes that worlds refer to: units, up axes, submeshes.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <map>
 
@@ -107,6 +109,28 @@ TEST_F(MeshFileTest, AGltfInAWorldIsNotTurnedAndBringsItsAcoustics) {
     expectBounds(boundsOf(*readMeshFile(folder_ / "leaf.gltf", MeshAxes::ZUp)), {0, -3, 0}, {1, 0, 2});
     EXPECT_EQ(geometry->materials.at(0).name, "oak");
     EXPECT_FLOAT_EQ(geometry->materials.at(0).lambert_db, -7);
+}
+
+TEST_F(MeshFileTest, MaterialsOutsideOfTheFolderOfAMeshAreNotRead) {
+    const auto materials = [&](const std::string& library) {
+        write("m/meshes/part.obj",
+              "mtllib " + library + "\nv 0 0 0\nv 1 0 0\nv 1 2 3\no hull\nusemtl steel_grey\nf 1 2 3\n");
+        std::vector<std::string> names;
+        const types::GeometryPtr geometry = readMeshFile(folder_ / "m/meshes/part.obj", MeshAxes::AsStored);
+        for (const types::Material& each : geometry->materials) names.push_back(each.name);
+        return names;
+    };
+    for (const char* file : {"secret.mtl", "m/own.mtl", "m/meshes/near.mtl"})
+        write(file, "newmtl steel_grey\nKd 1 1 1\nnewmtl witness\nKd 1 1 1\n");
+    std::filesystem::create_symlink(folder_ / "secret.mtl", folder_ / "m/meshes/link.mtl");
+    EXPECT_THAT(materials("near.mtl"), testing::Contains("witness"));
+    for (const char* foreign : {"../own.mtl", "../../secret.mtl", "link.mtl", "none.mtl"})
+        EXPECT_EQ(materials(foreign), materials("none.mtl")) << foreign;
+    write("m/model.config", "");
+    EXPECT_THAT(materials("../own.mtl"), testing::Contains("witness")) << "of its model";
+    EXPECT_EQ(materials("../../secret.mtl"), materials("none.mtl"));
+    ASSERT_EQ(mkfifo((folder_ / "m/meshes/pipe.mtl").c_str(), 0600), 0);
+    EXPECT_EQ(materials("pipe.mtl"), materials("none.mtl")) << "and is not waited for";
 }
 
 TEST_F(MeshFileTest, AMeshFileIsASceneOfItsOwn) {

@@ -1,3 +1,6 @@
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
 #include "components/meshes/ModelPaths.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 #include "tests/support/Draw.hpp"
@@ -49,6 +52,30 @@ TEST_F(ModelPathsTest, FindsFileUrisAndPaths) {
     for (const char* uri :
          {"", "model://", "model://none", "file:///none", "https://fuel.gazebosim.org/b.dae", "c.dae"})
         EXPECT_EQ(find(uri), "") << uri;
+}
+
+TEST_F(ModelPathsTest, FilesOutsideOfThePlacesAreNotFound) {
+    for (const char* file : {"world/own.dae", "world/sub/own.dae", "one/a.dae", "secret.dae", "source/b.dae"})
+        write(file, "");
+    std::filesystem::create_symlink(folder_ / "secret.dae", folder_ / "world/link.dae");
+    std::filesystem::create_symlink(folder_ / "source/b.dae", folder_ / "one/b.dae");
+    EXPECT_EQ(find("sub/../own.dae"), "world/sub/../own.dae");
+    EXPECT_EQ(find(at("world/own.dae")), "world/own.dae");
+    for (const std::string& uri : {std::string("../secret.dae"), at("secret.dae"), "file://" + at("secret.dae"),
+                                   std::string("model://../secret.dae"), std::string("%2e%2e/secret.dae"),
+                                   std::string("sub/../../secret.dae"), std::string("link.dae"), at("one/a.dae")})
+        EXPECT_EQ(find(uri), "") << uri;
+    EXPECT_THAT(meshes::ModelPaths(folder_ / "world/a.world").searched("x"),
+                testing::HasSubstr("files outside of these are not read"));
+    const meshes::ModelPaths anywhere(folder_ / "world/a.world", meshes::ModelPaths::Reach::Anywhere);
+    EXPECT_EQ(anywhere.find(at("secret.dae"), {}), folder_ / "secret.dae") << "as a Gazebo that runs names it";
+    const Variable ours("INSONIFY_MODEL_PATH", at("one"));
+    EXPECT_EQ(find(at("one/a.dae")), "one/a.dae");
+    EXPECT_EQ(find("b.dae"), "one/b.dae") << "a link in a folder of the user, as colcon --symlink-install makes it";
+    EXPECT_EQ(find("model://../secret.dae"), "");
+    // A pipe or a device in the folder would be waited for.
+    ASSERT_EQ(mkfifo((folder_ / "world/pipe.dae").c_str(), 0600), 0);
+    EXPECT_EQ(find("pipe.dae"), "");
 }
 
 TEST_F(ModelPathsTest, APathWithPercentSignsIsTriedAsItStandsThenDecoded) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "components/receiver/Receiver.hpp"
@@ -183,6 +184,48 @@ TEST(ReceiverTest, RejectsContradictionsAndReportsUnusedConfiguration) {
     config = {};
     config.code.emplace();
     EXPECT_THAT(Receiver(config).notices(), testing::ElementsAre("code is configured, but only output: code uses it"));
+}
+
+/** A typo in one of them turns a vehicle's picture white or black. */
+TEST(ReceiverTest, ValuesThatNoReceiverHasAreWarnings) {
+    struct Case {
+        const char* name;
+        std::function<double&(ReceiverConfig&)> value;
+        double usual, typo;
+    };
+    const Case cases[] = {
+        {"gain_db", [](auto& c) -> double& { return c.gain_db; }, 30, 300},
+        {"gain_db", [](auto& c) -> double& { return c.gain_db; }, -30, -300},
+        {"tvg.log_coefficient", [](auto& c) -> double& { return c.tvg.emplace().log_coefficient; }, 40, 400},
+        {"tvg.db_per_m", [](auto& c) -> double& { return c.tvg.emplace().db_per_m; }, 0.21, 21},
+        {"tvg.max_db", [](auto& c) -> double& { return c.tvg.emplace().max_db; }, 110, 1000},
+        {"code.full_scale_db",
+         [](auto& c) -> double& {
+             c.output = Output::Code;
+             return c.code.emplace().full_scale_db;
+         },
+         -58, -580},
+        {"automatic_gain.target_db", [](auto& c) -> double& { return c.automatic_gain.emplace().target_db; }, -20, 200},
+        {"automatic_gain.max_db", [](auto& c) -> double& { return c.automatic_gain.emplace().max_db; }, 40, 400},
+        {"saturation_db", [](auto& c) -> double& { return c.saturation_db.emplace(); }, -10, -1000},
+        {"source_level_db",
+         [](auto& c) -> double& {
+             c.output = Output::ReceivedLevelDb;
+             return c.source_level_db;
+         },
+         220, -220},
+    };
+    for (const Case& each : cases) {
+        ReceiverConfig config;
+        each.value(config) = each.usual;
+        EXPECT_THAT(Receiver(config).notices(), testing::IsEmpty()) << each.name;
+        each.value(config) = each.typo;
+        EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty()) << each.name;
+        const types::Notices notices = Receiver(config).notices();
+        ASSERT_EQ(notices.size(), 1u) << each.name;
+        EXPECT_EQ(notices[0].kind, types::Notice::Kind::Warning);
+        EXPECT_THAT(notices[0].text, testing::StartsWith(std::string(each.name) + " is ")) << each.typo;
+    }
 }
 
 TEST(ReceiverTest, ABrightnessOfOneHalfShowsACellOfMediumSandFaceOnAsOneAtEveryRange) {

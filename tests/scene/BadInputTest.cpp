@@ -84,6 +84,50 @@ TEST_F(BadInputTest, DoesNotReadImagesThatExhaustMemory) {
     EXPECT_EQ(diagnosticOfGltf(R"("images":[{"uri":"."},{"uri":""},{"uri":"/"},{"uri":"/dev/zero"}])"), "");
 }
 
+/** A buffer is read as vertices: a model of somebody else must not show any file of the machine in this way. */
+TEST_F(BadInputTest, NamesThatLeaveTheFolderAreRefusedInEverySpelling) {
+    const std::string corners = bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    write("secret.bin", corners);
+    write("scenes/own.bin", corners);
+    write("scenes/sub/own.bin", corners);
+    std::filesystem::create_symlink("../secret.bin", folder_ / "scenes/link.bin");
+    std::filesystem::create_symlink("own.bin", folder_ / "scenes/near.bin");
+    std::filesystem::create_directory_symlink("..", folder_ / "scenes/up");
+    const auto named = [&](const std::string& scene, const std::string& name) {
+        const std::string views = triangle(good_accessor, good_view);
+        return diagnosticOf(write(scene, gltf(views.substr(0, views.find("\"buffers\"")) +
+                                              R"("buffers":[{"byteLength":36,"uri":")" + name + R"("}])")));
+    };
+    for (const char* name : {"own.bin", "./own.bin", "sub/own.bin", "sub/../own.bin", "sub%2f..%2Fown.bin", "near.bin"})
+        EXPECT_EQ(named("scenes/case.gltf", name), "") << name;
+    for (const char* name : {"../secret.bin", "%2e%2e/secret.bin", "%2E%2E%2Fsecret.bin", "..%2fsecret.bin",
+                             "sub/../../secret.bin", "./../secret.bin", "link.bin", "up/secret.bin", "../none.bin"})
+        EXPECT_THAT(named("scenes/case.gltf", name), testing::HasSubstr(", which is outside of its folder")) << name;
+    EXPECT_NE(named("scenes/case.gltf", (folder_ / "secret.bin").string()), "");
+    EXPECT_NE(named("scenes/case.gltf", "file://" + (folder_ / "secret.bin").string()), "");
+    // The folders of a model belong to it.
+    EXPECT_THAT(named("scenes/sub/case.gltf", "../own.bin"), testing::HasSubstr("outside of its folder"));
+    write("scenes/model.config", "");
+    EXPECT_EQ(named("scenes/sub/case.gltf", "../own.bin"), "");
+    EXPECT_THAT(named("scenes/sub/case.gltf", "../../secret.bin"), testing::HasSubstr("outside of its folder"));
+    // As an installed package of links to its sources, file by file.
+    named("scenes/case.gltf", "own.bin");
+    std::filesystem::create_directory(folder_ / "install");
+    for (const char* file : {"case.gltf", "own.bin"})
+        std::filesystem::create_symlink(folder_ / "scenes" / file, folder_ / "install" / file);
+    EXPECT_EQ(diagnosticOf(folder_ / "install/case.gltf"), "");
+}
+
+TEST_F(BadInputTest, AnImageOutsideOfTheFolderIsAWarning) {
+    write("secret.png", "x");
+    const auto geometry =
+        loadScene(write("scenes/case.gltf", gltf(R"("images":[{"uri":"../secret.png"}],)" + scene::triangle() +
+                                                 R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+                                                   "nodes":[{"mesh":0}])")));
+    ASSERT_EQ(geometry->notices.size(), 1u);
+    EXPECT_THAT(geometry->notices[0].text, testing::HasSubstr("names ../secret.png, which is outside of its folder"));
+}
+
 TEST_F(BadInputTest, OtherVersionsAreRefused) {
     expectDiagnostic(write("one.gltf", R"({"asset":{"version":"1.0"}})"), "asset.version: is \"1.0\"; must be 2.0");
 }

@@ -76,6 +76,7 @@ TEST_F(SdfCorpusTest, TheIncludePoseMovesMangaliaToItsPlace) {
 TEST_F(SdfCorpusTest, ARealSeaFloorOfSixteenBitsHasItsRelief) {
     const std::filesystem::path picture = shared_data / "bathymetry/navo_tile_257_16bit.png";
     if (!std::filesystem::exists(picture)) GTEST_SKIP() << "NO PICTURE AT " << picture << ": NOTHING WAS TESTED";
+    const Variable of_data("INSONIFY_MODEL_PATH", picture.parent_path().string());
     const auto geometry = world(model("floor", "<heightmap><uri>file://" + picture.string() +
                                                    "</uri><size>512 512 0.975</size></heightmap>"))
                               .geometry;

@@ -139,6 +139,27 @@ TEST_F(SonarTaskTest, AJumpingSonarPingsFromItsNewPlaceAndWarnsOnce) {
     EXPECT_EQ(jumps.size(), 2u);
 }
 
+TEST_F(SonarTaskTest, TheJumpOfALoopingTrajectoryIsReportedOnce) {
+    std::vector<std::string> jumps;
+    task_.environment().warn = [&](const std::string& text) {
+        if (text.find("the sonar has moved") != std::string::npos) jumps.push_back(text);
+    };
+    double seconds = 0;
+    const auto pingAt = [&](double y) {
+        types::Snapshot snapshot = facingWall(5);
+        snapshot.time = types::Time::fromSeconds(seconds += 0.1);
+        snapshot.sonar.position.y = y;
+        return pingOf(snapshot);
+    };
+    start();
+    for (int turn = 0; turn < 5; ++turn)  // back by 20 m in 0.1 s, each turn at another phase
+        for (int i = 0; i < 20; ++i) pingAt(i + 0.13 * turn);
+    EXPECT_EQ(jumps.size(), 1u);
+    for (int i = 0; i < 20; ++i) pingAt(19 - i);
+    pingAt(500);
+    EXPECT_EQ(jumps.size(), 2u) << "another jump";
+}
+
 TEST_F(SonarTaskTest, ANewSceneIsRenderedFromTheNextPing) {
     start();
     EXPECT_NEAR(firstEcho(*pingOf(facingWall(5)), 4), 5, 0.16);

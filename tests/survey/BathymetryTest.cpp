@@ -292,6 +292,13 @@ TEST_F(BathymetryTest, TheFilesOfAMosaicAreOneFloor) {
                   sources + "</VRTRasterBand></VRTDataset>");
     Bathymetry floor(config_, grid("whole", 60, 40)), tiled(config_, mosaic);
     EXPECT_EQ(positionsOf(*about(tiled, {40, -60, 0})), positionsOf(*about(floor, {40, -60, 0})));
+    // A mosaic whose tiles are elsewhere could show any file.
+    fs::create_directory(folder_ / "apart");
+    const std::vector<char> bytes = bytesOf(mosaic);
+    std::string text(bytes.begin(), bytes.end());
+    for (const char* tile : {"\">west", "\">east"}) text.insert(text.find(tile) + 2, "../");
+    EXPECT_THAT(test::refused([&] { Bathymetry(config_, write("apart/mosaic.vrt", text)); }),
+                testing::Contains(HasSubstr("which is outside of its folder")));
 }
 
 TEST_F(BathymetryTest, AMosaicIsPlacedByItsMapOnAnyGrid) {

@@ -109,6 +109,38 @@ TEST(ServerTest, AHandshakeThatIsEvictedIsCountedNoLonger) {
     EXPECT_EQ(server.counts().clients, 1u);
 }
 
+TEST(ServerTest, AHostIsOwnWithANumberAsItsPortOnly) {
+    for (const char* own : {"localhost", "localhost:8080", "127.0.0.1", "127.0.0.1:1", "192.168.2.3:65535", "[::1]",
+                            "[::1]:8080", "[fe80::1]:80"})
+        EXPECT_TRUE(isOwnName(own)) << own;
+    for (const char* other : {"",
+                              ":80",
+                              "localhost:",
+                              "localhost:x",
+                              "127.0.0.1:1@evil",
+                              "127.0.0.1:80:80",
+                              "127.0.0.1:65536",
+                              "127.0.0.1:-1",
+                              "127.0.0.1: 80",
+                              "127.0.0.1:80 ",
+                              "127.0.0.1.evil",
+                              "evil",
+                              "localhost.evil:80",
+                              "[::1",
+                              "[",
+                              "[]",
+                              "[::1]80",
+                              "[::1]:",
+                              "[::1]evil",
+                              "[::1]:1@evil",
+                              "[127.0.0.1]",
+                              "::1",
+                              "user@127.0.0.1:80"})
+        EXPECT_FALSE(isOwnName(other)) << other;
+    for (int port = 0; port < 70'000; port += 7)
+        EXPECT_EQ(isOwnName("127.0.0.1:" + std::to_string(port)), port <= 65535) << port;
+}
+
 /** Otherwise a link on the page would reveal the token in its address. */
 TEST(ServerTest, DoesNotSendThePagesAddressAsReferrer) {
     Quiet quiet;

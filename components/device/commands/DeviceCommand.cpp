@@ -98,7 +98,11 @@ int probeDevice(const std::string& address, double timeout, bool json) {
     } else {
         printFailures(outcomes);
     }
-    if (!any) console::printDiagnostic("insonify: nothing answers at {}\n", address);
+    if (!any)
+        console::printDiagnostic(
+            "insonify: nothing answers at {} within {:g} s; a slow machine may take longer: "
+            "--timeout {:g}\n",
+            address, timeout, 5 * timeout);
     return any ? answered : silent;
 }
 

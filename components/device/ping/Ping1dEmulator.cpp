@@ -83,6 +83,8 @@ void Ping1dEmulator::command(PingClient client, const PingFrame& frame, types::T
 
 void Ping1dEmulator::setRange(PingClient client, const Ping1dSetRange& asked) {
     const auto end = static_cast<uint32_t>(std::lround(1000 * config_.max_range));
+    if (mode_auto_ != 0)
+        return refuse(client, asked.message, "mode_auto is 1, so the device sets the range; set mode_auto to 0");
     std::string why = diagnosticOf({{"scan_start", asked.start, 0, end - shortest_scan}});
     if (why.empty()) why = diagnosticOf({{"scan_length", asked.length, shortest_scan, end - asked.start}});
     if (!why.empty()) return refuse(client, asked.message, why);

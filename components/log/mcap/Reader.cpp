@@ -61,10 +61,13 @@ const std::string qos_profile =
     "  liveliness: 1\n  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n"
     "  avoid_ros_namespace_conventions: false";
 
-Bag::Bag(const fs::path& first_file) : path_(first_file.parent_path() / "metadata.yaml") {
-    if (!fs::exists(path_)) return;
+Bag::Bag(const fs::path& first_file, bool is_written)
+    : path_(first_file.parent_path() / "metadata.yaml"), is_written_(is_written) {
+    if (!is_written || !fs::exists(path_)) return;
     const std::string other = firstFileOf(path_), own = first_file.filename().string();
-    if (other != own)
+    const auto nameOf = [](const fs::path& file) { return file.stem().stem(); };
+    const bool is_sequel = sequenceNumber(other) && sequenceNumber(own) && nameOf(other) == nameOf(own);
+    if (other != own && !is_sequel)
         throw types::ConfigError(path_, "",
                                  "describes another bag, of " + (other.empty() ? "no file" : quoted(other)) +
                                      "; give " + quoted(own) + " a folder of its own, as in bag/" +
@@ -73,6 +76,8 @@ Bag::Bag(const fs::path& first_file) : path_(first_file.parent_path() / "metadat
 
 std::string Bag::text(const ChunkWriter& present) const {
     std::vector<FileSummary> files = finished_;
+    std::error_code none;
+    std::erase_if(files, [&](const FileSummary& file) { return !fs::exists(file.path, none); });  // the oldest
     files.push_back(present.summary());
     uint64_t first = std::numeric_limits<uint64_t>::max(), last = 0, messages = 0;
     std::vector<uint64_t> counts(present.channels().size());
@@ -108,6 +113,7 @@ std::string Bag::text(const ChunkWriter& present) const {
 }
 
 void Bag::write(const ChunkWriter& present) const {
+    if (!is_written_) return;
     const fs::path draft = path_.string() + ".part";
     std::ofstream file(draft);
     file << text(present);

@@ -18,8 +18,9 @@ extern const std::string qos_profile;
 /** The file metadata.yaml, with which `ros2 bag` reads a folder's MCAP files as one bag. */
 class Bag {
 public:
-    /** Throws ConfigError when the folder of the bag's first file has the metadata.yaml of another bag. */
-    explicit Bag(const std::filesystem::path& first_file);
+    /** Throws ConfigError when the folder of the bag's first file has the metadata.yaml of another bag.
+     *  @param is_written false: this class writes nothing */
+    explicit Bag(const std::filesystem::path& first_file, bool is_written = true);
 
     void add(const FileSummary& finished) { finished_.push_back(finished); }
     /** Writes metadata.yaml, with the present state of the open file. Throws std::runtime_error with the system's
@@ -30,6 +31,7 @@ private:
     std::string text(const ChunkWriter& present) const;
 
     std::filesystem::path path_;
+    bool is_written_;
     std::vector<FileSummary> finished_;
 };
 

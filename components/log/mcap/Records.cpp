@@ -7,7 +7,7 @@
 namespace insonify::log::mcap {
 namespace {
 
-constexpr uint64_t max_bytes = uint64_t{1} << 30;  // limit of decompressed data [B]
+constexpr uint64_t max_bytes = uint64_t{256} << 20;  // limit of a decompressed chunk, which is in memory [B]
 
 /** Returns the number of bytes written; 0: damaged. */
 size_t unzstd(std::span<const char> from, std::span<char> to) {
@@ -45,7 +45,8 @@ std::span<const char> recordsOf(const ChunkInfo& chunk, std::span<const char> st
         if (chunk.compression != "lz4" && chunk.compression != "zstd")
             throw FormatError(chunk.start,
                               "a chunk is compressed by '" + chunk.compression + "'; lz4 and zstd are read");
-        if (chunk.size > max_bytes) throw FormatError(chunk.start, "a compressed chunk of more than 1 GiB is not read");
+        if (chunk.size > max_bytes)
+            throw FormatError(chunk.start, "a compressed chunk of more than 256 MiB is not read");
         room.resize(chunk.size);
         const size_t size = chunk.compression == "lz4" ? unlz4(stored, room) : unzstd(stored, room);
         if (size != chunk.size)

@@ -86,7 +86,7 @@ SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const M
 }
 
 SampleWriter::SampleWriter(std::filesystem::path path, const McapConfig& config)
-    : config_(config), bag_(path), out_(std::move(path)), transforms_(out_, topicsOf(config)) {}
+    : config_(config), bag_(path, config.is_bag), out_(std::move(path)), transforms_(out_, topicsOf(config)) {}
 
 SampleWriter::~SampleWriter() {
     if (out_.isEmpty()) return;

@@ -7,9 +7,11 @@
 #include <fstream>
 #include <limits>
 #include <regex>
+#include <set>
 #include <string_view>
 #include <type_traits>
 
+#include "types/NamedFile.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::scene {
@@ -54,11 +56,22 @@ std::string readBytes(const std::filesystem::path& file) {
     return bytes;
 }
 
-/** Replaces callbacks of tinygltf, which would search the working folder as well, expand shell variables in names, and
- *  allocate the size that a folder reports. */
-bool fileExists(const std::string& file, void* folder) {
+/** The files that a scene names. */
+struct NamedFiles {
+    std::filesystem::path scene;
+    std::string folder;               ///< Of the scene, to which tinygltf appends the names.
+    std::set<std::string> foreign{};  ///< Those that do not belong to the scene.
+};
+
+/** Replaces callbacks of tinygltf, which would search the working folder as well, expand shell variables in names,
+ *  allocate the size that a folder reports, and read any file of the machine. */
+bool fileExists(const std::string& file, void* user_data) {
+    auto& named = *static_cast<NamedFiles*>(user_data);
+    if (!file.starts_with(named.folder)) return false;
+    if (!types::belongsTo(file, named.scene))
+        return named.foreign.insert(file.substr(std::min(named.folder.size() + 1, file.size()))), false;
     std::error_code error;
-    return file.starts_with(*static_cast<const std::string*>(folder)) && std::filesystem::is_regular_file(file, error);
+    return std::filesystem::is_regular_file(file, error);
 }
 std::string unexpanded(const std::string& file, void*) { return file; }
 bool readWhole(std::vector<unsigned char>* bytes, std::string* error, const std::string& file, void*) try {
@@ -74,13 +87,13 @@ bool writeNothing(std::string*, const std::string&, const std::vector<unsigned c
 
 /** Sets all callbacks: tinygltf from 2.9 on also asks for sizes, and accepts either all callbacks or none. */
 template <class Callbacks>
-Callbacks callbacksIn(std::string& folder) {
+Callbacks callbacksFor(NamedFiles& files) {
     Callbacks callbacks{};
     callbacks.FileExists = fileExists;
     callbacks.ExpandFilePath = unexpanded;
     callbacks.ReadWholeFile = readWhole;
     callbacks.WriteWholeFile = writeNothing;
-    callbacks.user_data = &folder;
+    callbacks.user_data = &files;
     if constexpr (requires { callbacks.GetFileSizeInBytes; })
         callbacks.GetFileSizeInBytes = [](size_t* size, std::string* failure, const std::string& file, void*) {
             std::error_code error;
@@ -185,17 +198,17 @@ std::string withFilesAsNamed(const std::string& text, const std::string& folder)
 
 /** Returns false and fills `errors` when tinygltf refuses the file. Exceptions that it throws on bad input are
  *  converted to errors. */
-bool parse(GltfFile& gltf, const std::string& given, std::string folder, std::string& errors) try {
-    const std::string bytes = withFilesAsNamed(given, folder);
+bool parse(GltfFile& gltf, const std::string& given, NamedFiles& files, std::string& errors) try {
+    const std::string bytes = withFilesAsNamed(given, files.folder);
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keepEncoded, nullptr);
-    loader.SetFsCallbacks(callbacksIn<tinygltf::FsCallbacks>(folder));
+    loader.SetFsCallbacks(callbacksFor<tinygltf::FsCallbacks>(files));
     std::string warnings;
     const auto size = static_cast<unsigned>(bytes.size());
     return isBinary(bytes)
                ? loader.LoadBinaryFromMemory(&gltf.model, &errors, &warnings,
-                                             reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
-               : loader.LoadASCIIFromString(&gltf.model, &errors, &warnings, bytes.data(), size, folder);
+                                             reinterpret_cast<const unsigned char*>(bytes.data()), size, files.folder)
+               : loader.LoadASCIIFromString(&gltf.model, &errors, &warnings, bytes.data(), size, files.folder);
 } catch (const std::exception& failure) {
     errors += types::reasonOf(failure);
     return false;
@@ -277,9 +290,14 @@ GltfFile readGltfFile(const std::filesystem::path& file) {
         throw types::ConfigError(gltf.name, "", failure.what());
     }
     std::string errors;
-    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    const bool parsed = parse(gltf, bytes, folder.string(), errors);
+    NamedFiles files{file, file.has_parent_path() ? file.parent_path().string() : "."};
+    const bool parsed = parse(gltf, bytes, files, errors);
     checkExtensions(gltf);
+    for (const std::string& named : files.foreign) {
+        const std::string text = fmt::format("names {}, which {}", named, types::not_its_own);
+        if (!parsed) throw types::ConfigError(gltf.name, "", text);
+        gltf.notices.push_back(types::warning(text));
+    }
     if (!parsed) throw types::ConfigError(gltf.name, "", fmt::format("cannot be read as glTF 2.0: {}", reason(errors)));
     if (const std::string& version = gltf.model.asset.version; !version.starts_with("2."))
         throw types::ConfigError(gltf.name, "asset.version",

@@ -12,6 +12,7 @@
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/SurfaceMaps.hpp"
 #include "components/scene/gltf/GltfMesh.hpp"
+#include "types/NamedFile.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/DidYouMean.hpp"
 
@@ -254,7 +255,7 @@ private:
         Pixels pixels;
         if (map.Has("image")) {
             if (!map.Get("image").IsString()) throw std::runtime_error("has an image that is no path of a file");
-            pixels = decodeFile(std::filesystem::path(gltf_.name).parent_path(), map.Get("image").Get<std::string>());
+            pixels = decodeFile(gltf_.name, map.Get("image").Get<std::string>());
         } else {
             const tinygltf::TextureInfo& texture = from.pbrMetallicRoughness.baseColorTexture;
             if (texture.index < 0)
@@ -271,16 +272,17 @@ private:
         noteUnknown(from.name, result);
         return result;
     }
-    static Pixels decodeFile(const std::filesystem::path& folder, const std::string& name) {
-        const std::filesystem::path file = std::filesystem::path(name).lexically_normal();
+    static Pixels decodeFile(const std::filesystem::path& scene, const std::string& name) {
+        const std::filesystem::path file = scene.parent_path() / name;
         std::error_code error;
-        if (file.is_absolute() || file.string().starts_with("..") ||
-            !std::filesystem::is_regular_file(folder / file, error))
+        if (!types::belongsTo(file, scene))
+            throw std::runtime_error(fmt::format("has the image {}, which {}", name, types::not_its_own));
+        if (!std::filesystem::is_regular_file(file, error))
             throw std::runtime_error(
                 fmt::format("has the image {}; there is no such file in the folder of the scene", name));
-        if (std::filesystem::file_size(folder / file, error) > max_image_bytes)
+        if (std::filesystem::file_size(file, error) > max_image_bytes)
             throw std::runtime_error(fmt::format("has the image {}, which is larger than 1 GiB", name));
-        std::ifstream stream(folder / file, std::ios::binary);
+        std::ifstream stream(file, std::ios::binary);
         const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
         const auto* const begin = reinterpret_cast<const uint8_t*>(bytes.data());
         return decode({begin, begin + bytes.size()}, 1, true);

@@ -34,6 +34,7 @@ void TriggeredTask::resetTrigger() {
     grid_ = makeBinGrid(sonarConfig());
     shortest_ = std::numeric_limits<double>::infinity();
     period_ = {};
+    reported_jump_.reset();
 }
 
 void TriggeredTask::followSnapshot(const types::Snapshot& scene) {
@@ -46,7 +47,10 @@ void TriggeredTask::followSnapshot(const types::Snapshot& scene) {
     const double way = glm::distance(scene.sonar.position, before->position);
     const double fastest = 0.1 * grid_.speed_of_sound;
     jumped_ = !(way <= fastest * seconds);
-    if (jumps_.isDue(jumped_))
+    if (!jumps_.isDue(jumped_)) return;
+    const auto isNear = [way](const glm::dvec3& a, const glm::dvec3& b) { return glm::distance(a, b) < 0.2 * way; };
+    const auto last = std::exchange(reported_jump_, Jump{before->position, scene.sonar.position});
+    if (!last || !isNear(last->from, before->position) || !isNear(last->to, scene.sonar.position))
         warn(
             fmt::format("the sonar has moved {:.4g} m in {:.4g} s, faster than a tenth of the speed of sound, {:.4g} "
                         "m/s: it counts as repositioned, at rest unless its pose has a velocity",

@@ -113,6 +113,11 @@ private:
     std::optional<Mark> before_;
     bool jumped_ = false;
     types::RecurringDiagnostic jumps_;
+    /** The last jump that was reported: a looping trajectory makes it at each turn. */
+    struct Jump {
+        glm::dvec3 from{0}, to{0};
+    };
+    std::optional<Jump> reported_jump_;
     double shortest_ = std::numeric_limits<double>::infinity();
     PeriodMeter period_;
     Taken taken_;

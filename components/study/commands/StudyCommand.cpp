@@ -82,7 +82,7 @@ void readPlaces(log::Reader& log, const log::Stream& pings, CodedLog& coded) {
 
 std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
     if (!log::findLogFormat(file)) return std::nullopt;
-    const auto log = log::openLog(file);
+    const auto log = log::openWholeLog(file).log;
     for (size_t i = 0; i < log->streams().size(); ++i) {
         const log::Stream& stream = log->streams()[i];
         if (!stream.holds<types::Sonar>()) continue;

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "components/log/mcap/Contents.hpp"
 #include "tests/log/mcap/SmallFile.hpp"
 
 namespace insonify::log::mcap {
@@ -123,6 +124,24 @@ TEST_F(DamageTest, TheFirstWrongByteIsNamed) {
 TEST_F(DamageTest, RefusesOtherFiles) {
     EXPECT_THAT(verdictOf({'x', 'y'}), testing::EndsWith("damaged.mcap: is no MCAP file"));
     EXPECT_THROW(openLog(folder_ / "none.mcap"), types::ConfigError);
+}
+
+/** A few bytes may be a gigabyte, which a vehicle does not have. */
+TEST_F(DamageTest, AChunkThatWouldGrowBeyondItsLimitIsNotDecompressed) {
+    for (const char* compression : {"zstd", "lz4"}) {
+        ChunkInfo chunk;
+        chunk.start = 7;
+        chunk.compression = compression;
+        chunk.size = (uint64_t{256} << 20) + 1;
+        std::vector<char> room;
+        const std::vector<char> stored(64);
+        EXPECT_THAT([&] { recordsOf(chunk, stored, room); },
+                    testing::ThrowsMessage<FormatError>(testing::HasSubstr("more than 256 MiB is not read")));
+        EXPECT_EQ(room.capacity(), 0u);
+        chunk.size = 1000;
+        EXPECT_THAT([&] { recordsOf(chunk, stored, room); },
+                    testing::ThrowsMessage<FormatError>(testing::HasSubstr("cannot be decompressed")));
+    }
 }
 
 }  // namespace
