@@ -20,6 +20,10 @@ Qos makeQos(const Quality& quality, const std::string& type_hash, const std::str
     dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
     dds_qset_durability(qos.get(), quality.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, quality.depth);
+    // What late readers get has a history of its own, by default of one sample.
+    if (quality.transient_local)
+        dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, quality.depth, DDS_LENGTH_UNLIMITED,
+                                    DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
     const dds_data_representation_id_t plain = DDS_DATA_REPRESENTATION_XCDR1;
     dds_qset_data_representation(qos.get(), 1, &plain);
     if (quality.lifespan_s > 0) dds_qset_lifespan(qos.get(), DDS_SECS(quality.lifespan_s));

@@ -91,10 +91,14 @@ void NodeReports::diagnose() {
     const types::DeploymentStatus status = deployment_.status();
     ros::DiagnosticArray all;
     all.header.stamp = ros::toRos(status.now);
-    for (const types::TaskStatus& task : status.tasks) {
+    for (types::TaskStatus task : status.tasks) {
         uint64_t lost = 0;
         for (const types::ConnectionStatus& connection : status.connections)
             if (connection.to.starts_with(task.record.name + ".")) lost += connection.lost;
+        std::erase_if(task.outputs, [&](const types::PortStatus& port) {
+            const std::string path = task.record.name + "." + port.name;
+            return std::ranges::count(status.connections, path, &types::ConnectionStatus::from) == 0;
+        });
         all.status.push_back(diagnosed(task, *deployment_.task(task.record.name), lost, seconds));
     }
     diagnostics_->send(all);
@@ -123,10 +127,9 @@ ros::DiagnosticStatus NodeReports::diagnosed(const types::TaskStatus& task, fram
     status.hardware_id = task.record.type;
     const auto add = [&](const std::string& key, const std::string& value) { status.values.push_back({key, value}); };
     for (const types::PortStatus& port : task.outputs) {
-        if (port.name == "state") continue;
         const auto before = seen.written.find(port.name);
         const uint64_t more = before == seen.written.end() ? 0 : port.written - before->second;
-        add(port.name + "s per second", fmt::format("{:.3g}", static_cast<double>(more) / std::max(seconds, 1e-3)));
+        add(port.name + " rate [1/s]", fmt::format("{:.3g}", static_cast<double>(more) / std::max(seconds, 1e-3)));
         seen.written[port.name] = port.written;
     }
     add("last cycle [ms]", fmt::format("{:.3g}", task.cycle_s * 1e3));

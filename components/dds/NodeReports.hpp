@@ -62,6 +62,9 @@ private:
 
     void log();
     void diagnose();
+    /** @param task with the ports that lead somewhere
+     *  @param lost samples on the way to it, so far
+     *  @param seconds since the last report [s] */
     ros::DiagnosticStatus diagnosed(const types::TaskStatus& task, framework::TaskContext& running, uint64_t lost,
                                     double seconds);
 

@@ -159,9 +159,9 @@ void ParameterServer::offer() {
                   {[this](const auto& request, auto& response) { response.field = setAll(request.field); }});
 }
 
-ParameterServer::Values ParameterServer::values() const {
+ParameterServer::Values ParameterServer::valuesIn(const types::DeploymentStatus& status) const {
     Values values{{sim_time, valueOf(use_sim_time_())}};
-    for (const types::TaskStatus& task : deployment_.status().tasks)
+    for (const types::TaskStatus& task : status.tasks)
         for (const auto& [name, value] : task.record.properties)
             values.emplace_back(task.record.name + "." + name, valueOf(value));
     return values;
@@ -217,7 +217,8 @@ ros::SetParametersResult ParameterServer::setAll(std::span<const ros::Parameter>
 }
 
 void ParameterServer::sendChanges() {
-    Values now = values();
+    const types::DeploymentStatus status = deployment_.status();
+    Values now = valuesIn(status);
     ros::ParameterEvent event;
     for (const auto& [name, value] : now) {
         const ros::ParameterValue before = valueNamed(sent_, name);
@@ -230,7 +231,7 @@ void ParameterServer::sendChanges() {
         if (valueNamed(now, name).type == 0) event.deleted_parameters.push_back({name, value});
     sent_ = std::move(now);
     if (event.new_parameters.empty() && event.changed_parameters.empty() && event.deleted_parameters.empty()) return;
-    event.stamp = ros::toRos(deployment_.status().now);
+    event.stamp = ros::toRos(status.now);
     event.node = server_.nodeName();
     events_.send(event);
 }

@@ -36,7 +36,8 @@ private:
 
     void offer();
     /** Returns all parameters, in file order. */
-    Values values() const;
+    Values valuesIn(const types::DeploymentStatus& status) const;
+    Values values() const { return valuesIn(deployment_.status()); }
     ros::ParameterDescriptor descriptor(const Values& values, const std::string& name) const;
     /** Adds what to set for a parameter, unless it has that value. Throws std::runtime_error for a parameter that
      * cannot be set. */

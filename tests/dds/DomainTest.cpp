@@ -101,19 +101,17 @@ TEST_F(DomainTest, ANodeIsFoundOnItsMachineAndNowhereWithoutDiscovery) {
     if (!Peer::available())
         GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
     setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
-    setenv("CYCLONEDDS_URI", discoverySettings().c_str(), 1);
-    const auto foundBy = [](const std::string& peer_words, const char* range) {
-        Peer peer(peer_words);
-        const std::string of_peer = std::getenv("CYCLONEDDS_URI");
+    const std::string of_peer = discoverySettings();
+    const auto foundBy = [&](const std::string& peer_words, const char* range) {
         unsetenv("CYCLONEDDS_URI");
         setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range, 1);
         Node node(domainId({}), "/auv/found", 16);
         const Writer writer(node, "rt/topic", ros::PoseStamped::type_name, "", Quality{});
         node.addWriter(writer.handle());
         node.announce();
-        const auto infos = peer.result()["infos"].size();
         setenv("CYCLONEDDS_URI", of_peer.c_str(), 1);
-        return infos;
+        Peer peer(peer_words);
+        return peer.result()["infos"].size();
     };
     EXPECT_EQ(foundBy("node 60 1", "LOCALHOST"), 1u);
     EXPECT_EQ(foundBy("node 3 1", "OFF"), 0u);
