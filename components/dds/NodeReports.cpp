@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 
-#include "components/framework/TaskContext.hpp"
 #include "components/ros/Stamps.hpp"
 
 namespace insonify::dds {
@@ -15,9 +13,11 @@ namespace {
 enum class Level : uint8_t { Right, Warning, Error };
 
 /** Returns the task that a line "task: text" is about; empty if none. */
-std::string taskOf(const std::string& line, const framework::Deployment& deployment) {
+std::string taskOf(const std::string& line, const types::DeploymentStatus& status) {
     const std::string word = line.substr(0, line.find(':'));
-    return deployment.task(word) ? word : "";
+    for (const types::TaskStatus& task : status.tasks)
+        if (task.record.name == word) return word;
+    return "";
 }
 
 /** Returns "auv.insonify" for "/auv/insonify", as loggers of ROS are named. */
@@ -36,7 +36,7 @@ bool isInError(const std::string& state) {
 void LogLines::add(uint8_t level, std::string text) {
     constexpr size_t at_most = 1000;  // as many as /rosout keeps
     std::lock_guard lock(mutex_);
-    lines_.push_back({level, std::move(text), framework::wallClock()});
+    lines_.push_back({level, std::move(text)});
     if (lines_.size() > at_most) lines_.pop_front();
 }
 
@@ -47,9 +47,10 @@ std::vector<LogLines::Line> LogLines::take() {
     return lines;
 }
 
-NodeReports::NodeReports(NodeServer& server, framework::Deployment& deployment, std::shared_ptr<LogLines> lines,
+NodeReports::NodeReports(NodeServer& server, types::DeploymentControl& deployment,
+                         std::function<TaskCounts(const std::string&)> counts, std::shared_ptr<LogLines> lines,
                          bool diagnostics, bool rosout)
-    : server_(server), deployment_(deployment), lines_(std::move(lines)) {
+    : server_(server), deployment_(deployment), counts_(std::move(counts)), lines_(std::move(lines)) {
     constexpr auto often = std::chrono::milliseconds(100), each_second = std::chrono::milliseconds(1000);
     const Quality of_rosout{
         .reliability = Reliability::Reliable, .depth = 1000, .transient_local = true, .lifespan_s = 10};
@@ -63,7 +64,8 @@ NodeReports::NodeReports(NodeServer& server, framework::Deployment& deployment, 
 }
 
 void NodeReports::log() {
-    for (const types::TaskStatus& task : deployment_.status().tasks) {
+    const types::DeploymentStatus status = deployment_.status();
+    for (const types::TaskStatus& task : status.tasks) {
         Seen& seen = seen_[task.record.name];
         if (seen.state == task.state) continue;
         const bool fails = isInError(task.state);
@@ -72,7 +74,7 @@ void NodeReports::log() {
         seen.state = task.state;
     }
     for (const LogLines::Line& line : lines_->take()) {
-        const std::string task = taskOf(line.text, deployment_);
+        const std::string task = taskOf(line.text, status);
         if (!task.empty() && line.level == LogLines::warning) {
             seen_[task].warning = line.text.substr(std::min(task.size() + 2, line.text.size()));
             seen_[task].warned = Clock::now();
@@ -80,7 +82,7 @@ void NodeReports::log() {
         if (!rosout_) continue;
         const std::string logger = loggerName(server_.nodeName());
         rosout_->send(
-            {ros::toRos(line.time), line.level, task.empty() ? logger : logger + "." + task, line.text, "", "", 0});
+            {ros::toRos(status.now), line.level, task.empty() ? logger : logger + "." + task, line.text, "", "", 0});
     }
 }
 
@@ -99,17 +101,15 @@ void NodeReports::diagnose() {
             const std::string path = task.record.name + "." + port.name;
             return std::ranges::count(status.connections, path, &types::ConnectionStatus::from) == 0;
         });
-        all.status.push_back(diagnosed(task, *deployment_.task(task.record.name), lost, seconds));
+        all.status.push_back(diagnosed(task, lost, seconds));
     }
     diagnostics_->send(all);
 }
 
-ros::DiagnosticStatus NodeReports::diagnosed(const types::TaskStatus& task, framework::TaskContext& running,
-                                             uint64_t lost, double seconds) {
+ros::DiagnosticStatus NodeReports::diagnosed(const types::TaskStatus& task, uint64_t lost, double seconds) {
     constexpr auto recent = std::chrono::seconds(10);
     Seen& seen = seen_[task.record.name];
-    const uint64_t missed = std::atomic_ref(running.timing().overruns).load(std::memory_order_relaxed);
-    const uint64_t hangs = running.timing().hangs;
+    const TaskCounts counts = counts_(task.record.name);
     ros::DiagnosticStatus status;
     const auto judge = [&](Level level, const std::string& message) {
         if (static_cast<uint8_t>(level) <= static_cast<uint8_t>(status.level) && !status.message.empty()) return;
@@ -118,8 +118,9 @@ ros::DiagnosticStatus NodeReports::diagnosed(const types::TaskStatus& task, fram
     };
     if (isInError(task.state)) judge(Level::Error, task.state + ": " + task.error);
     if (!isInError(task.state) && task.state != "Running") judge(Level::Warning, "is " + task.state);
-    if (hangs > seen.hangs) judge(Level::Warning, "a cycle hangs");
-    if (missed > seen.missed) judge(Level::Warning, fmt::format("{} periods missed", missed - seen.missed));
+    if (counts.hangs > seen.counts.hangs) judge(Level::Warning, "a cycle hangs");
+    if (counts.missed > seen.counts.missed)
+        judge(Level::Warning, fmt::format("{} periods missed", counts.missed - seen.counts.missed));
     if (lost > seen.lost) judge(Level::Warning, fmt::format("{} samples lost", lost - seen.lost));
     if (seen.warned && Clock::now() - *seen.warned < recent) judge(Level::Warning, seen.warning);
     judge(Level::Right, task.state);
@@ -134,10 +135,10 @@ ros::DiagnosticStatus NodeReports::diagnosed(const types::TaskStatus& task, fram
     }
     add("last cycle [ms]", fmt::format("{:.3g}", task.cycle_s * 1e3));
     add("latency [ms]", fmt::format("{:.3g}", task.latency_s * 1e3));
-    add("missed periods", std::to_string(missed));
-    add("hangs", std::to_string(hangs));
+    add("missed periods", std::to_string(counts.missed));
+    add("hangs", std::to_string(counts.hangs));
     add("lost samples", std::to_string(lost));
-    seen.missed = missed, seen.hangs = hangs, seen.lost = lost;
+    seen.counts = counts, seen.lost = lost;
     return status;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -10,9 +11,8 @@
 #include <vector>
 
 #include "components/dds/NodeServer.hpp"
-#include "components/framework/Deployment.hpp"
 #include "components/ros/NodeMessages.hpp"
-#include "types/text/Notice.hpp"
+#include "types/samples/DeploymentControl.hpp"
 
 namespace insonify::dds {
 
@@ -24,7 +24,6 @@ public:
     struct Line {
         uint8_t level;
         std::string text;  ///< "task: what happened"
-        types::Time time;
     };
     /** Keeps the last thousand. */
     void add(uint8_t level, std::string text);
@@ -35,6 +34,11 @@ private:
     std::deque<Line> lines_;
 };
 
+/** Counts of a task since the start. */
+struct TaskCounts {
+    uint64_t missed = 0, hangs = 0;  ///< Periods, cycles.
+};
+
 /** What a node reports of its deployment.
  *
  *  `/rosout`: warnings at once, notices at the start, tasks that fail, recover, stop and run. `/diagnostics`, once a
@@ -43,9 +47,11 @@ private:
  *  values are rates of samples, times of the last cycle, and counts. */
 class NodeReports {
 public:
-    /** Server and deployment must outlive this. Throws types::ConfigError. */
-    NodeReports(NodeServer& server, framework::Deployment& deployment, std::shared_ptr<LogLines> lines,
-                bool diagnostics, bool rosout);
+    /** @param counts returns those of a task, by its name; any thread
+     *  Server and deployment must outlive this. Throws types::ConfigError. */
+    NodeReports(NodeServer& server, types::DeploymentControl& deployment,
+                std::function<TaskCounts(const std::string&)> counts, std::shared_ptr<LogLines> lines, bool diagnostics,
+                bool rosout);
     NodeReports(const NodeReports&) = delete;
     NodeReports& operator=(const NodeReports&) = delete;
 
@@ -55,7 +61,8 @@ private:
     struct Seen {
         std::string state;
         std::map<std::string, uint64_t> written;  ///< By port.
-        uint64_t missed = 0, hangs = 0, lost = 0;
+        TaskCounts counts;
+        uint64_t lost = 0;
         std::string warning;
         std::optional<Clock::time_point> warned;
     };
@@ -65,11 +72,11 @@ private:
     /** @param task with the ports that lead somewhere
      *  @param lost samples on the way to it, so far
      *  @param seconds since the last report [s] */
-    ros::DiagnosticStatus diagnosed(const types::TaskStatus& task, framework::TaskContext& running, uint64_t lost,
-                                    double seconds);
+    ros::DiagnosticStatus diagnosed(const types::TaskStatus& task, uint64_t lost, double seconds);
 
     NodeServer& server_;
-    framework::Deployment& deployment_;
+    types::DeploymentControl& deployment_;
+    std::function<TaskCounts(const std::string&)> counts_;
     std::shared_ptr<LogLines> lines_;
     std::optional<MessageWriter<ros::DiagnosticArray>> diagnostics_;
     std::optional<MessageWriter<ros::Log>> rosout_;

@@ -122,7 +122,11 @@ void PublisherTask::serve(const PublisherConfig& named, framework::Deployment& d
         parameters_.emplace(
             *server_, name(), deployment, [&deployment](const auto& values) { deployment.set(values, ""); },
             [this] { return has_other_clock_.load(); });
-    if (lines_) reports_.emplace(*server_, deployment, lines_, named.sends_diagnostics, named.sends_rosout);
+    const auto counts = [&deployment](const std::string& task) {
+        framework::Timing& timing = deployment.task(task)->timing();
+        return TaskCounts{std::atomic_ref(timing.overruns).load(std::memory_order_relaxed), timing.hangs};
+    };
+    if (lines_) reports_.emplace(*server_, deployment, counts, lines_, named.sends_diagnostics, named.sends_rosout);
     if (!named.lifecycle) return;
     std::vector<std::string> others = deployment.spec().taskNames();
     std::erase(others, name());

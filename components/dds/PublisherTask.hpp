@@ -16,6 +16,10 @@
 #include "components/framework/TaskContext.hpp"
 #include "types/text/ThrottledWarning.hpp"
 
+namespace insonify::framework {
+class Deployment;
+}
+
 namespace insonify::dds {
 
 /** Sends samples as ROS 2 messages.

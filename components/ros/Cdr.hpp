@@ -25,11 +25,11 @@ concept Message = types::Described<T> && requires {
 /** A truth value in a sequence: std::vector<bool> has no elements to read into. */
 enum class Truth : uint8_t { No, Yes };
 
-/** A sequence of at most `most_elements`. */
-template <class T, size_t most_elements>
+/** A sequence of at most `max_elements`. */
+template <class T, size_t max_elements>
 struct Bounded : std::vector<T> {
     using std::vector<T>::vector;
-    static constexpr size_t most = most_elements;
+    static constexpr size_t most = max_elements;
 };
 template <class T>
 concept BoundedSequence = requires {
