@@ -136,9 +136,9 @@ private:
 
     void addTopic(const RosAssignment& remap) {
         for (const std::string& name : {remap.name, remap.value})
-            if (!types::isRosName(name))
+            if (!types::isRosName(name.starts_with("~/") ? name.substr(2) : name))
                 refuseRosArgument("-r " + remap.name + ":=" + remap.value + ": " + name +
-                                  " is no topic; must be words of letters, digits and _, as /auv/sonar");
+                                  " is no topic; must be words of letters, digits and _, as /auv/sonar or ~/sonar");
         spec_.names.remaps.push_back({remap.node, remap.name, remap.value});
     }
 

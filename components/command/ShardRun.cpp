@@ -5,7 +5,6 @@
 
 #include "components/command/RunCommand.hpp"
 #include "components/console/Console.hpp"
-#include "components/console/Sha256.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/ShardFolder.hpp"
@@ -13,6 +12,7 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/execution/Activity.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/Sha256.hpp"
 
 namespace insonify::command {
 
@@ -28,7 +28,7 @@ using framework::DeploymentSpec;
 Json runOf(const RunOptions& options, const DeploymentSpec& spec) {
     return {{"insonify", INSONIFY_VERSION},
             {"deployment", std::filesystem::path(spec.file).filename().string()},
-            {"deployment_sha256", console::sha256(spec.text)},
+            {"deployment_sha256", types::sha256(spec.text)},
             {"set", options.set},
             {"seed", options.seed.value_or(0)},
             {"pings", options.limits.samples},

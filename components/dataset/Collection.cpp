@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "components/console/Sha256.hpp"
 #include "components/dataset/SampleFiles.hpp"
 #include "components/dataset/StatisticsPage.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/Sha256.hpp"
 
 namespace insonify::dataset {
 namespace {
@@ -261,7 +261,7 @@ void Collection::writeManifest() {
         ++samples, ++in_part[record["part"].get<std::string>()];
         const std::string name = store.stemOf(record["index"]) + ".json";
         for (const auto& [file, sum] : record["files"].items()) all[file] = sum;
-        all[name] = console::sha256OfFile(store.folder() / name);
+        all[name] = types::sha256OfFile(store.folder() / name);
     });
     for (const auto& [name, sum] : files_.items()) all[name] = sum;
     const std::vector<std::string> digests = digestsOf(title_);
@@ -269,7 +269,7 @@ void Collection::writeManifest() {
         {"version", title_.version},
         {"deployment", title_.deployment},
         {"sweep", title_.sweep},
-        {"digest", digests.size() == 1 ? digests[0] : console::sha256(fmt::format("{}", fmt::join(digests, "\n")))},
+        {"digest", digests.size() == 1 ? digests[0] : types::sha256(fmt::format("{}", fmt::join(digests, "\n")))},
         {"format", nameOf(title_.format)},
         {"samples", samples},
         {"parts", in_part},

@@ -12,8 +12,8 @@
 #include <system_error>
 
 #include "components/console/Json.hpp"
-#include "components/console/Sha256.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/Sha256.hpp"
 
 namespace insonify::dataset {
 namespace fs = std::filesystem;
@@ -41,7 +41,7 @@ std::optional<uint64_t> indexOf(const std::string& name) {
 }
 
 std::string stem(const std::string& digest, uint64_t index) {
-    return fmt::format("{:06}_{}", index, console::sha256(fmt::format("{}\n{}", digest, index)).substr(0, hash_digits));
+    return fmt::format("{:06}_{}", index, types::sha256(fmt::format("{}\n{}", digest, index)).substr(0, hash_digits));
 }
 
 std::string bytesOf(const fs::path& file) {
@@ -51,7 +51,7 @@ std::string bytesOf(const fs::path& file) {
 
 std::string sumOf(Json record) {
     record.erase("sum");
-    return console::sha256(textOf(record));
+    return types::sha256(textOf(record));
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ std::string Store::put(const std::string& name, const std::function<void(const f
         const fs::path passing = folder_ / passingName(name);
         try {
             writer(passing);
-            const std::string sum = console::sha256OfFile(passing);
+            const std::string sum = types::sha256OfFile(passing);
             fs::rename(passing, folder_ / name);
             return sum;
         } catch (...) {
@@ -140,7 +140,7 @@ bool Store::has(uint64_t index) const {
     if (!found) return false;
     for (const auto& [name, sum] : (*found)["files"].items())
         if (!name.starts_with(stemOf(index)) || name.find('/') != std::string::npos || !fs::exists(folder_ / name) ||
-            console::sha256OfFile(folder_ / name) != sum.get<std::string>())
+            types::sha256OfFile(folder_ / name) != sum.get<std::string>())
             return false;
     return true;
 }

@@ -13,9 +13,10 @@ class Writer {
 public:
     /** @param ros_type as "sensor_msgs/msg/Image"
      *  @param type_hash as "RIHS01_...", or empty
+     *  @param pairs announced with it, as "serviceid=1.2;"
      *  The node must outlive the writer. Throws types::ConfigError. */
     Writer(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
-           const Quality& quality);
+           const Quality& quality, const std::string& pairs = "");
 
     /** Sends without waiting for readers. Returns false if the message could not be sent; `failure` then has the
      *  reason. */
@@ -36,7 +37,8 @@ public:
      *  @param maximum max message [B]; larger messages arrive empty
      *  The node must outlive the reader. Throws types::ConfigError. */
     Reader(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
-           const Quality& quality, std::function<void()> arrived, size_t maximum = any_size);
+           const Quality& quality, std::function<void()> arrived, size_t maximum = any_size,
+           const std::string& pairs = "");
     ~Reader();
 
     /** Takes the next message into `message`, whose memory is reused. Returns false if there is none. `sender` is a

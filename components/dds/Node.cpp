@@ -4,11 +4,13 @@
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsi/q_radmin.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -16,6 +18,7 @@
 
 #include "components/dds/Endpoints.hpp"
 #include "components/ros/Cdr.hpp"
+#include "components/ros/Schema.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/RosNames.hpp"
 
@@ -272,14 +275,71 @@ Entity::~Entity() {
     if (handle_ > 0) dds_delete(handle_);
 }
 
-Entity joinDomain(uint32_t id, std::string_view user_data) {
+std::string discoverySettings() {
+    const auto given = [](const char* name) {
+        const char* const text = std::getenv(name);
+        return std::string(text ? text : "");
+    };
+    const bool localhost_only = given("ROS_LOCALHOST_ONLY") == "1";
+    const std::string wanted = given("ROS_AUTOMATIC_DISCOVERY_RANGE"), peers = given("ROS_STATIC_PEERS");
+    const std::string range = localhost_only ? "LOCALHOST" : wanted.empty() ? "SUBNET" : wanted;
+    if (range != "SUBNET" && range != "LOCALHOST" && range != "OFF" && range != "SYSTEM_DEFAULT")
+        throw types::ConfigError(
+            "", "domain",
+            "ROS_AUTOMATIC_DISCOVERY_RANGE is " + range + "; must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT");
+    if (peers.find_first_of("<>&\"'") != std::string::npos)
+        throw types::ConfigError("", "domain",
+                                 "ROS_STATIC_PEERS is " + peers + "; must be addresses with ; between them");
+    const bool is_local = range == "LOCALHOST", takes_peers = !localhost_only && (is_local || range == "SUBNET");
+    std::string listed = is_local ? "<Peer address=\"localhost\"/>" : "";
+    for (size_t at = 0; takes_peers && at < peers.size(); at = std::min(peers.find(';', at), peers.size()) + 1)
+        if (const std::string peer = peers.substr(at, peers.find(';', at) - at); !peer.empty())
+            listed += "<Peer address=\"" + peer + "\"/>";
+    if (range == "SYSTEM_DEFAULT" || (range == "SUBNET" && listed.empty())) return "";
+    const std::string general = range == "SUBNET" ? "" : "<General><AllowMulticast>false</AllowMulticast></General>";
+    const std::string discovery =
+        range == "OFF"
+            ? "<ParticipantIndex>none</ParticipantIndex><Tag>ros_discovery_off_" + std::to_string(getpid()) + "</Tag>"
+            : "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</"
+              "MaxAutoParticipantIndex><Peers>" +
+                  listed + "</Peers>";
+    return "<CycloneDDS><Domain>" + general + "<Discovery>" + discovery + "</Discovery></Domain></CycloneDDS>";
+}
+
+namespace {
+
+/** Returns the domain with the settings of discovery, which its participants keep; null where Cyclone makes it by
+ *  itself. Under the mutex of joinDomain(). */
+std::shared_ptr<Entity> madeDomain(uint32_t id, const LoggedErrors& logged_errors) {
+    static std::map<uint32_t, std::weak_ptr<Entity>> made;
+    if (const auto known = made[id].lock()) return known;
+    std::string settings = discoverySettings();
+    if (settings.empty()) return nullptr;
+    if (const char* const more = std::getenv("CYCLONEDDS_URI"); more && *more) settings += std::string(",") + more;
+    const dds_entity_t domain = dds_create_domain(id, settings.c_str());
+    if (domain <= 0)
+        throw types::ConfigError("", "domain",
+                                 "DDS domain " + std::to_string(id) + " cannot be set up: " + dds_strretcode(domain) +
+                                     logged_errors.text() + "; see ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS " +
+                                     "and CYCLONEDDS_URI");
+    const auto shared = std::make_shared<Entity>(domain);
+    made[id] = shared;
+    return shared;
+}
+
+}  // namespace
+
+Participant joinDomain(uint32_t id, std::string_view user_data) {
     static std::mutex one_at_a_time;
     std::lock_guard lock(one_at_a_time);
     const LoggedErrors logged_errors;
+    Participant participant;
+    participant.domain = madeDomain(id, logged_errors);
     const std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)> qos(dds_create_qos(), dds_delete_qos);
     dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
     const dds_entity_t joined = dds_create_participant(id, qos.get(), nullptr);
-    if (joined > 0) return Entity(joined);
+    participant.entity = Entity(joined);
+    if (joined > 0) return participant;
     throw types::ConfigError("", "domain",
                              "DDS domain " + std::to_string(id) + " cannot be joined: " + dds_strretcode(joined) +
                                  logged_errors.text() + "; see CYCLONEDDS_URI and ROS_DOMAIN_ID");
@@ -320,8 +380,9 @@ std::string diagnosticOfTopic(const std::string& name) {
     if (ddsTopic(name).size() > longest_topic)
         return "has " + std::to_string(name.size()) + " characters; at most " + std::to_string(longest_topic - 3) +
                " are a topic's name";
-    if (types::isRosName(name)) return "";
-    return "is \"" + name + "\"; must be words of letters, digits and _, none beginning with a digit, as /auv/sonar";
+    if (types::isRosName(name.starts_with("~/") ? std::string_view(name).substr(2) : name)) return "";
+    return "is \"" + name +
+           "\"; must be words of letters, digits and _, none beginning with a digit, as /auv/sonar or ~/sonar";
 }
 
 std::string diagnosticOfNode(const std::string& name) {
@@ -337,6 +398,8 @@ Node::Node(uint32_t domain, const std::string& name, size_t gid_size)
       gid_size_(gid_size),
       participant_(joinDomain(domain, "enclave=/;")) {}
 Node::~Node() = default;
+
+Guid Node::guid() const { return guidOf(participant()); }
 
 Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t maximum) const {
     ddsi_sertype* type = makeRawType(dds_type, maximum);
@@ -382,7 +445,8 @@ void Node::announceWith() {
     Bytes bytes;
     ros::encode(info, bytes);
     if (!discovery_)
-        discovery_ = std::make_unique<Writer>(*this, "ros_discovery_info", Info::type_name, Info::type_hash, quality);
+        discovery_ =
+            std::make_unique<Writer>(*this, "ros_discovery_info", Info::type_name, ros::typeHash<Info>(), quality);
     if (!discovery_->write(bytes)) throw std::runtime_error("the node cannot be announced: " + discovery_->failure());
 }
 

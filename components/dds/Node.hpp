@@ -43,10 +43,22 @@ private:
     int32_t handle_ = 0;
 };
 
-/** Returns a participant of a DDS domain, with the settings of CYCLONEDDS_URI. `user_data` is announced with it. Throws
- *  types::ConfigError with Cyclone's message if the domain cannot be joined: no such network interface, an error in the
- *  settings, no free port. */
-Entity joinDomain(uint32_t id, std::string_view user_data);
+/** A participant, and the domain that it needs if we have set it up. */
+struct Participant {
+    std::shared_ptr<Entity> domain;
+    Entity entity;  ///< Leaves first.
+    int32_t handle() const { return entity.handle(); }
+};
+
+/** Returns Cyclone's settings for ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE and ROS_STATIC_PEERS, as
+ *  rmw_cyclonedds_cpp makes them; empty if Cyclone's own fit. CYCLONEDDS_URI comes after them. Throws
+ *  types::ConfigError. */
+std::string discoverySettings();
+
+/** Returns a participant of a DDS domain, with the settings of discoverySettings() and CYCLONEDDS_URI. `user_data` is
+ *  announced with it. Throws types::ConfigError with Cyclone's message if the domain cannot be joined: no such network
+ *  interface, an error in the settings, no free port. */
+Participant joinDomain(uint32_t id, std::string_view user_data);
 
 /** Returns `given`, else ROS_DOMAIN_ID, else 0. Throws types::ConfigError if ROS_DOMAIN_ID is not a number up to
  *  232. */
@@ -55,12 +67,11 @@ uint32_t domainId(std::optional<uint32_t> given);
 /** The highest domain for which UDP has ports. */
 inline constexpr uint32_t highest_domain = 232;
 
-// The messages by which ROS 2 nodes announce themselves: rmw_dds_common, field for field. See ros/GeometryMessages.hpp.
+// The messages by which ROS 2 nodes announce themselves: rmw_dds_common, field for field. See ros/Messages.hpp.
 /** Identifier of 16 bytes since ROS 2 Iron, 24 in Humble and before. */
 template <size_t size>
 struct Gid {
     static constexpr const char* type_name = "rmw_dds_common/msg/Gid";
-    static constexpr const char* type_hash = "";
     std::array<uint8_t, size> data{};
 
     friend bool operator==(const Gid&, const Gid&) = default;
@@ -70,7 +81,6 @@ struct Gid {
 template <size_t gid_size>
 struct NodeEntitiesInfo {
     static constexpr const char* type_name = "rmw_dds_common/msg/NodeEntitiesInfo";
-    static constexpr const char* type_hash = "";
     std::string node_namespace, node_name;
     std::vector<Gid<gid_size>> reader_gid_seq, writer_gid_seq;
 
@@ -86,8 +96,6 @@ struct NodeEntitiesInfo {
 template <size_t gid_size>
 struct ParticipantEntitiesInfo {
     static constexpr const char* type_name = "rmw_dds_common/msg/ParticipantEntitiesInfo";
-    static constexpr const char* type_hash =
-        gid_size == 16 ? "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e" : "";
     Gid<gid_size> gid;
     std::vector<NodeEntitiesInfo<gid_size>> node_entities_info_seq;
 
@@ -105,6 +113,7 @@ struct Quality {
     Reliability reliability = Reliability::Reliable;
     int depth = 5;  ///< Samples kept for slow readers, or until they are taken.
     bool transient_local = false;
+    int lifespan_s = 0;  ///< After it, kept samples are dropped [s]; 0: never.
 };
 
 /** Converts "/auv/sonar" or "auv/sonar" to "rt/auv/sonar". */
@@ -174,6 +183,7 @@ public:
     ~Node();
 
     int32_t participant() const { return participant_.handle(); }
+    Guid guid() const;
     /** Returns a topic with the given DDS name and type; may be called several times for the same topic. See
      *  makeRawType() for `largest`. Throws types::ConfigError. */
     Entity makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t maximum = any_size) const;
@@ -192,7 +202,7 @@ private:
 
     std::string namespace_, name_;
     size_t gid_size_;
-    Entity participant_;
+    Participant participant_;
     std::unique_ptr<Writer> discovery_;
     Entity publications_;  ///< Reader of the built-in topic of writers; made by the first published().
     std::vector<Guid> writers_, readers_;

@@ -11,6 +11,7 @@
 #include "components/dds/PublisherConfig.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Samples.hpp"
+#include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/Check.hpp"
 #include "types/text/ConfigError.hpp"
@@ -106,7 +107,7 @@ std::string messagesOf() {
 inline Writer writerOf(Node& node, const PublisherConfig& config, const TopicOut& topic) {
     const Quality quality{.reliability = config.reliability, .depth = config.depth};
     return withMessage(topic.type, [&]<class Message>(std::type_identity<Message>) {
-        return Writer(node, ddsTopic(topic.topic), Message::type_name, Message::type_hash, quality);
+        return Writer(node, ddsTopic(topic.topic), Message::type_name, ros::typeHash<Message>(), quality);
     });
 }
 

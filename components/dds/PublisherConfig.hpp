@@ -134,6 +134,8 @@ struct PublisherConfig {
     int depth = 5;
     std::optional<StaticTransforms> tf_static;
     bool parameter_services = false;
+    std::optional<std::string> lifecycle;
+    bool sends_diagnostics = false, sends_rosout = false;
     NodeConfig node;
 
     static void describe(auto& self, auto& visit) {
@@ -152,6 +154,13 @@ struct PublisherConfig {
         visit({"parameter_services", "",
                "whether nodes with rmw_cyclonedds_cpp may list, get, set and describe the properties of all tasks"},
               self.parameter_services);
+        visit({"lifecycle", "",
+               "task whose states are those of this node as a lifecycle node of ROS 2; absent: it is none"},
+              self.lifecycle);
+        visit({"diagnostics", "", "whether the state of each task is sent to /diagnostics, once a second"},
+              self.sends_diagnostics);
+        visit({"rosout", "", "whether warnings, notices and states of all tasks are sent to /rosout"},
+              self.sends_rosout);
         NodeConfig::describe(self.node, visit);
     }
     std::string frameOf(const TopicOut& topic) const {
@@ -183,6 +192,9 @@ struct PublisherConfig {
     void check(types::Diagnostics& diagnostics) const {
         node.check(diagnostics);
         if (topics.empty()) diagnostics.push_back({"topics", "is empty; must hold a topic"});
+        ros::checkFrame("frame_id", frame_id, diagnostics);
+        if (world_frame_id) ros::checkFrame("world_frame_id", *world_frame_id, diagnostics);
+        if (tf_static) ros::checkFrame("tf_static.frame_id", tf_static->frame_id, diagnostics);
         std::set<std::string> names;
         if (tf_static) {
             if (const std::string diagnostic = diagnosticOfTopic(tf_static->topic); !diagnostic.empty())
@@ -191,6 +203,9 @@ struct PublisherConfig {
         }
         for (size_t i = 0; i < topics.size(); ++i) {
             const std::string path = "topics[" + std::to_string(i) + "].";
+            const auto& [of_pings, of_body] = std::pair(topics[i].sonar.frame_id, topics[i].child_frame_id);
+            if (!of_pings.empty()) ros::checkFrame(path + "frame_id", of_pings, diagnostics);
+            if (of_body) ros::checkFrame(path + "child_frame_id", *of_body, diagnostics);
             if (topics[i].port.empty()) diagnostics.push_back({path + "port", "must name an input port"});
             if (const std::string diagnostic = diagnosticOfTopic(topics[i].topic); !diagnostic.empty())
                 diagnostics.push_back({path + "topic", diagnostic});

@@ -5,9 +5,11 @@
 
 #include "components/dds/SubscriberTask.hpp"
 #include "components/dds/TransformTask.hpp"
+#include "components/framework/Deployment.hpp"
 #include "components/framework/Graph.hpp"
 #include "components/framework/execution/Timing.hpp"
 #include "components/ros/Poses.hpp"
+#include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/text/ConfigError.hpp"
 
@@ -40,6 +42,7 @@ void send(Input& input, const typename Input::Carried& sample, framework::TaskCo
 }  // namespace
 
 framework::InputPortBase* PublisherTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
+    listenToWarnings();
     if (std::ranges::none_of(config->topics, [&](const TopicOut& topic) { return topic.port == port; }))
         throw types::ConfigError("", "", "no topic of " + name() + " is for port " + port);
     if (framework::InputPortBase* const made = inputs_.make(port, source)) return made;
@@ -47,6 +50,15 @@ framework::InputPortBase* PublisherTask::makeInput(const std::string& port, fram
         "", "",
         source.path() + " is " + source.typeName() +
             ", which has no message; pings, poses, points, ranges, pictures, numbers and texts have");
+}
+
+void PublisherTask::listenToWarnings() {
+    if (lines_ || !environment().warn || !(config->sends_diagnostics || config->sends_rosout)) return;
+    lines_ = std::make_shared<LogLines>();
+    environment().warn = [warn_user = environment().warn, lines = lines_](const std::string& text) {
+        warn_user(text);
+        lines->add(LogLines::warning, text);
+    };
 }
 
 void PublisherTask::check(types::Diagnostics& diagnostics) const {
@@ -94,10 +106,50 @@ bool PublisherTask::configureHook() {
                     std::make_unique<Sending>(*node_, named, topic, names.frame_prefix, drops_));
     });
     if (named.tf_static) announceMounts(named.tf_static->topic);
-    if (named.parameter_services && environment().deployment)
-        parameters_.emplace(*node_, named.node.node_name, name(), *environment().deployment);
+    if (auto* const deployment = dynamic_cast<framework::Deployment*>(environment().deployment))
+        serve(named, *deployment);
     readSonars();
     node_->announce();
+    if (server_) server_->start();
+    return true;
+}
+
+void PublisherTask::serve(const PublisherConfig& named, framework::Deployment& deployment) {
+    if (!named.parameter_services && !named.lifecycle && !lines_) return;
+    has_other_clock_ = environment().lockstep;
+    server_.emplace(*node_, named.node.node_name, environment().names);
+    if (named.parameter_services)
+        parameters_.emplace(
+            *server_, name(), deployment, [&deployment](const auto& values) { deployment.set(values, ""); },
+            [this] { return has_other_clock_.load(); });
+    const auto counts = [&deployment](const std::string& task) {
+        framework::Timing& timing = deployment.task(task)->timing();
+        return TaskCounts{std::atomic_ref(timing.overruns).load(std::memory_order_relaxed), timing.hangs};
+    };
+    if (lines_) reports_.emplace(*server_, deployment, counts, lines_, named.sends_diagnostics, named.sends_rosout);
+    if (!named.lifecycle) return;
+    std::vector<std::string> others = deployment.spec().taskNames();
+    std::erase(others, name());
+    if (std::ranges::count(others, *named.lifecycle) == 0)
+        throw types::ConfigError(
+            "", "lifecycle",
+            "is " + *named.lifecycle + "; must be another task, " + framework::suggestion(*named.lifecycle, others));
+    lifecycle_.emplace(*server_, *named.lifecycle, deployment,
+                       [lines = lines_, task = *named.lifecycle](const std::string& refused) {
+                           if (lines) lines->add(LogLines::error, task + ": " + refused);
+                       });
+}
+
+bool PublisherTask::startHook() {
+    has_other_clock_ = environment().lockstep || !environment().wall_clock;
+    const auto* const deployment = dynamic_cast<framework::Deployment*>(environment().deployment);
+    if (!lines_ || !deployment) return true;
+    for (const auto& task : deployment->tasks()) {
+        if (task->state() != framework::TaskState::Stopped) continue;  // it runs, or has none yet
+        for (const types::Notice& notice : task->notices())
+            lines_->add(notice.kind == types::Notice::Kind::Warning ? LogLines::warning : LogLines::info,
+                        task->name() + ": " + notice.text);
+    }
     return true;
 }
 
@@ -123,7 +175,7 @@ ros::TFMessage PublisherTask::mounts() const {
 void PublisherTask::announceMounts(const std::string& topic) {
     using Message = ros::TFMessage;
     const Quality quality{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
-    tf_static_.emplace(*node_, ddsTopic(topic), Message::type_name, Message::type_hash, quality);
+    tf_static_.emplace(*node_, ddsTopic(topic), Message::type_name, ros::typeHash<Message>(), quality);
     node_->addWriter(tf_static_->handle());
     Bytes bytes;
     ros::encode(mounts(), bytes);
@@ -157,6 +209,9 @@ void PublisherTask::updateHook() {
 
 void PublisherTask::cleanupHook() {
     inputs_.forEach([](auto& input) { input.kept.publications.clear(); });
+    server_.reset();
+    lifecycle_.reset();
+    reports_.reset();
     parameters_.reset();
     tf_static_.reset();
     node_.reset();

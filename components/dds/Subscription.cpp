@@ -9,6 +9,7 @@
 
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
+#include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
 #include "types/Time.hpp"
 #include "types/geometry/WorldFrame.hpp"
@@ -23,11 +24,12 @@ constexpr types::Time max_ahead{1'000'000};    ///< Max stamp ahead of the clock
 constexpr types::Time max_silence{1'000'000};  ///< After it, a sender's clock may have been set back.
 
 struct PoseMessage {
-    const char *type, *hash;
+    const char* type;
+    std::string hash;
 };
 
 PoseMessage messageOf(PoseType type) {
-    const auto of = []<class T>(std::type_identity<T>) { return PoseMessage{T::type_name, T::type_hash}; };
+    const auto of = []<class T>(std::type_identity<T>) { return PoseMessage{T::type_name, ros::typeHash<T>()}; };
     if (type == PoseType::Odometry) return of(std::type_identity<ros::Odometry>{});
     if (type == PoseType::PoseStamped) return of(std::type_identity<ros::PoseStamped>{});
     return of(std::type_identity<ros::PoseWithCovarianceStamped>{});

@@ -2,6 +2,7 @@
 
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
+#include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
 
 namespace insonify::dds {
@@ -15,8 +16,8 @@ constexpr types::Time static_period{100'000};
 
 std::unique_ptr<Reader> transformReader(Node& node, const std::string& topic, const Quality& quality,
                                         std::function<void()> arrived) {
-    auto made = std::make_unique<Reader>(node, ddsTopic(topic), ros::TFMessage::type_name, ros::TFMessage::type_hash,
-                                         quality, std::move(arrived), maximum);
+    auto made = std::make_unique<Reader>(node, ddsTopic(topic), ros::TFMessage::type_name,
+                                         ros::typeHash<ros::TFMessage>(), quality, std::move(arrived), maximum);
     node.addReader(made->handle());
     return made;
 }
@@ -55,8 +56,10 @@ void TransformConfig::check(types::Diagnostics& diagnostics) const {
             diagnostics.push_back({key, diagnostic});
     if (frames.empty()) diagnostics.push_back({"frames", "is empty; must hold a frame"});
     std::set<std::string> ports;
+    ros::checkFrame("world_frame_id", world_frame_id, diagnostics);
     for (size_t i = 0; i < frames.size(); ++i) {
         const std::string path = "frames[" + std::to_string(i) + "].";
+        ros::checkFrame(path + "frame_id", frames[i].frame_id, diagnostics);
         if (frames[i].frame_id == world_frame_id)
             diagnostics.push_back({path + "frame_id", "is " + world_frame_id + ", the world_frame_id itself"});
         if (!ports.insert(frames[i].port).second)

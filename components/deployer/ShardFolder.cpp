@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "components/console/Console.hpp"
-#include "components/console/Sha256.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/Sha256.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;
@@ -44,7 +44,7 @@ std::vector<fs::path> filesIn(const fs::path& folder) {
 Json entryOf(const fs::path& folder, const fs::path& file) {
     return {{"file", file.generic_string()},
             {"bytes", fs::file_size(folder / file)},
-            {"sha256", console::sha256OfFile(folder / file)}};
+            {"sha256", types::sha256OfFile(folder / file)}};
 }
 
 /** Returns the first difference of a folder from its manifest; empty: none. */
@@ -56,7 +56,7 @@ std::string damageOf(const fs::path& folder, const Json& manifest) try {
         if (absent) return file.string() + " is missing";
         if (bytes != entry.value("bytes", uint64_t{0}))
             return fmt::format("{} has {} bytes, not {}", file.string(), bytes, entry.value("bytes", uint64_t{0}));
-        if (console::sha256OfFile(folder / file) != entry.value("sha256", ""))
+        if (types::sha256OfFile(folder / file) != entry.value("sha256", ""))
             return file.string() + " has another SHA-256 than when it was written";
     }
     for (const char* key : {"pings", "first_ping", "pings_of_run"})

@@ -259,41 +259,7 @@ std::vector<SteppedPing> Simulation::step(std::map<std::string, types::Pose> at,
 void Simulation::set(const std::map<std::string, std::string>& values) {
     const std::unique_lock use(in_use_, std::try_to_lock);
     if (!use) throw std::runtime_error(busy);
-    std::vector<std::string> names;
-    for (const auto& task : deployment_->tasks())
-        if (!task->properties().empty()) names.push_back(task->name());
-    types::Diagnostics diagnostics;
-    std::map<framework::PropertiesBase*, std::map<std::string, std::string>> blocks;
-    for (const auto& [property, value] : values) {
-        const auto [name, rest] = splitPort(property);
-        const auto refuse = [&](const std::string& why) {
-            diagnostics.push_back({property + "=" + value, why, framework::set_origin});
-        };
-        if (rest.empty())
-            refuse("must be task.property");
-        else if (std::ranges::count(names, name) == 0)
-            refuse("there is no task " + name + "; " + framework::suggestion(name, names));
-        else if (rest == "activity" || rest.starts_with("activity."))
-            refuse("is no property: an activity can only be changed in the deployment");
-        else
-            blocks[&framework::blockWith(rest, deployment_->task(name)->properties())][rest] = value;
-    }
-    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
-    std::vector<std::function<void()>> undo;
-    for (const auto& [block, changes] : blocks) try {
-            undo.push_back(block->setAll(changes));
-        } catch (const types::ConfigError& error) {
-            for (const auto& each : undo) each();
-            for (types::Diagnostic each : error.diagnostics()) {
-                if (each.file.empty()) each.file = framework::set_origin;
-                each.path = "tasks." + block->owner().name() + ".properties." + each.path;
-                diagnostics.push_back(std::move(each));
-            }
-            throw types::ConfigError(diagnostics);
-        } catch (...) {
-            for (const auto& each : undo) each();
-            throw;
-        }
+    deployment_->set(values, framework::set_origin);
     for (const auto& [property, value] : values)
         if (property.ends_with(".seed")) own_seeds_.insert(property.substr(0, property.size() - 5));
 }

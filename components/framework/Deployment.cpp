@@ -270,6 +270,51 @@ std::string Deployment::call(const std::string& operation, const std::vector<std
     return called->callText(arguments);
 }
 
+void Deployment::set(const std::map<std::string, std::string>& values, const std::string& origin) {
+    std::vector<std::string> names;
+    for (const auto& task : tasks())
+        if (!task->properties().empty()) names.push_back(task->name());
+    types::Diagnostics diagnostics;
+    std::map<std::pair<TaskContext*, PropertiesBase*>, std::map<std::string, std::string>> blocks;
+    for (const auto& [property, value] : values) {
+        const auto [name, rest] = splitPort(property);
+        const auto refuse = [&](const std::string& why) {
+            diagnostics.push_back({property + "=" + value, why, origin});
+        };
+        if (rest.empty())
+            refuse("must be task.property");
+        else if (std::ranges::count(names, name) == 0)
+            refuse("there is no task " + name + "; " + suggestion(name, names));
+        else if (rest == "activity" || rest.starts_with("activity."))
+            refuse("is no property: an activity can only be changed in the deployment");
+        else
+            blocks[{task(name), &blockWith(rest, task(name)->properties())}][rest] = value;
+    }
+    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
+    const auto held = executor_->betweenInstants();
+    std::vector<std::function<void()>> undo;
+    const auto setBack = [&] {
+        for (auto each = undo.rbegin(); each != undo.rend(); ++each) (*each)();
+    };
+    for (const auto& [where, changes] : blocks) try {
+            const auto& [owner, block] = where;
+            std::function<void()> put_back;
+            owner->activity().call([&, to = block] { put_back = to->setAll(changes); });
+            undo.push_back([of = owner, put_back] { of->activity().call([&] { put_back(); }); });
+        } catch (const types::ConfigError& error) {
+            setBack();
+            for (types::Diagnostic each : error.diagnostics()) {
+                if (each.file.empty()) each.file = origin;
+                each.path = "tasks." + where.first->name() + ".properties." + each.path;
+                diagnostics.push_back(std::move(each));
+            }
+            throw types::ConfigError(diagnostics);
+        } catch (...) {
+            setBack();
+            throw;
+        }
+}
+
 std::map<std::string, uint64_t> Deployment::losses() const {
     std::map<std::string, uint64_t> losses;
     for (const Connection& connection : connections()) losses[connection.text()] = connection.channel->lost();

@@ -71,6 +71,10 @@ public:
     void onWarning(std::function<void(const std::string&)> reported) { reported_ = std::move(reported); }
 
     std::string call(const std::string& operation, const std::vector<std::string>& arguments) override;
+    /** Sets properties, "task.name", to values in YAML: all, or none. Each task sets its own on its thread; if one
+     *  refuses, the others set theirs back. Throws types::ConfigError, with `origin` as the file, and
+     *  std::runtime_error. */
+    void set(const std::map<std::string, std::string>& values, const std::string& origin);
     types::DeploymentStatus status() const override;
     std::vector<types::TaskInterface> interfaces() const override;
     void pause(bool on) override { executor_->pause(on); }

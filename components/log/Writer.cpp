@@ -7,7 +7,11 @@ namespace insonify::log {
 
 void McapConfig::check(types::Diagnostics& diagnostics) const {
     std::map<std::string, std::string> streams_by_topic;
+    ros::checkFrame("frame_id", frame_id, diagnostics);
     for (const auto& [name, stream] : streams) {
+        if (stream.frame_id) ros::checkFrame("streams." + name + ".frame_id", *stream.frame_id, diagnostics);
+        if (stream.child_frame_id)
+            ros::checkFrame("streams." + name + ".child_frame_id", *stream.child_frame_id, diagnostics);
         if (!stream.topic) continue;
         const std::string topic = "/" + stream.topic->substr(stream.topic->starts_with('/'));
         const std::string path = "streams." + name + ".topic";

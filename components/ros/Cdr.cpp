@@ -36,6 +36,12 @@ uint32_t CdrReader::count(size_t min_size) {
     return wanted;
 }
 
+void CdrReader::refuseMore(uint32_t size, size_t most) const {
+    if (size > most)
+        throw CdrError(at_ - sizeof size, std::to_string(size) + " elements are announced, at most " +
+                                              std::to_string(most) + " are allowed");
+}
+
 void CdrReader::text(std::string& item) {
     const uint32_t size = count(1);
     item.assign(bytes_.data() + at_, size);

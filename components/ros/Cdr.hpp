@@ -5,6 +5,7 @@
 // a final NUL, then the characters. A sequence is a u32 count, then the elements. A fixed array is the elements alone.
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -18,7 +19,21 @@ namespace insonify::ros {
 
 template <class T>
 concept Message = types::Described<T> && requires {
-    T::type_hash;
+    T::type_name;
+};
+
+/** A truth value in a sequence: std::vector<bool> has no elements to read into. */
+enum class Truth : uint8_t { No, Yes };
+
+/** A sequence of at most `max_elements`. */
+template <class T, size_t max_elements>
+struct Bounded : std::vector<T> {
+    using std::vector<T>::vector;
+    static constexpr size_t most = max_elements;
+};
+template <class T>
+concept BoundedSequence = requires {
+    T::most;
 };
 
 /** Whether T is a sequence or an array of fixed length in ROS. */
@@ -26,6 +41,8 @@ template <class T>
 struct IsSequence : std::false_type {};
 template <class T>
 struct IsSequence<std::vector<T>> : std::true_type {};
+template <class T, size_t most>
+struct IsSequence<Bounded<T, most>> : std::true_type {};
 template <class T>
 struct IsArray : std::false_type {};
 template <class T, size_t n>
@@ -36,7 +53,9 @@ concept Sequence = IsSequence<T>::value;
 template <class T>
 concept Array = IsArray<T>::value;
 template <class T>
-concept Primitive = std::is_arithmetic_v<T>;
+concept TruthValue = std::is_same_v<T, bool> || std::is_same_v<T, Truth>;
+template <class T>
+concept Primitive = std::is_arithmetic_v<T> || std::is_same_v<T, std::byte> || TruthValue<T>;
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied in host order");
 
@@ -49,7 +68,7 @@ struct CdrError : std::runtime_error {
 
 /** Elements whose bytes are the same in memory and in the message. */
 template <class T>
-concept Block = Primitive<T> && !std::is_same_v<T, bool>;
+concept Block = Primitive<T> && !TruthValue<T>;
 
 /** Returns the min size of an encoded T [B]. */
 template <class T>
@@ -130,10 +149,12 @@ public:
             T::describe(item, visit);
         } else if constexpr (std::is_same_v<T, std::string>)
             text(item);
-        else if constexpr (std::is_same_v<T, bool>)
-            item = truth();
+        else if constexpr (TruthValue<T>)
+            item = static_cast<T>(truth());
         else if constexpr (Sequence<T>) {
-            item.resize(count(minimumSize<typename T::value_type>()));
+            const uint32_t size = count(minimumSize<typename T::value_type>());
+            if constexpr (BoundedSequence<T>) refuseMore(size, T::most);
+            item.resize(size);
             elements(item);
         } else if constexpr (Array<T>)
             elements(item);
@@ -162,6 +183,7 @@ private:
     void text(std::string& item);
     bool truth();
     uint32_t count(size_t min_size);
+    void refuseMore(uint32_t size, size_t most) const;
 
     std::span<const char> bytes_;
     size_t at_ = 4;

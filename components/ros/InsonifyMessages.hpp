@@ -1,5 +1,5 @@
 #pragma once
-// insonify_msgs: messages that ROS 2 lacks, and their conversions from samples. See GeometryMessages.hpp.
+// insonify_msgs: messages that ROS 2 lacks, and their conversions from samples. See Messages.hpp.
 #include <string>
 #include <vector>
 
@@ -17,7 +17,6 @@ struct SonarTruth {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarTruth";
     static constexpr const char* summary =
         "The ground truth of a ping's bins. Lists are beam-first: bin k of beam b is at b * bin_count + k.";
-    static constexpr const char* type_hash = "RIHS01_82a4e12b239a23aa77bc5f78474dcd49c5fb906d7be1576282b6c1400131ecc5";
     Header header;
     int64_t bin_duration_us = 0;
     float sound_speed = 0;
@@ -58,7 +57,6 @@ struct SonarReturns {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarReturns";
     static constexpr const char* summary =
         "The first and the strongest return of each beam of a ping; NaN if the beam has none.";
-    static constexpr const char* type_hash = "RIHS01_886f7d15e37c56383d9cf3ff5d14971d9f7b1f4966719de81bed57380e1a6c41";
     Header header;
     std::vector<double> bearings;
     std::vector<float> first_range;
@@ -87,7 +85,6 @@ struct SonarElements {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarElements";
     static constexpr const char* summary =
         "Complex baseband of the elements of a straight array: sample i of element m is at m * sample_count + i.";
-    static constexpr const char* type_hash = "RIHS01_4eccd6f1ed32d36fa56a2a55210b36158a616926e5e197ef069d433b385c33c7";
     Header header;
     double sound_speed = 0;
     double wavelength = 0;
@@ -119,7 +116,6 @@ struct SonarSettings {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarSettings";
     static constexpr const char* summary =
         "Settings that a driver requests from a sonar. NaN, or a count of 0, leaves a setting unchanged.";
-    static constexpr const char* type_hash = "RIHS01_9825b87f8b15ebda7ee51d90fbeca98dc442c3244fa4a81f841a6f71c4c44fb0";
     Header header;
     double range = 0;
     double frequency_khz = 0;

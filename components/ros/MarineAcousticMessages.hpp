@@ -11,7 +11,6 @@ namespace insonify::ros {
 /** Lists may be empty (unknown) or hold one value (the same for all beams). */
 struct PingInfo {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/PingInfo";
-    static constexpr const char* type_hash = "RIHS01_6158894db5c1e6738766228704e9b198001f58cf62b02aef41e04ae6a4f50989";
     float frequency = 0;
     float sound_speed = 0;
     std::vector<float> tx_beamwidths;
@@ -28,7 +27,6 @@ struct PingInfo {
 
 struct SonarImageData {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/SonarImageData";
-    static constexpr const char* type_hash = "RIHS01_50fb28a428282c0c372a897399651836892fa13d8d56cb67bfeffac8803e58f7";
     static constexpr const char* constants =
         "uint32 DTYPE_UINT8=0\nuint32 DTYPE_INT8=1\nuint32 DTYPE_UINT16=2\nuint32 DTYPE_INT16=3\nuint32 "
         "DTYPE_UINT32=4\n"
@@ -52,7 +50,6 @@ struct SonarImageData {
 /** stamp is the time of transmission. */
 struct ProjectedSonarImage {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/ProjectedSonarImage";
-    static constexpr const char* type_hash = "RIHS01_e9d0b934ee8332c9f79e04c361de0793c165b2dee14f2c0d25c3227cd50d46f1";
     Header header;
     PingInfo ping_info;
     std::vector<Vector3> beam_directions;
@@ -72,7 +69,6 @@ struct ProjectedSonarImage {
 /** Sample i is at the range (i + sample0) * sound_speed / (2 * sample_rate). */
 struct RawSonarImage {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/RawSonarImage";
-    static constexpr const char* type_hash = "RIHS01_668954b8ea9854ec5c25c3ebdbdd9d53452169c7e1e365cad5baf0dc56ac9607";
     Header header;
     PingInfo ping_info;
     float sample_rate = 0;
@@ -99,7 +95,6 @@ struct RawSonarImage {
 
 struct DetectionFlag {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/DetectionFlag";
-    static constexpr const char* type_hash = "RIHS01_233c78cf2cc8722d8372348d0bf5c3e34839baa3010f884a73e1d2ae35b9005c";
     static constexpr const char* constants =
         "uint8 DETECT_OK=0\nuint8 DETECT_BAD_SONAR=1\nuint8 DETECT_BAD_FILTER=2\nuint8 DETECT_BAD_USER=4\n";
     static constexpr uint8_t ok = 0, bad_sonar = 1, bad_filter = 2;
@@ -111,7 +106,6 @@ struct DetectionFlag {
 
 struct SonarRanges {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/SonarRanges";
-    static constexpr const char* type_hash = "RIHS01_f440f02f1adc9535848643a389997562f2672f1a74214c17970e1cf2a832343c";
     Header header;
     PingInfo ping_info;
     std::vector<DetectionFlag> flags;
@@ -135,7 +129,6 @@ struct SonarRanges {
 /** stamp is the start of transmission. Angles are those of a sonar that looks down. */
 struct SonarDetections {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/SonarDetections";
-    static constexpr const char* type_hash = "RIHS01_2be9466b1dff9d71d6c8e21379e805805a5d315d899023961f183bc32182e60d";
     Header header;
     PingInfo ping_info;
     std::vector<DetectionFlag> flags;
@@ -161,7 +154,6 @@ struct SonarDetections {
 /** Axes: x forward, z along the instrument's look direction. */
 struct Dvl {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/Dvl";
-    static constexpr const char* type_hash = "RIHS01_77604ba1b113d1a39148d095ac2cb21540de83cff2bbc5443e06e25208afd421";
     static constexpr const char* constants =
         "uint8 DVL_MODE_BOTTOM=1\nuint8 DVL_MODE_WATER=2\nuint8 DVL_TYPE_PISTON=0\nuint8 DVL_TYPE_PHASED_ARRAY=1\n";
     static constexpr uint8_t bottom = 1, piston = 0;

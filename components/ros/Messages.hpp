@@ -11,11 +11,10 @@ namespace insonify::ros {
 // ROS 2 messages of builtin_interfaces, std_msgs, rosgraph_msgs, geometry_msgs, nav_msgs, tf2_msgs and sensor_msgs,
 // field for field.
 //
-// Each message is described once (see types/text/Describe.hpp); its CDR bytes and its schema text follow from the
-// description. `type_hash` is the RIHS01 hash of the type, as ROS 2 announces it to other nodes.
+// Each message is described once (see types/text/Describe.hpp); its CDR bytes, its schema text and the hash of its type
+// follow from the description (Cdr.hpp, Schema.hpp).
 struct Time {
     static constexpr const char* type_name = "builtin_interfaces/msg/Time";
-    static constexpr const char* type_hash = "RIHS01_b106235e25a4c5ed35098aa0a61a3ee9c9b18d197f398b0e4206cea9acf9c197";
     int32_t sec = 0;
     uint32_t nanosec = 0;
 
@@ -28,7 +27,6 @@ struct Time {
 
 struct Header {
     static constexpr const char* type_name = "std_msgs/msg/Header";
-    static constexpr const char* type_hash = "RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01";
     Time stamp;
     std::string frame_id;
 
@@ -41,7 +39,6 @@ struct Header {
 
 struct Clock {
     static constexpr const char* type_name = "rosgraph_msgs/msg/Clock";
-    static constexpr const char* type_hash = "RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564";
     Time clock;
 
     friend bool operator==(const Clock&, const Clock&) = default;
@@ -50,7 +47,6 @@ struct Clock {
 
 struct Vector3 {
     static constexpr const char* type_name = "geometry_msgs/msg/Vector3";
-    static constexpr const char* type_hash = "RIHS01_cc12fe83e4c02719f1ce8070bfd14aecd40f75a96696a67a2a1f37f7dbb0765d";
     double x = 0, y = 0, z = 0;
 
     friend bool operator==(const Vector3&, const Vector3&) = default;
@@ -63,7 +59,6 @@ struct Vector3 {
 
 struct Point {
     static constexpr const char* type_name = "geometry_msgs/msg/Point";
-    static constexpr const char* type_hash = "RIHS01_6963084842a9b04494d6b2941d11444708d892da2f4b09843b9c43f42a7f6881";
     double x = 0, y = 0, z = 0;
 
     friend bool operator==(const Point&, const Point&) = default;
@@ -76,7 +71,6 @@ struct Point {
 
 struct Quaternion {
     static constexpr const char* type_name = "geometry_msgs/msg/Quaternion";
-    static constexpr const char* type_hash = "RIHS01_8a765f66778c8ff7c8ab94afcc590a2ed5325a1d9a076ffff38fbce36f458684";
     double x = 0, y = 0, z = 0, w = 1;
 
     friend bool operator==(const Quaternion&, const Quaternion&) = default;
@@ -90,7 +84,6 @@ struct Quaternion {
 
 struct Pose {
     static constexpr const char* type_name = "geometry_msgs/msg/Pose";
-    static constexpr const char* type_hash = "RIHS01_d501954e9476cea2996984e812054b68026ae0bfae789d9a10b23daf35cc90fa";
     Point position;
     Quaternion orientation;
 
@@ -103,7 +96,6 @@ struct Pose {
 
 struct PoseStamped {
     static constexpr const char* type_name = "geometry_msgs/msg/PoseStamped";
-    static constexpr const char* type_hash = "RIHS01_10f3786d7d40fd2b54367835614bff85d4ad3b5dab62bf8bca0cc232d73b4cd8";
     Header header;
     Pose pose;
 
@@ -119,7 +111,6 @@ using Covariance = std::array<double, 36>;
 
 struct PoseWithCovariance {
     static constexpr const char* type_name = "geometry_msgs/msg/PoseWithCovariance";
-    static constexpr const char* type_hash = "RIHS01_9a7c0fd234b7f45c6098745ecccd773ca1085670e64107135397aee31c02e1bb";
     Pose pose;
     Covariance covariance{};
 
@@ -132,7 +123,6 @@ struct PoseWithCovariance {
 
 struct PoseWithCovarianceStamped {
     static constexpr const char* type_name = "geometry_msgs/msg/PoseWithCovarianceStamped";
-    static constexpr const char* type_hash = "RIHS01_26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e";
     Header header;
     PoseWithCovariance pose;
 
@@ -145,7 +135,6 @@ struct PoseWithCovarianceStamped {
 
 struct Twist {
     static constexpr const char* type_name = "geometry_msgs/msg/Twist";
-    static constexpr const char* type_hash = "RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a";
     Vector3 linear;
     Vector3 angular;
 
@@ -158,7 +147,6 @@ struct Twist {
 
 struct TwistWithCovariance {
     static constexpr const char* type_name = "geometry_msgs/msg/TwistWithCovariance";
-    static constexpr const char* type_hash = "RIHS01_49f574f033f095d8b6cd1beaca5ca7925e296e84af1716d16c89d38b059c8c18";
     Twist twist;
     Covariance covariance{};
 
@@ -172,7 +160,6 @@ struct TwistWithCovariance {
 /** The pose is given in header.frame_id, the twist in child_frame_id: the body. */
 struct Odometry {
     static constexpr const char* type_name = "nav_msgs/msg/Odometry";
-    static constexpr const char* type_hash = "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0";
     Header header;
     std::string child_frame_id;
     PoseWithCovariance pose;
@@ -189,7 +176,6 @@ struct Odometry {
 
 struct Transform {
     static constexpr const char* type_name = "geometry_msgs/msg/Transform";
-    static constexpr const char* type_hash = "RIHS01_beb83fbe698636351461f6f35d1abb20010c43d55374d81bd041f1ba2581fddc";
     Vector3 translation;
     Quaternion rotation;
 
@@ -202,7 +188,6 @@ struct Transform {
 
 struct TransformStamped {
     static constexpr const char* type_name = "geometry_msgs/msg/TransformStamped";
-    static constexpr const char* type_hash = "RIHS01_0a241f87d04668d94099cbb5ba11691d5ad32c2f29682e4eb5653424bd275206";
     Header header;
     std::string child_frame_id;
     Transform transform;
@@ -217,7 +202,6 @@ struct TransformStamped {
 
 struct TFMessage {
     static constexpr const char* type_name = "tf2_msgs/msg/TFMessage";
-    static constexpr const char* type_hash = "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087";
     std::vector<TransformStamped> transforms;
 
     friend bool operator==(const TFMessage&, const TFMessage&) = default;
@@ -226,7 +210,6 @@ struct TFMessage {
 
 struct Image {
     static constexpr const char* type_name = "sensor_msgs/msg/Image";
-    static constexpr const char* type_hash = "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47";
     Header header;
     uint32_t height = 0, width = 0;
     std::string encoding;
@@ -248,7 +231,6 @@ struct Image {
 
 struct LaserScan {
     static constexpr const char* type_name = "sensor_msgs/msg/LaserScan";
-    static constexpr const char* type_hash = "RIHS01_64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828";
     Header header;
     float angle_min = 0, angle_max = 0, angle_increment = 0;
     float time_increment = 0, scan_time = 0;
@@ -273,7 +255,6 @@ struct LaserScan {
 
 struct PointField {
     static constexpr const char* type_name = "sensor_msgs/msg/PointField";
-    static constexpr const char* type_hash = "RIHS01_5c6a4750728c2bcfbbf7037225b20b02d4429634732146b742dee1726637ef01";
     static constexpr const char* constants =
         "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\n"
         "uint8 FLOAT64=8\n";
@@ -294,7 +275,6 @@ struct PointField {
 
 struct PointCloud2 {
     static constexpr const char* type_name = "sensor_msgs/msg/PointCloud2";
-    static constexpr const char* type_hash = "RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5";
     Header header;
     uint32_t height = 1, width = 0;
     std::vector<PointField> fields;
@@ -320,7 +300,6 @@ struct PointCloud2 {
 /** As in ROS 2 Iron and later. Humble's lacks the variance and can read the rest. */
 struct Range {
     static constexpr const char* type_name = "sensor_msgs/msg/Range";
-    static constexpr const char* type_hash = "RIHS01_b42b62562e93cbfe9d42b82fe5994dfa3d63d7d5c90a317981703f7388adff3a";
     static constexpr const char* constants = "uint8 ULTRASOUND=0\nuint8 INFRARED=1\n";
     static constexpr uint8_t ultrasound = 0;
     Header header;
@@ -345,7 +324,6 @@ struct Range {
 /** Covariances by rows. A first element of -1 marks a value that is not measured; zeros are an unknown covariance. */
 struct Imu {
     static constexpr const char* type_name = "sensor_msgs/msg/Imu";
-    static constexpr const char* type_hash = "RIHS01_7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b";
     Header header;
     Quaternion orientation;
     std::array<double, 9> orientation_covariance{};
@@ -368,7 +346,6 @@ struct Imu {
 
 struct NavSatStatus {
     static constexpr const char* type_name = "sensor_msgs/msg/NavSatStatus";
-    static constexpr const char* type_hash = "RIHS01_d1ed3befa628e09571bd273b888ba1c1fd187c9a5e0006b385d7e5e9095a3204";
     static constexpr const char* constants =
         "int8 STATUS_UNKNOWN=-2\nint8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\n"
         "int8 STATUS_GBAS_FIX=2\nuint16 SERVICE_UNKNOWN=0\nuint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\n"
@@ -388,7 +365,6 @@ struct NavSatStatus {
 /** A place on the ellipsoid of WGS 84. */
 struct NavSatFix {
     static constexpr const char* type_name = "sensor_msgs/msg/NavSatFix";
-    static constexpr const char* type_hash = "RIHS01_62223ab3fe210a15976021da7afddc9e200dc9ec75231c1b6a557fc598a65404";
     static constexpr const char* constants =
         "uint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
         "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\n";
@@ -413,7 +389,6 @@ struct NavSatFix {
 
 struct FluidPressure {
     static constexpr const char* type_name = "sensor_msgs/msg/FluidPressure";
-    static constexpr const char* type_hash = "RIHS01_22dfb2b145a0bd5a31a1ac3882a1b32148b51d9b2f3bab250290d66f3595bc32";
     Header header;
     double fluid_pressure = 0;
     double variance = 0;

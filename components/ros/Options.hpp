@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,15 @@ enum class SensorFrame { ZForward, XForward };
 enum class BinScale { Linear, Decibel };
 
 using types::WorldFrame;
+
+/** Adds a diagnostic for the path where the name of a frame is invalid in tf2. */
+inline void checkFrame(const std::string& path, const std::string& name, types::Diagnostics& diagnostics) {
+    const auto isVisible = [](char c) { return static_cast<unsigned char>(c) > ' ' && c != 0x7f; };
+    if (name.empty() || name.front() == '/' || !std::ranges::all_of(name, isVisible))
+        diagnostics.push_back({path, "is \"" + name +
+                                         "\"; must be a name without spaces and without a leading slash, as sonar or "
+                                         "auv/sonar"});
+}
 
 /** Options for converting pings to messages. The defaults keep the bins without loss, in logs and on the wire alike. A
  *  level is 10 log10 of a bin [dB]. */

@@ -14,9 +14,9 @@
 #include <stdexcept>
 
 #include "components/console/Console.hpp"
-#include "components/console/Sha256.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/Sha256.hpp"
 
 namespace insonify::worlds {
 namespace {
@@ -156,8 +156,8 @@ std::string generatorDigest() {
     for (const auto& entry : fs::recursive_directory_iterator(packageFolder() / package_name))
         if (entry.path().extension() == ".py") files.push_back(entry.path());
     std::ranges::sort(files);
-    console::Sha256 hash;
-    for (const fs::path& file : files) hash.add(console::sha256OfFile(file) + "\n");
+    types::Sha256 hash;
+    for (const fs::path& file : files) hash.add(types::sha256OfFile(file) + "\n");
     return hash.hex();
 }
 

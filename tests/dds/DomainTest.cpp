@@ -10,11 +10,19 @@
 
 using namespace insonify;
 using namespace insonify::dds;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 namespace {
 
-class DomainTest : public Loopback {};
+/** Leaves the environment as it was. */
+struct DomainTest : Loopback {
+    ~DomainTest() override {
+        for (const char* name : {"ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "ROS_LOCALHOST_ONLY"})
+            unsetenv(name);
+    }
+};
 
 }  // namespace
 
@@ -25,8 +33,9 @@ TEST_F(DomainTest, UsesTheNamesOfRos) {
 }
 
 TEST_F(DomainTest, RefusesNamesThatRosRefuses) {
-    for (const char* good : {"/auv/sonar", "sonar", "/a_1/B2"}) EXPECT_EQ(diagnosticOfTopic(good), "") << good;
-    for (const char* bad : {"", "/", "//a", "/a/", "/1a", "/a b", "/a-b", "/a//b", "~/a"})
+    for (const char* good : {"/auv/sonar", "sonar", "/a_1/B2", "~/sonar"})
+        EXPECT_EQ(diagnosticOfTopic(good), "") << good;
+    for (const char* bad : {"", "/", "//a", "/a/", "/1a", "/a b", "/a-b", "/a//b", "~", "~a", "~/", "a/~/b"})
         EXPECT_THAT(diagnosticOfTopic(bad), HasSubstr("must be words of letters")) << bad;
     EXPECT_EQ(diagnosticOfTopic(std::string(252, 'a')), "");
     EXPECT_THAT(diagnosticOfTopic(std::string(253, 'a')), HasSubstr("has 253 characters; at most 252"));
@@ -60,6 +69,52 @@ TEST_F(DomainTest, ReportsWhyADomainCannotBeJoined) {
     EXPECT_THAT(text, HasSubstr("nothere0"));
     setenv("CYCLONEDDS_URI", "<CycloneDDS><Domain><Nonsense/></Domain></CycloneDDS>", 1);
     EXPECT_THAT(test::errorOf<types::ConfigError>([] { joinDomain(domainId({}), ""); }), HasSubstr("Nonsense"));
+}
+
+TEST_F(DomainTest, TheEnvironmentOfRosSetsTheDiscovery) {
+    const auto settings = [](const char* range, const char* peers, const char* localhost_only) {
+        setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range, 1);
+        setenv("ROS_STATIC_PEERS", peers, 1);
+        setenv("ROS_LOCALHOST_ONLY", localhost_only, 1);
+        return discoverySettings();
+    };
+    const std::string no_multicast = "<General><AllowMulticast>false</AllowMulticast></General>";
+    for (const char* cyclones : {"", "SUBNET", "SYSTEM_DEFAULT"})
+        for (const char* off : {"", "0"}) EXPECT_EQ(settings(cyclones, "", off), "");
+    EXPECT_EQ(settings("SYSTEM_DEFAULT", "10.0.0.2", ""), "") << "as rmw_cyclonedds_cpp, which passes over them";
+    const std::string peers = settings("", "10.0.0.2;;auv.local", "");
+    EXPECT_THAT(peers, HasSubstr("<Peers><Peer address=\"10.0.0.2\"/><Peer address=\"auv.local\"/></Peers>"));
+    EXPECT_THAT(peers, Not(HasSubstr("AllowMulticast")));
+    EXPECT_THAT(settings("LOCALHOST", "10.0.0.2", ""),
+                AllOf(HasSubstr(no_multicast), HasSubstr("<Peer address=\"localhost\"/><Peer address=\"10.0.0.2\"/>")));
+    EXPECT_THAT(settings("SUBNET", "10.0.0.2", "1"),
+                AllOf(HasSubstr(no_multicast), HasSubstr("<Peers><Peer address=\"localhost\"/></Peers>")));
+    EXPECT_THAT(settings("OFF", "10.0.0.2", ""),
+                AllOf(HasSubstr(no_multicast), HasSubstr("<Tag>ros_discovery_off_"), Not(HasSubstr("Peer address"))));
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { settings("LOCAL", "", ""); }),
+                HasSubstr("ROS_AUTOMATIC_DISCOVERY_RANGE is LOCAL; must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT"));
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { settings("", "\"/><x", ""); }),
+                HasSubstr("ROS_STATIC_PEERS is \"/><x"));
+}
+
+TEST_F(DomainTest, ANodeIsFoundOnItsMachineAndNowhereWithoutDiscovery) {
+    if (!Peer::available())
+        GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
+    setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
+    const std::string of_peer = discoverySettings();
+    const auto foundBy = [&](const std::string& peer_words, const char* range) {
+        unsetenv("CYCLONEDDS_URI");
+        setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range, 1);
+        Node node(domainId({}), "/auv/found", 16);
+        const Writer writer(node, "rt/topic", ros::PoseStamped::type_name, "", Quality{});
+        node.addWriter(writer.handle());
+        node.announce();
+        setenv("CYCLONEDDS_URI", of_peer.c_str(), 1);
+        Peer peer(peer_words);
+        return peer.result()["infos"].size();
+    };
+    EXPECT_EQ(foundBy("node 60 1", "LOCALHOST"), 1u);
+    EXPECT_EQ(foundBy("node 3 1", "OFF"), 0u);
 }
 
 TEST_F(DomainTest, LeavesAndJoinsADomainAgain) {

@@ -3,6 +3,7 @@
 
 #include "components/dds/Endpoints.hpp"
 #include "components/ros/Cdr.hpp"
+#include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 
@@ -58,7 +59,7 @@ TEST_F(PeerTest, ReceivesEveryPingOfAMegabyteAt40Hertz) {
 TEST_F(PeerTest, SendsImagesOfAMegabyteAt40HertzWithoutLoss) {
     using Image = ros::ProjectedSonarImage;
     Node node(domainId({}), "listener", 16);
-    Reader reader(node, ddsTopic("/peer/sonar"), Image::type_name, Image::type_hash, Quality{.depth = 200}, {});
+    Reader reader(node, ddsTopic("/peer/sonar"), Image::type_name, ros::typeHash<Image>(), Quality{.depth = 200}, {});
     Peer peer("image /peer/sonar 200 40 --greet");
     std::vector<double> latencies;  // [ms]
     Bytes bytes;

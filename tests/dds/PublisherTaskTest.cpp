@@ -5,6 +5,7 @@
 
 #include "components/dds/Endpoints.hpp"
 #include "components/dds/PublisherTask.hpp"
+#include "components/dds/TransformTask.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/ros/Stamps.hpp"
@@ -390,4 +391,37 @@ TEST_F(PublisherTaskTest, PublishesTheMountBetweenPrefixedFrames) {
     ASSERT_EQ(message.transforms.size(), 1u);
     EXPECT_EQ(message.transforms[0].header.frame_id, "auv1/base_link");
     EXPECT_EQ(message.transforms[0].child_frame_id, "auv1/sonar");
+}
+
+TEST(FrameNames, ThatTfRefusesAreRefusedWithTheirPlace) {
+    for (const std::string bad : {"/sonar", "my sonar", "", "a\tb", "sonar\n"}) {
+        PublisherConfig config;
+        config.topics = {topicOut("in", "/sonar", message_type<ros::Odometry>)};
+        config.frame_id = bad;
+        config.world_frame_id = bad;
+        config.tf_static.emplace().frame_id = bad;
+        config.topics[0].sonar.frame_id = bad;
+        config.topics[0].child_frame_id = bad;
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        std::vector<std::string> places;
+        for (const types::Diagnostic& each : diagnostics) {
+            places.push_back(each.path);
+            EXPECT_THAT(each.message, HasSubstr("is \"" + bad + "\"; must be a name without spaces"));
+        }
+        std::vector<std::string> wrong{"frame_id", "world_frame_id", "tf_static.frame_id", "topics[0].child_frame_id"};
+        if (!bad.empty()) wrong.push_back("topics[0].frame_id");  // empty: the task's
+        EXPECT_THAT(places, testing::UnorderedElementsAreArray(wrong)) << bad;
+        TransformConfig read;
+        read.frames.resize(1);
+        read.world_frame_id = read.frames[0].frame_id = bad;
+        diagnostics.clear();
+        read.check(diagnostics);
+        EXPECT_EQ(std::ranges::count(diagnostics, "frames[0].frame_id", &types::Diagnostic::path) +
+                      std::ranges::count(diagnostics, "world_frame_id", &types::Diagnostic::path),
+                  3);  // and the same frame twice
+    }
+    types::Diagnostics none;
+    for (const char* good : {"sonar", "auv/base_link", "sonar-1.front"}) ros::checkFrame("frame_id", good, none);
+    EXPECT_TRUE(none.empty());
 }

@@ -7,7 +7,9 @@
 #include "components/dds/Endpoints.hpp"
 #include "components/dds/Node.hpp"
 #include "components/ros/Cdr.hpp"
+#include "components/ros/NodeMessages.hpp"
 #include "components/ros/Samples.hpp"
+#include "components/ros/Schema.hpp"
 #include "tests/dds/Loopback.hpp"
 #include "tests/support/Paths.hpp"
 
@@ -296,41 +298,57 @@ TEST_F(Ros2RunTest, ParametersAndRvizOfTheBringupFitTheExample) {
     }
 }
 
-TEST_F(Ros2RunTest, ANodeOfCycloneListsGetsSetsAndDescribesParameters) {
-    if (!Peer::available())
-        GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
-    writeFile(
-        folder / "x.yml",
-        "schedule: realtime\nnamespace: auv\ntasks:\n"
-        "  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {file: " +
-            test::sourceFile("deploy/scenes/harbour_pass.csv") + "}}\n" +
-            "  scene: {type: scene::SceneTask, properties: {pose_timeout: 60, file: " +
-            test::sourceFile("deploy/scenes/harbour.glb") + "}}\n" +
-            "  sonar: {type: sonar::SonarTask, properties: {range: 20, beam_count: 16, bin_count: 50, "
-            "quality: {rows: 16}}}\n"
-            "  ros: {type: dds::PublisherTask, properties: {parameter_services: true, topics: [{port: ping, topic: "
-            "sonar, type: sensor_msgs/PointCloud2}]}}\n"
-            "connections:\n"
-            "  - {from: vehicle.pose, to: scene.pose}\n"
-            "  - {from: scene.snapshot, to: sonar.snapshot}\n"
-            "  - {from: sonar.ping, to: ros.ping}\n");
-    const Process run(insonifyWords({"run", "x.yml", "--out", "out"}), folder.path());
-    {  // an invalid request gets no response and stops nothing
-        Node node(domainId({}), "stranger", 16);
-        Writer writer(node, "rq/auv/ros/set_parametersRequest", "rcl_interfaces/srv/SetParameters_Request", "", {});
-        EXPECT_TRUE(becomesTrue([&] { return writer.hasReaders(); }));
-        std::mt19937 random(1);
-        for (size_t size = 4; size < 200; ++size) {
-            Bytes bytes{0, 1, 0, 0};
-            while (bytes.size() < size) bytes.push_back(static_cast<char>(random() % 4 == 0 ? random() % 256 : 0));
-            writer.write(bytes);
-        }
+namespace {
+
+/** A sonar of the harbour, and a publisher with more properties. */
+std::string servingNode(const std::string& properties) {
+    return "schedule: realtime\nnamespace: auv\ntasks:\n"
+           "  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {loop: true, file: " +
+           test::sourceFile("deploy/scenes/harbour_pass.csv") + "}}\n" +
+           "  scene: {type: scene::SceneTask, properties: {pose_timeout: 60, file: " +
+           test::sourceFile("deploy/scenes/harbour.glb") + "}}\n" +
+           "  sonar: {type: sonar::SonarTask, properties: {range: 20, range_min: 0, beam_count: 16, bin_count: 50, "
+           "quality: {rows: 16}}}\n"
+           "  ros: {type: dds::PublisherTask, properties: {" +
+           properties +
+           ", topics: [{port: ping, topic: ~/sonar, type: sensor_msgs/PointCloud2}]}}\n"
+           "connections:\n"
+           "  - {from: vehicle.pose, to: scene.pose}\n"
+           "  - {from: scene.snapshot, to: sonar.snapshot}\n"
+           "  - {from: sonar.ping, to: ros.ping}\n";
+}
+
+/** Sends requests of random bytes to a service. */
+void sendNonsense(const std::string& service, const std::string& type) {
+    Node node(domainId({}), "stranger", 16);
+    Writer writer(node, "rq/auv/ros/" + service + "Request", type + "_Request", "", {});
+    EXPECT_TRUE(becomesTrue([&] { return writer.hasReaders(); })) << service;
+    std::mt19937 random(1);
+    for (size_t size = 4; size < 200; ++size) {
+        Bytes bytes{0, 1, 0, 0};
+        while (bytes.size() < size) bytes.push_back(static_cast<char>(random() % 4 == 0 ? random() % 256 : 0));
+        writer.write(bytes);
     }
-    Peer peer("parameters /auv/ros sonar.range 15");
-    const json found = peer.result();
-    run.signal(SIGINT);
-    EXPECT_THAT(run.wait(), succeeds());
-    ASSERT_FALSE(found.is_null());
+}
+
+/** Expects that both ends of a service announce their type, its hash, and the same identity. */
+template <class Request, class Response>
+void expectAnnounced(const json& found, const ros::Service<Request, Response>& service) {
+    const std::string name = std::string("/auv/ros/") + service.name;
+    const json &asked = found["rq" + name + "Request"], &said = found["rr" + name + "Reply"];
+    ASSERT_TRUE(asked.is_array() && said.is_array()) << name << found;
+    EXPECT_EQ(asked[0], ddsType(Request::type_name));
+    EXPECT_EQ(said[0], ddsType(Response::type_name));
+    const auto id = [](const json& end) {
+        const std::string text = end[1];
+        EXPECT_TRUE(text.starts_with("serviceid=")) << text;
+        return text.substr(0, text.find(';') + 1);
+    };
+    EXPECT_EQ(asked[1], id(asked) + "typehash=" + ros::typeHash<Request>() + ";");
+    EXPECT_EQ(said[1], id(asked) + "typehash=" + ros::typeHash<Response>() + ";");
+}
+
+void expectDescribed(const json& found) {
     EXPECT_EQ(found["list"][1], json({"sonar"}));
     for (const std::string name : found["list"][0]) EXPECT_TRUE(name.starts_with("sonar.")) << name;
     EXPECT_THAT(found["list"][0].get<std::vector<std::string>>(),
@@ -343,11 +361,147 @@ TEST_F(Ros2RunTest, ANodeOfCycloneListsGetsSetsAndDescribesParameters) {
     EXPECT_FALSE(range["read_only"]);
     EXPECT_LT(range["floating_point_range"][0]["from_value"], range["floating_point_range"][0]["to_value"]);
     EXPECT_EQ(found["descriptors"][0][1]["type"], 0);
-    EXPECT_EQ(found["before"][0][0]["double_value"], 20);
-    EXPECT_EQ(found["before"][0][1]["type"], 0);
+    EXPECT_EQ(found["descriptors"][0][2]["type"], 1);
+    EXPECT_TRUE(found["descriptors"][0][2]["read_only"]);
+}
+
+}  // namespace
+
+TEST_F(Ros2RunTest, AClientThatWaitsForAllSixServicesHasTheParameters) {
+    if (!Peer::available())
+        GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
+    writeFile(folder / "x.yml", servingNode("parameter_services: true"));
+    const Process run(insonifyWords({"run", "x.yml", "--out", "out"}), folder.path());
+    for (const auto& [service, type] :
+         {std::pair("set_parameters", "rcl_interfaces/srv/SetParameters"),
+          std::pair("set_parameters_atomically", "rcl_interfaces/srv/SetParametersAtomically")})
+        sendNonsense(service, type);  // gets no response and stops nothing
+    Peer peer("parameters /auv/ros sonar.range 15 sonar.range_min vehicle.file");
+    const json found = peer.result();
+    run.signal(SIGINT);
+    EXPECT_THAT(run.wait(), succeeds());
+    ASSERT_FALSE(found.is_null());
+    expectDescribed(found);
+    EXPECT_EQ(found["before"][0]["double_value"], 20);
+    EXPECT_EQ(found["before"][3]["type"], 0);
     EXPECT_EQ(found["results"][0][0], json({{"successful", true}, {"reason", ""}}));
     EXPECT_THAT(found["results"][0][1]["reason"].get<std::string>(), HasSubstr("must be a finite number"));
     EXPECT_EQ(found["results"][0][2],
               json({{"successful", false}, {"reason", "nobody.at_home: is not a property of any task"}}));
-    EXPECT_EQ(found["after"][0][0]["double_value"], 15);
+    EXPECT_EQ(found["after"][0]["double_value"], 15);
+    const char* const reasons[] = {"tasks.sonar.properties.bin_count: ",
+                                   "nobody.at_home: is not a property of any task",
+                                   "vehicle is Running; it can when it is stopped",
+                                   "sonar.range_min: a parameter has no type 99",
+                                   "sonar.range: is given twice",
+                                   "use_sim_time: is false, by the deployment's schedule and tasks"};
+    ASSERT_EQ(found["refused"].size(), std::size(reasons));
+    for (size_t i = 0; i < std::size(reasons); ++i) {
+        EXPECT_FALSE(found["refused"][i]["successful"]) << reasons[i];
+        EXPECT_THAT(found["refused"][i]["reason"].get<std::string>(), HasSubstr(reasons[i]));
+    }
+    EXPECT_EQ(found["still"], found["after"]) << "one bad, none set";
+    EXPECT_EQ(found["together"], json({{"successful", true}, {"reason", ""}}));
+    EXPECT_EQ(found["finally"][0]["double_value"], 16);
+    EXPECT_EQ(found["finally"][1]["double_value"], 0.5);
+    ASSERT_EQ(found["events"].size(), 1u) << found["events"];
+    const json& event = found["events"][0];
+    EXPECT_EQ(event["node"], "/auv/ros");
+    EXPECT_EQ(event["changed_parameters"].size(), 2u);
+    EXPECT_EQ(event["changed_parameters"][0]["name"], "sonar.range");
+    EXPECT_EQ(event["changed_parameters"][0]["value"]["double_value"], 16);
+    EXPECT_EQ(event["new_parameters"].size() + event["deleted_parameters"].size(), 0u);
+    EXPECT_GT(found["loaded"][0], 20);
+    EXPECT_EQ(found["loaded"][1], json::array()) << "what was dumped can be loaded";
+    std::apply([&](const auto&... service) { (expectAnnounced(found["endpoints"], service), ...); },
+               std::tuple(ros::list_parameters, ros::get_parameters, ros::get_parameter_types, ros::describe_parameters,
+                          ros::set_parameters, ros::set_parameters_atomically));
+}
+
+TEST_F(Ros2RunTest, ALifecycleNodeMakesTheTransitionsOfItsTaskAndRefusesOthers) {
+    if (!Peer::available())
+        GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
+    writeFile(folder / "x.yml", servingNode("lifecycle: sonar, rosout: true"));
+    const Process run(insonifyWords({"run", "x.yml", "--out", "out"}), folder.path());
+    sendNonsense("change_state", "lifecycle_msgs/srv/ChangeState");
+    Peer peer("lifecycle /auv/ros");
+    const json found = peer.result();
+    run.signal(SIGINT);
+    EXPECT_THAT(run.wait(), succeeds());
+    ASSERT_FALSE(found.is_null());
+    EXPECT_EQ(found["states"].size(), 11u);
+    EXPECT_EQ(found["states"][3], json({{"id", 3}, {"label", "active"}}));
+    EXPECT_EQ(found["graph"].size(), 25u);
+    const json in_active{"deactivate", "shutdown"}, in_inactive{"cleanup", "activate", "shutdown"},
+        in_unconfigured{"configure", "shutdown"}, none = json::array();
+    const json expected = {{nullptr, "", nullptr, "active", in_active},
+                           {1, "", false, "active", in_active},
+                           {0, "deactivate", true, "inactive", in_inactive},
+                           {4, "", false, "inactive", in_inactive},
+                           {99, "", false, "inactive", in_inactive},
+                           {0, "no such", false, "inactive", in_inactive},
+                           {2, "", true, "unconfigured", in_unconfigured},
+                           {3, "", false, "unconfigured", in_unconfigured},
+                           {1, "activate", false, "unconfigured", in_unconfigured},
+                           {1, "", true, "inactive", in_inactive},
+                           {3, "", true, "active", in_active},
+                           {7, "", true, "finalized", none},
+                           {1, "", false, "finalized", none}};
+    EXPECT_EQ(found["steps"], expected);
+    std::vector<std::string> goals;
+    for (const json& event : found["events"]) goals.push_back(event["goal_state"]["label"]);
+    EXPECT_THAT(goals, testing::ElementsAre("deactivating", "inactive", "cleaningup", "unconfigured", "configuring",
+                                            "inactive", "activating", "active", "shuttingdown", "finalized"));
+    EXPECT_EQ(found["events"][0]["transition"], json({{"id", 4}, {"label", "deactivate"}}));
+    EXPECT_EQ(found["events"][0]["start_state"]["label"], "active");
+    EXPECT_GT(found["events"][0]["timestamp"], 1'600'000'000'000'000'000);
+    std::apply([&](const auto&... service) { (expectAnnounced(found["endpoints"], service), ...); },
+               std::tuple(ros::change_state, ros::get_state, ros::get_available_states, ros::get_available_transitions,
+                          ros::get_transition_graph));
+}
+
+TEST_F(Ros2RunTest, TheLifecycleIsThatOfAnotherTask) {
+    for (const char* name : {"sonr", "ros", "\"\""}) {
+        writeFile(folder / "x.yml", servingNode(std::string("lifecycle: ") + name));
+        EXPECT_THAT(callInsonify(folder, {"run", "x.yml", "--out", "out"}),
+                    isRefused(HasSubstr("tasks.ros.properties.lifecycle: is ")));
+    }
+}
+
+TEST_F(Ros2RunTest, DiagnosticsAndTheLogReportEachTask) {
+    if (!Peer::available())
+        GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
+    writeFile(folder / "x.yml", servingNode("diagnostics: true, rosout: true, parameter_services: true"));
+    const Process run(insonifyWords({"run", "x.yml", "--out", "out"}), folder.path());
+    Peer peer("reports");
+    const json found = peer.result();
+    run.signal(SIGINT);
+    EXPECT_THAT(run.wait(), succeeds());
+    ASSERT_FALSE(found.is_null());
+    ASSERT_GE(found["rt/diagnostics"].size(), 4u);
+    const json& status = found["rt/diagnostics"].back()["status"];
+    ASSERT_EQ(status.size(), 4u);
+    const auto valueOf = [&](const json& task, const std::string& key) {
+        for (const json& value : task["values"])
+            if (value["key"] == key) return std::stod(value["value"].get<std::string>());
+        ADD_FAILURE() << key << task;
+        return 0.0;
+    };
+    EXPECT_EQ(status[0]["name"], "auv/ros: vehicle");
+    EXPECT_EQ(status[0]["hardware_id"], "pose::TrajectoryTask");
+    EXPECT_NEAR(valueOf(status[0], "pose rate [1/s]"), 10, 9);  // of a busy machine
+    EXPECT_EQ(status[2]["name"], "auv/ros: sonar");
+    EXPECT_GT(valueOf(status[2], "ping rate [1/s]"), 0);
+    EXPECT_GT(valueOf(status[2], "last cycle [ms]"), 0);
+    EXPECT_GE(valueOf(status[2], "missed periods"), 0);
+    EXPECT_EQ(status[3]["message"], "Running") << status[3];
+    EXPECT_EQ(status[3]["level"], 0);
+    std::string texts;
+    for (const json& line : found["rt/rosout"]) {
+        EXPECT_THAT(line["name"].get<std::string>(), testing::StartsWith("auv.ros"));
+        EXPECT_GE(line["level"], 20);
+        texts += line["name"].get<std::string>() + " " + line["msg"].get<std::string>() + "\n";
+    }
+    EXPECT_THAT(texts, HasSubstr("auv.ros.sonar sonar: is Running")) << "also for those that come later";
+    EXPECT_THAT(texts, HasSubstr("auv.ros.sonar sonar: range reached is ")) << "a notice of the start";
 }

@@ -105,6 +105,22 @@ Parameter = message("rcl_interfaces", "Parameter", name=str, value=ParameterValu
 SetParametersResult = message("rcl_interfaces", "SetParametersResult", successful=bool, reason=str)
 FloatingPointRange = message("rcl_interfaces", "FloatingPointRange", from_value=float64, to_value=float64, step=float64)
 IntegerRange = message("rcl_interfaces", "IntegerRange", from_value=int64, to_value=int64, step=uint64)
+ParameterEvent = message(
+    "rcl_interfaces", "ParameterEvent", stamp=Time, node=str, new_parameters=sequence[Parameter],
+    changed_parameters=sequence[Parameter], deleted_parameters=sequence[Parameter])
+Log = message(
+    "rcl_interfaces", "Log", stamp=Time, level=uint8, name=str, msg=str, file=str, function=str, line=uint32)
+State = message("lifecycle_msgs", "State", id=uint8, label=str)
+Transition = message("lifecycle_msgs", "Transition", id=uint8, label=str)
+TransitionDescription = message(
+    "lifecycle_msgs", "TransitionDescription", transition=Transition, start_state=State, goal_state=State)
+TransitionEvent = message(
+    "lifecycle_msgs", "TransitionEvent", timestamp=uint64, transition=Transition, start_state=State, goal_state=State)
+KeyValue = message("diagnostic_msgs", "KeyValue", key=str, value=str)
+DiagnosticStatus = message(
+    "diagnostic_msgs", "DiagnosticStatus", level=uint8, name=str, message=str, hardware_id=str,
+    values=sequence[KeyValue])
+DiagnosticArray = message("diagnostic_msgs", "DiagnosticArray", header=Header, status=sequence[DiagnosticStatus])
 ParameterDescriptor = message(
     "rcl_interfaces", "ParameterDescriptor", name=str, type=uint8, description=str, additional_constraints=str,
     read_only=bool, dynamic_typing=bool, floating_point_range=sequence[FloatingPointRange],

@@ -4,7 +4,9 @@
     peer.py node SECONDS WRITERS                prints nodes, and writers with types and hashes, once a node has WRITERS
     peer.py image TOPIC COUNT HERTZ             sends images of 1 MB, 256 beams x 1000 ranges of float32
     peer.py transforms SPEED [ODOM]             sends transforms of base_link without end; ODOM 0 omits a link
-    peer.py parameters NODE NAME VALUE          calls the parameter services of a node, sets a double
+    peer.py parameters NODE NAME VALUE OTHER LOCKED   asks what `ros2 param` asks of a node
+    peer.py lifecycle NODE                      asks what `ros2 lifecycle` asks of a node
+    peer.py reports                             keeps what nodes send to /diagnostics and /rosout
     peer.py odometry TOPIC COUNT HERTZ [FLAW]  sends poses along x; FLAW nan, back, zero or bytes spoils every second
 
 A listener prints `met` at the first image without a stamp, and does not count these. With --greet, a sender sends such
@@ -20,7 +22,7 @@ import time
 import types
 
 import messages
-from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
+from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
 from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
@@ -35,6 +37,7 @@ signal.signal(signal.SIGUSR1, lambda *_: BEGUN.append(True))
 RELIABLE = [Policy.Reliability.Reliable(duration(seconds=60)), Policy.DataRepresentation(use_cdrv0_representation=True)]
 DEEP = Qos(*RELIABLE, Policy.Durability.Volatile, Policy.History.KeepLast(200))
 LATCHED = Qos(*RELIABLE, Policy.Durability.TransientLocal, Policy.History.KeepLast(1))
+LATCHED_LOG = Qos(*RELIABLE, Policy.Durability.TransientLocal, Policy.History.KeepLast(1000))
 
 
 def ready():
@@ -215,45 +218,145 @@ def struct_of(typename, fields):
     return dataclasses.dataclass(types.new_class("Struct", (IdlStruct,), {"typename": typename}, lambda space: space.update(body)))
 
 
-def ask(participant, node, service, kind, request, response, *words):
-    """Calls a service as rmw_cyclonedds_cpp does: request and response begin with the client's identity and a number."""
-    who_asks = [("who", uint64), ("number", int64)]
-    asked = struct_of(f"rcl_interfaces::srv::dds_::{kind}_Request_", who_asks + request)
-    said = struct_of(f"rcl_interfaces::srv::dds_::{kind}_Response_", who_asks + response)
-    topics = [Topic(participant, f"rq{node}/{service}Request", asked), Topic(participant, f"rr{node}/{service}Reply", said)]
-    writer, reader = DataWriter(participant, topics[0], qos=DEEP), DataReader(participant, topics[1], qos=DEEP)
-    while not writer.get_matched_subscriptions() or not reader.get_matched_publications():
-        time.sleep(0.01)
-    who, number = 0x0123456789ABCDEF, 40 + len(service)
-    time.sleep(0.2)  # it must discover our reader as well
-    writer.write(asked(who, number, *words))
-    while True:
-        for answer in reader.take(N=10):
-            if isinstance(answer, said) and (answer.who, answer.number) == (who, number):
-                return [plain(getattr(answer, field.name)) for field in dataclasses.fields(answer)[2:]]
-        time.sleep(0.01)
+class Client:
+    """A client of a service as rmw_cyclonedds_cpp makes it: request and response begin with its identity and a number."""
+
+    def __init__(self, participant, node, service, kind, request, response, package="rcl_interfaces"):
+        who_asks = [("who", uint64), ("number", int64)]
+        self.asked = struct_of(f"{package}::srv::dds_::{kind}_Request_", who_asks + request)
+        self.said = struct_of(f"{package}::srv::dds_::{kind}_Response_", who_asks + response)
+        topics = [Topic(participant, f"rq{node}/{service}Request", self.asked),
+                  Topic(participant, f"rr{node}/{service}Reply", self.said)]
+        self.writer, self.reader = DataWriter(participant, topics[0], qos=DEEP), DataReader(participant, topics[1], qos=DEEP)
+        self.number = 40 + len(service)
+
+    def is_there(self):
+        return bool(self.writer.get_matched_subscriptions() and self.reader.get_matched_publications())
+
+    def call(self, *words, as_is=False):
+        who, self.number = 0x0123456789ABCDEF, self.number + 1
+        self.writer.write(self.asked(who, self.number, *words))
+        while True:
+            for answer in self.reader.take(N=10):
+                if isinstance(answer, self.said) and (answer.who, answer.number) == (who, self.number):
+                    return [(lambda value: value if as_is else plain(value))(getattr(answer, field.name))
+                            for field in dataclasses.fields(answer)[2:]]
+            time.sleep(0.01)
 
 
-def parameters(node, name, value):
+def clients_of(participant, node, services, package):
+    """Waits for all services, as the commands of ros2 do, at most a minute; returns the clients by their names."""
+    clients = {name: Client(participant, node, name, *about, package) for name, about in services.items()}
+    while not all(client.is_there() for client in clients.values()):
+        if time.time() > START + 60:
+            missing = [name for name, client in clients.items() if not client.is_there()]
+            sys.exit(f"timed out waiting for {missing}")
+        time.sleep(0.01)
+    time.sleep(0.2)  # it must discover our readers as well
+    return clients
+
+
+def collected(reader, kind, span=0.6):
+    """Returns what a reader receives meanwhile."""
+    time.sleep(span)
+    return [plain(sample) for sample in reader.take(N=200) if isinstance(sample, kind)]
+
+
+def endpoints(participant, node):
+    """Returns the user data of a node's services, by the topic."""
+    found, end = {}, time.time() + 1
+    readers = [BuiltinDataReader(participant, kind) for kind in (BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription)]
+    while time.time() < end:
+        for each in (sample for reader in readers for sample in reader.take(N=500)):
+            data = [p for p in each.qos if isinstance(p, Policy.Userdata)]
+            text = data[0].data.decode() if data else ""
+            if each.topic_name.startswith((f"rq{node}/", f"rr{node}/")) and text:  # not our own, which say nothing
+                found[each.topic_name] = [each.type_name, text]
+        time.sleep(0.05)
+    return found
+
+
+TEXTS, VALUE = sequence[str], messages.ParameterValue
+PARAMETERS = {
+    "list_parameters": ("ListParameters", [("prefixes", TEXTS), ("depth", uint64)], [("names", TEXTS), ("tasks", TEXTS)]),
+    "get_parameters": ("GetParameters", [("names", TEXTS)], [("values", sequence[VALUE])]),
+    "get_parameter_types": ("GetParameterTypes", [("names", TEXTS)], [("types", sequence[uint8])]),
+    "describe_parameters": ("DescribeParameters", [("names", TEXTS)], [("all", sequence[messages.ParameterDescriptor])]),
+    "set_parameters": ("SetParameters", [("all", sequence[messages.Parameter])],
+                       [("results", sequence[messages.SetParametersResult])]),
+    "set_parameters_atomically": ("SetParametersAtomically", [("all", sequence[messages.Parameter])],
+                                  [("result", messages.SetParametersResult)])}
+
+
+def parameters(node, name, value, other, locked):
+    """What `ros2 param` asks. `name` and `other` are doubles of one task, `locked` a text that cannot be set now."""
     participant = DomainParticipant(DOMAIN)
+    events = DataReader(participant, Topic(participant, "rt/parameter_events", messages.ParameterEvent), qos=DEEP)
     ready()
-    texts, one = sequence[str], messages.ParameterValue
-    task = name.split(".")[0]
-    get = lambda: ask(participant, node, "get_parameters", "GetParameters", [("names", texts)], [("values", sequence[one])],
-                      [name, "nobody.at_home"])
-    found = {"list": ask(participant, node, "list_parameters", "ListParameters", [("prefixes", texts), ("depth", uint64)],
-                         [("names", texts), ("tasks", texts)], [task], 0)}
-    found["types"] = ask(participant, node, "get_parameter_types", "GetParameterTypes", [("names", texts)],
-                         [("types", sequence[uint8])], [name])
-    found["descriptors"] = ask(participant, node, "describe_parameters", "DescribeParameters", [("names", texts)],
-                               [("descriptors", sequence[messages.ParameterDescriptor])], [name, "nobody.at_home"])
-    found["before"] = get()
-    wanted = [messages.Parameter(name, one(type=3, double_value=float(value))),
-              messages.Parameter(name, one(type=4, string_value="far")),
-              messages.Parameter("nobody.at_home", one(type=1))]
-    found["results"] = ask(participant, node, "set_parameters", "SetParameters", [("all", sequence[messages.Parameter])],
-                           [("results", sequence[messages.SetParametersResult])], wanted)
-    found["after"] = get()
+    service = clients_of(participant, node, PARAMETERS, "rcl_interfaces")
+    is_set = lambda which, number: messages.Parameter(which, VALUE(type=3, double_value=float(number)))
+    get = lambda: service["get_parameters"].call([name, other, locked, "nobody.at_home"])[0]
+    found = {"list": service["list_parameters"].call([name.split(".")[0]], 0),
+             "types": service["get_parameter_types"].call([name]),
+             "descriptors": service["describe_parameters"].call([name, "nobody.at_home", "use_sim_time"]), "before": get()}
+    text, nobody = (messages.Parameter(each, VALUE(type=4, string_value="far")) for each in (name, "nobody.at_home"))
+    found["results"] = service["set_parameters"].call([is_set(name, value), text, nobody])
+    found["after"], found["endpoints"] = get(), endpoints(participant, node)
+    atomically = lambda *all: service["set_parameters_atomically"].call(list(all))[0]
+    changed = is_set(name, float(value) + 1)
+    hidden = messages.Parameter(locked, VALUE(type=4, string_value="none.csv"))
+    found["refused"] = [atomically(changed, bad, is_set(other, 0.5))
+                        for bad in (messages.Parameter("sonar.bin_count", VALUE(type=4, string_value="far")), nobody, hidden, messages.Parameter(other, VALUE(type=99)), changed,
+                                    messages.Parameter("use_sim_time", VALUE(type=1, bool_value=True)))]
+    found["still"] = get()
+    collected(events, messages.ParameterEvent)
+    found["together"], found["finally"] = atomically(changed, is_set(other, 0.5)), get()
+    found["events"] = collected(events, messages.ParameterEvent)
+    names = service["list_parameters"].call([], 0, as_is=True)[0]
+    dumped = zip(names, service["get_parameters"].call(names, as_is=True)[0])
+    loaded = service["set_parameters"].call([messages.Parameter(*each) for each in dumped], as_is=True)[0]
+    found["loaded"] = [len(names), [result.reason for result in loaded if not result.successful]]
+    return found
+
+
+def lifecycle(node):
+    """What `ros2 lifecycle` asks, and a manager of nodes."""
+    nothing, described = [("structure_needs_at_least_one_member", uint8)], sequence[messages.TransitionDescription]
+    participant = DomainParticipant(DOMAIN)
+    events = DataReader(participant, Topic(participant, f"rt{node}/transition_event", messages.TransitionEvent), qos=DEEP)
+    ready()
+    service = clients_of(participant, node, {
+        "change_state": ("ChangeState", [("transition", messages.Transition)], [("success", bool)]),
+        "get_state": ("GetState", nothing, [("state", messages.State)]),
+        "get_available_states": ("GetAvailableStates", nothing, [("states", sequence[messages.State])]),
+        "get_available_transitions": ("GetAvailableTransitions", nothing, [("all", described)]),
+        "get_transition_graph": ("GetAvailableTransitions", nothing, [("all", described)])}, "lifecycle_msgs")
+    found = {"states": service["get_available_states"].call(0)[0], "graph": service["get_transition_graph"].call(0)[0],
+             "steps": [], "endpoints": endpoints(participant, node)}
+
+    def step(number, label=""):
+        done = service["change_state"].call(messages.Transition(number, label))[0] if number is not None else None
+        found["steps"].append([number, label, done, service["get_state"].call(0)[0]["label"],
+                               [each["transition"]["label"] for each in service["get_available_transitions"].call(0)[0]]])
+
+    for each in ((None,), (1,), (0, "deactivate"), (4,), (99,), (0, "no such"), (2,), (3,), (1, "activate"), (1,), (3,), (7,),
+                 (1,)):
+        step(*each)
+    found["events"] = collected(events, messages.TransitionEvent)
+    return found
+
+
+def reports():
+    """Receives reports until there are two of diagnostics, and a second more."""
+    participant = DomainParticipant(DOMAIN)
+    kinds = {"rt/diagnostics": messages.DiagnosticArray, "rt/rosout": messages.Log}
+    readers = {name: DataReader(participant, Topic(participant, name, kind), qos=DEEP if "diag" in name else LATCHED_LOG)
+               for name, kind in kinds.items()}
+    ready()
+    found = {name: [] for name in kinds}
+    while len(found["rt/diagnostics"]) < 4 and time.time() < START + 60:
+        for name, reader in readers.items():
+            found[name] += collected(reader, kinds[name], 0.1)
     return found
 
 
@@ -261,4 +364,5 @@ if __name__ == "__main__":
     DOMAIN = int(__import__("os").environ.get("ROS_DOMAIN_ID", "0"))
     work, *words = (word for word in sys.argv[1:] if word != "--greet")
     print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry,
-                      "transforms": transforms, "parameters": parameters}[work](*words)))
+                      "transforms": transforms, "parameters": parameters, "lifecycle": lifecycle,
+                      "reports": reports}[work](*words)))

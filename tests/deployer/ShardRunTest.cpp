@@ -4,12 +4,12 @@
 #include <iterator>
 #include <map>
 
-#include "components/console/Sha256.hpp"
 #include "components/deployer/ShardFolder.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Folder.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/Sha256.hpp"
 
 using namespace insonify::deployer;
 using insonify::console::Json;
@@ -221,7 +221,7 @@ TEST(ShardRunTest, TheManifestHasEveryFileWithItsHashAndNothingOfTheMachine) {
     for (const json& file : manifest["files"]) {
         const std::string& bytes = files.at(file["file"]);
         EXPECT_EQ(file["bytes"], bytes.size());
-        EXPECT_EQ(file["sha256"], insonify::console::sha256(bytes));
+        EXPECT_EQ(file["sha256"], insonify::types::sha256(bytes));
     }
     EXPECT_EQ(manifest.dump().find(folder.path().string()), std::string::npos);
 }

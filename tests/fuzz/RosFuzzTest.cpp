@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "components/ros/Cdr.hpp"
+#include "components/ros/NodeMessages.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Samples.hpp"
@@ -12,20 +13,31 @@
 namespace insonify::fuzz {
 namespace {
 
+/** Expects that what is read can be written, and read again. */
+void writeAgain(const auto& message) {
+    std::vector<char> again;
+    ros::encode(message, again);
+    std::remove_cvref_t<decltype(message)> second;
+    ros::decode(std::span<const char>(again), second);
+}
+
 template <class Message, class Sample, class... Layout>
 void readMessage(const Input& input, const Layout&... layout) try {
     Message message;
     ros::decode(input.span(), message);
     Sample sample;
     ros::convert(message, layout..., sample);
-    std::vector<char> again(input.span().begin(), input.span().end());
-    again.clear();
-    ros::encode(message, again);
-    Message second;
-    ros::decode(std::span<const char>(again), second);
+    writeAgain(message);
 } catch (const ros::CdrError& error) {
     expectOurWords(error.what());
 } catch (const std::invalid_argument& error) {
+    expectOurWords(error.what());
+}
+
+void readRequest(const Input& input, auto request) try {
+    ros::decode(input.span(), request);
+    writeAgain(request);
+} catch (const ros::CdrError& error) {
     expectOurWords(error.what());
 }
 
@@ -50,6 +62,7 @@ void follow(const Input& input) try {
 
 void readMessages(const Input& input) {
     follow(input);
+    ros::forEachNodeMessage([&](const auto& request) { readRequest(input, request); });
     readMessage<ros::Odometry, types::Pose>(input, ros::WorldFrame::Enu);
     readMessage<ros::PoseStamped, types::Pose>(input, ros::WorldFrame::Ned);
     readMessage<ros::SonarDetections, types::SonarDetections>(input);

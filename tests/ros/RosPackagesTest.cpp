@@ -125,7 +125,7 @@ TEST(RosPackagesTest, RosbagsReadsTheFilesWithTheHashesOfTheTopics) {
                 const std::string text = content(test::sourceFile("ros2/insonify_msgs/msg/" + name + ".msg"));
                 std::ofstream(folder / (name + ".msg")) << text << schemaOf<T>().substr(definitionOf<T>().size());
                 std::ofstream(folder / (name + ".cdr")).write(bytes.data(), static_cast<int64_t>(bytes.size()));
-                list << name << ' ' << T::type_name << ' ' << T::type_hash << std::endl;
+                list << name << ' ' << T::type_name << ' ' << typeHash<T>() << std::endl;
             };
             (add(sample), ...);
         },

@@ -83,4 +83,19 @@ TEST(RosNamesTest, TheFirstMatchingRemapApplies) {
     EXPECT_EQ(names.topic("sonar"), "/late") << "/auv1/sonar is another topic now";
 }
 
+TEST(RosNamesTest, ATildeIsTheNameOfTheNode) {
+    RosNames names;
+    EXPECT_EQ(names.topic("~/sonar", "ros"), "/ros/sonar");
+    EXPECT_EQ(names.topic("~/sonar", "/auv/ros"), "/auv/ros/sonar");
+    names = namesIn("auv1");
+    EXPECT_EQ(names.topic("~/sonar", names.node("ros")), "/auv1/ros/sonar");
+    names.remaps = {{"", "~/sonar", "fan"}, {"", "ros/state", "~/phase"}, {"other", "~/x", "/wrong"}};
+    EXPECT_EQ(names.topic("~/sonar", "/auv1/ros"), "/auv1/fan");
+    EXPECT_EQ(names.topic("/auv1/ros/sonar", "/auv1/ros"), "/auv1/fan") << "written out";
+    EXPECT_EQ(names.topic("~/sonar", "/auv1/other"), "/auv1/fan");
+    EXPECT_EQ(names.topic("/auv1/ros/sonar", "/auv1/other"), "/auv1/ros/sonar") << "another node's";
+    EXPECT_EQ(names.topic("~/state", "/auv1/ros"), "/auv1/ros/phase");
+    EXPECT_EQ(names.topic("~/x", "/auv1/ros"), "/auv1/ros/x");
+}
+
 }  // namespace insonify::types

@@ -118,7 +118,7 @@ TEST(MessagesTest, RosbagsComputesTheSameHashesOfFoxglovesMessages) {
         ros::encode(message, bytes);
         std::ofstream(folder / (number + ".msg")) << ros::schemaOf<T>();
         std::ofstream(folder / (number + ".cdr")).write(bytes.data(), static_cast<int64_t>(bytes.size()));
-        list << number << ' ' << T::type_name << ' ' << T::type_hash << std::endl;
+        list << number << ' ' << T::type_name << ' ' << ros::typeHash<T>() << std::endl;
     };
     foxglove::SceneUpdate update;
     foxglove::SceneEntity& entity = update.entities.emplace_back();

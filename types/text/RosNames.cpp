@@ -12,6 +12,12 @@ bool isRosWord(std::string_view word) {
     return !word.empty() && !isDigit(word[0]) && std::ranges::all_of(word, fits);
 }
 
+/** Returns the name with that of the node in place of a leading "~". */
+std::string withNode(const std::string& name, const std::string& node) {
+    if (!name.starts_with('~')) return name;
+    return (node.starts_with('/') ? "" : "/") + node + name.substr(1);
+}
+
 }  // namespace
 
 bool isRosName(std::string_view name) {
@@ -43,10 +49,11 @@ std::string RosNames::expanded(const std::string& name) const {
 }
 
 std::string RosNames::topic(const std::string& name, const std::string& node) const {
-    if (ros_namespace.empty() && remaps.empty()) return name;
-    const std::string whole = expanded(name), last_word = node.substr(node.rfind('/') + 1);
+    if (ros_namespace.empty() && remaps.empty()) return withNode(name, node);
+    const auto resolved = [&](const std::string& each) { return expanded(withNode(each, node)); };
+    const std::string whole = resolved(name), last_word = node.substr(node.rfind('/') + 1);
     for (const TopicRemap& remap : remaps)
-        if ((remap.node.empty() || remap.node == last_word) && expanded(remap.from) == whole) return expanded(remap.to);
+        if ((remap.node.empty() || remap.node == last_word) && resolved(remap.from) == whole) return resolved(remap.to);
     return whole;
 }
 

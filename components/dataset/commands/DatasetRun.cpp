@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "components/console/Json.hpp"
-#include "components/console/Sha256.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
@@ -21,6 +20,7 @@
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/pose/Trajectory.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/Sha256.hpp"
 
 namespace insonify::dataset {
 namespace {
@@ -56,13 +56,13 @@ std::string generatorDigest() {
 }
 
 std::string originOf(const SceneChoice& scene, const std::string& generator) {
-    return fmt::format("recipe {} seed {} generator {}\n", console::sha256OfFile(scene.recipe), scene.seed, generator);
+    return fmt::format("recipe {} seed {} generator {}\n", types::sha256OfFile(scene.recipe), scene.seed, generator);
 }
 
 /** Returns the file of a scene, which is made if it does not exist. It is renamed to its final name when complete,
  *  because other processes may make it too. */
 std::string madeFile(const SceneChoice& scene, const std::string& generator) {
-    const fs::path folder = cacheFolder() / console::sha256(originOf(scene, generator)).substr(0, 32);
+    const fs::path folder = cacheFolder() / types::sha256(originOf(scene, generator)).substr(0, 32);
     const std::string stem = fmt::format("{}_{}", fs::path(scene.recipe).stem().string(), scene.seed);
     const fs::path file = folder / (stem + ".glb"), passing = folder / fmt::format("{}.{}.glb", stem, getpid());
     if (fs::is_regular_file(file)) return file;
@@ -185,7 +185,7 @@ void addFiles(const YAML::Node& node, const fs::path& folder, std::string& text)
         for (const auto& entry : node) addFiles(entry.second, folder, text);
     std::error_code ignored;
     if (node.IsScalar() && !node.Scalar().empty() && fs::is_regular_file(folder / node.Scalar(), ignored))
-        text += fmt::format("file {}\n", console::sha256OfFile(folder / node.Scalar()));
+        text += fmt::format("file {}\n", types::sha256OfFile(folder / node.Scalar()));
 }
 
 /** Adds the files that a sweep names for properties, relative to the folder of the deployment, and its scenes. */
@@ -195,7 +195,7 @@ void addFiles(const Sweep& sweep, const fs::path& folder, std::string& text) {
     for (const DrawnSetting& drawn : sweep.drawn)
         for (const Written& value : drawn.choice) addFiles(framework::parseValue(value.yaml), folder, text);
     for (const SceneChoice& scene : sweep.scenes) {
-        if (!scene.file.empty()) text += fmt::format("file {}\n", console::sha256OfFile(scene.file));
+        if (!scene.file.empty()) text += fmt::format("file {}\n", types::sha256OfFile(scene.file));
         for (const auto& [property, value] : scene.set) addFiles(framework::parseValue(value.yaml), folder, text);
     }
 }
@@ -373,19 +373,19 @@ void DatasetRun::computeDigests() {
     const std::string seed = fmt::format("seed {}\n", sweep_.seed);
     const std::string head = fmt::format("insonify {}\n{}\ndeployment {}\nsweep {}\n", INSONIFY_VERSION,
                                          types::EnumNames<Format>::names[static_cast<size_t>(format_)],
-                                         console::sha256(spec_.text), console::sha256(sweep_.text));
+                                         types::sha256(spec_.text), types::sha256(sweep_.text));
     std::string text = fmt::format("set {}\n", console::Json(changes_.set).dump());
     for (const framework::TaskSpec& task : spec_.tasks) {
         if (decides(task)) addFiles(task.properties, folder, text);
         for (const std::string& file : task.property_files.files)
-            text += fmt::format("file {}\n", console::sha256OfFile(folder / file));
+            text += fmt::format("file {}\n", types::sha256OfFile(folder / file));
     }
     addFiles(sweep_, folder, text);
     text += originsOf(sweep_);
     for (const SceneFile& scene : scenes_) text += fmt::format("scene {} {}\n", scene.name, scene.digest);
-    if (sweep_.trajectory) text += fmt::format("trajectory {}\n", console::sha256OfFile(sweep_.trajectory->file));
-    origin_ = console::sha256(head + text);
-    digest_ = console::sha256(head + seed + text + (changes_.count ? fmt::format("count {}\n", *changes_.count) : ""));
+    if (sweep_.trajectory) text += fmt::format("trajectory {}\n", types::sha256OfFile(sweep_.trajectory->file));
+    origin_ = types::sha256(head + text);
+    digest_ = types::sha256(head + seed + text + (changes_.count ? fmt::format("count {}\n", *changes_.count) : ""));
 }
 
 std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {

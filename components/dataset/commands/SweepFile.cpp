@@ -5,11 +5,11 @@
 #include <glm/gtc/quaternion.hpp>
 #include <optional>
 
-#include "components/console/Sha256.hpp"
 #include "components/dataset/commands/DatasetRun.hpp"
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/config/YamlText.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/Sha256.hpp"
 
 namespace insonify::dataset {
 namespace {
@@ -84,11 +84,11 @@ void addNode(const Sweep& sweep, const scene::Scene& scene, size_t node, ScenePa
 }
 
 template <class T>
-void addBytes(console::Sha256& hash, const std::vector<T>& values) {
+void addBytes(types::Sha256& hash, const std::vector<T>& values) {
     hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
 }
 
-void addMaterial(console::Sha256& hash, const types::Material& material) {
+void addMaterial(types::Sha256& hash, const types::Material& material) {
     hash.add(fmt::format("{} {} {} {} {} {} {} {} {} {}\n", material.name, material.lambert_db, material.seabed,
                          material.reflection, material.roughness_slope.value_or(-1), material.mirror,
                          material.reflectivity, material.has_acoustics, material.normal_map, material.normal_scale));
@@ -100,7 +100,7 @@ void addMaterial(console::Sha256& hash, const types::Material& material) {
     addBytes(hash, material.measured);
 }
 
-void addMap(console::Sha256& hash, const types::MappedMaterial& mapped) {
+void addMap(types::Sha256& hash, const types::MappedMaterial& mapped) {
     const types::SurfaceMap& map = *mapped.map;
     hash.add(fmt::format("map {} {} {} {} {}\n", mapped.material, map.width, map.height, map.repeat_u, map.repeat_v));
     addBytes(hash, map.strengths);
@@ -435,7 +435,7 @@ std::vector<Lineage> lineages(const scene::Scene& scene) {
 }
 
 std::string digestOf(const types::Geometry& geometry) {
-    console::Sha256 hash;
+    types::Sha256 hash;
     for (const types::Mesh& mesh : geometry.meshes) {
         addBytes(hash, mesh.positions);
         addBytes(hash, mesh.normals);

@@ -123,7 +123,8 @@ void Activity::schedule() {
     const auto period = nanoseconds(settings_.period);
     const auto missed = (now - next_cycle_) / period;
     owner_.timing().jitter.add(std::chrono::duration<double>(now - next_cycle_).count());
-    owner_.timing().overruns += static_cast<uint64_t>(missed);
+    // Read by reports while the task runs.
+    std::atomic_ref(owner_.timing().overruns).fetch_add(static_cast<uint64_t>(missed), std::memory_order_relaxed);
     next_cycle_ += period * (1 + missed);
 }
 

@@ -114,7 +114,7 @@ size_t SampleWriter::add(size_t sample, const std::string& name, const Metadata&
         using Message = ros::LoggedMessage<T>;
         const Schema schema{Message::type_name, "ros2msg", ros::schemaOf<Message>()};
         Texts texts = {{"offered_qos_profiles", qos_profile},
-                       {"topic_type_hash", Message::type_hash},
+                       {"topic_type_hash", ros::typeHash<Message>()},
                        {"insonify_stream", name},
                        {"insonify_type", cxxName<typename ros::MessagesOf<T>::read_as>()},
                        {"insonify_order", nameOf(config_.order)},

@@ -175,7 +175,8 @@ void Transforms::write(const std::string& topic, uint64_t log_ns, uint64_t publi
         uint16_t& schema = schemas_[Message::type_name];
         if (schema == 0) schema = out_.addSchema({Message::type_name, "ros2msg", ros::schemaOf<Message>()});
         const std::string profile = topic == "/tf_static" ? latchedProfile() : qos_profile;
-        Texts texts{{"offered_qos_profiles", profile}, {"topic_type_hash", Message::type_hash}, {derived_key, "yes"}};
+        Texts texts{
+            {"offered_qos_profiles", profile}, {"topic_type_hash", ros::typeHash<Message>()}, {derived_key, "yes"}};
         found = channels_.emplace(topic, out_.addChannel({schema, topic, "cdr", std::move(texts)})).first;
     }
     bytes_.clear();

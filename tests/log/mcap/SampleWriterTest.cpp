@@ -72,6 +72,16 @@ std::vector<Message> messagesOf(log::Reader& log, const std::string& stream) {
     return messages;
 }
 
+TEST(SampleWriterTest, FramesThatTfRefusesAreRefused) {
+    McapConfig config;
+    config.frame_id = "/sonar";
+    config.streams = {{"sonar.ping", {{}, "my sonar", {}}}, {"vehicle.pose", {{}, {}, ""}}};
+    EXPECT_THAT(test::refusalsOf(config),
+                testing::ElementsAre(testing::HasSubstr("frame_id: is \"/sonar\"; must be a name without spaces"),
+                                     testing::HasSubstr("streams.sonar.ping.frame_id: is \"my sonar\""),
+                                     testing::HasSubstr("streams.vehicle.pose.child_frame_id: is \"\"")));
+}
+
 TEST(SampleWriterTest, AStreamMayHaveItsOwnTopicFramesAndFrequency) {
     const Folder folder;
     McapConfig config;

@@ -1,6 +1,4 @@
-#include "components/console/Sha256.hpp"
-
-#include <fmt/core.h>
+#include "types/text/Sha256.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace insonify::console {
+namespace insonify::types {
 namespace {
 
 /** Fractions of the cube roots of the first 64 primes, FIPS 180-4, 4.2.2. */
@@ -79,7 +77,8 @@ std::string Sha256::hex() {
     for (int shift = 56; shift >= 0; shift -= 8) end.push_back(static_cast<char>(bits >> shift));
     add(end);
     std::string text;
-    for (const uint32_t word : state_) text += fmt::format("{:08x}", word);
+    for (const uint32_t word : state_)
+        for (int shift = 28; shift >= 0; shift -= 4) text += "0123456789abcdef"[word >> shift & 15];
     return text;
 }
 
@@ -101,4 +100,4 @@ std::string sha256OfFile(const std::filesystem::path& file) {
     return hash.hex();
 }
 
-}  // namespace insonify::console
+}  // namespace insonify::types

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace insonify::console {
+namespace insonify::types {
 
 /** The SHA-256 of bytes added in pieces (FIPS 180-4). */
 class Sha256 {
@@ -29,4 +29,4 @@ std::string sha256(std::string_view bytes);
 /** Throws std::runtime_error when the file cannot be read. */
 std::string sha256OfFile(const std::filesystem::path& file);
 
-}  // namespace insonify::console
+}  // namespace insonify::types
