@@ -268,7 +268,10 @@ TEST(TrajectoryTest, AFileInTheAxesOfRosOrOfAircraftHasTheSamePath) {
         }
     }
     types::Diagnostics diagnostics;
-    TrajectoryConfig{.waypoints = {Waypoint{}}, .world_frame = types::WorldFrame::Enu}.check(diagnostics);
+    TrajectoryConfig config;
+    config.waypoints = {Waypoint{}};
+    config.world_frame = types::WorldFrame::Enu;
+    config.check(diagnostics);
     ASSERT_EQ(diagnostics.size(), 1u);
     EXPECT_EQ(diagnostics.front().path, "world_frame");
 }
