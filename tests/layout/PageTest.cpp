@@ -179,7 +179,7 @@ TEST(PageTest, EveryBlockOfCodeSaysWhatItIs) {
     // Commands: tests/deployer/PagesTest.cpp runs `sh`; `console` cannot be tested, because it installs, waits for
     // others, uses the wall clock or takes minutes.
     static const std::set<std::string> known = {"sh",   "console", "yaml",   "json", "cpp",
-                                                "glsl", "cmake",   "python", "text"};
+                                                "glsl", "cmake",   "python", "text", "xml"};
     for (const Page& page : allPages())
         for (const CodeBlock& block : page.blocks())
             EXPECT_TRUE(known.contains(block.language)) << page.path() << ":" << block.line << ": " << block.language;
