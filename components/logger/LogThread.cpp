@@ -83,8 +83,14 @@ void Rotation::removeOldest() const {
     }
 }
 
+types::Recording reportOn(const std::filesystem::path& file, uint64_t bytes) {
+    std::error_code unknown;
+    const auto disk = std::filesystem::space(file.parent_path(), unknown);
+    return {file.string(), bytes, unknown ? 0 : disk.available};
+}
+
 LogThread::LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period, AtFailure at_failure,
-                     double sync_period)
+                     double sync_period, RecordingBoard* board)
     : log_(log),
       rotation_(rotation),
       kept_before_(log.kept()),
@@ -93,6 +99,7 @@ LogThread::LogThread(log::Writer& log, Rotation& rotation, size_t capacity, doub
       at_failure_(at_failure),
       opened_(log.path()),
       next_sync_(Clock::now() + sync_period_),
+      board_(board),
       ring_(capacity),
       thread_(types::startThread("the log", [this] { run(); })) {}
 
@@ -153,6 +160,7 @@ void LogThread::run() {
         if (health_.fails) tryAgain();
         if (health_.fails) throw std::runtime_error(health_.failure);
         log_.flush();
+        report(true);
     } catch (const std::exception& error) {
         std::lock_guard lock(mutex_);
         failed_ = true;
@@ -171,8 +179,8 @@ void LogThread::writeAll() {
         const bool has_entry = count_ > 0;
         lock.unlock();
         work(has_entry ? &ring_[first_] : nullptr);
+        report(false);
         lock.lock();
-        count();
         if (!has_entry) continue;
         waiting_bytes_ -= std::exchange(ring_[first_].bytes, 0);
         first_ = (first_ + 1) % ring_.size();
@@ -181,12 +189,15 @@ void LogThread::writeAll() {
     }
 }
 
-void LogThread::count() {
-    if (!log_.isOpen()) return;
+void LogThread::report(bool at_once) {
+    if (!board_ || !log_.isOpen()) return;
     const uint64_t size = log_.size();
-    if (size < present_bytes_ || health_.current.empty()) health_.current = log_.path();
-    health_.bytes += size < present_bytes_ ? size : size - present_bytes_;  // smaller: the next file
+    if (size < present_bytes_ || written_.file.empty()) written_.file = log_.path().string();
+    written_.bytes += size < present_bytes_ ? size : size - present_bytes_;  // smaller: the next file
     present_bytes_ = size;
+    if (!at_once && Clock::now() < next_report_) return;
+    next_report_ = Clock::now() + std::chrono::milliseconds(250);
+    board_->set(reportOn(written_.file, written_.bytes));
 }
 
 void LogThread::work(Entry* entry) {

@@ -11,6 +11,7 @@
 
 #include "components/log/Writer.hpp"
 #include "components/logger/LoggerConfig.hpp"
+#include "types/samples/DeploymentControl.hpp"
 
 namespace insonify::logger {
 
@@ -48,15 +49,33 @@ enum class AtFailure { Throw, Heal };
 
 /** The state of a log that heals. */
 struct LogHealth {
-    uint64_t bytes = 0;             ///< In all files of this run [B].
-    std::filesystem::path current;  ///< The file that is written now.
-    uint64_t outages = 0;           ///< Times that the file could not be written.
-    uint64_t lost = 0;              ///< Samples of past outages.
-    uint64_t refused = 0;           ///< Samples that the format cannot store.
-    bool fails = false;             ///< There is an outage.
-    std::string failure;            ///< The reason of the last outage or refusal.
-    std::filesystem::path file;     ///< The file in which the log continued after the last outage.
+    uint64_t outages = 0;        ///< Times that the file could not be written.
+    uint64_t lost = 0;           ///< Samples of past outages.
+    uint64_t refused = 0;        ///< Samples that the format cannot store.
+    bool fails = false;          ///< There is an outage.
+    std::string failure;         ///< The reason of the last outage or refusal.
+    std::filesystem::path file;  ///< The file in which the log continued after the last outage.
 };
+
+/** What a log has written so far, for threads that ask. Thread-safe. */
+class RecordingBoard {
+public:
+    void set(const types::Recording& recording) {
+        const std::lock_guard lock(mutex_);
+        recording_ = recording;
+    }
+    std::optional<types::Recording> get() const {
+        const std::lock_guard lock(mutex_);
+        return recording_;
+    }
+
+private:
+    mutable std::mutex mutex_;
+    std::optional<types::Recording> recording_;
+};
+
+/** Returns the size of a recording, with the space left on the disk of its present file. */
+types::Recording reportOn(const std::filesystem::path& file, uint64_t bytes);
 
 /** Declares a stream. */
 using Declare = std::function<size_t(log::Writer&)>;
@@ -73,9 +92,10 @@ public:
     static constexpr size_t max_bytes = size_t{256} << 20;  ///< Of waiting samples, apart from one of any size [B].
 
     /** Until finish(), `log` and `rotation` are used only by the thread. Flushes every `flush_period` and syncs every
-     *  `sync_period` [s]; `capacity` is above 0. */
+     *  `sync_period` [s]; `capacity` is above 0. What is written is reported to `board`, if there is one, at most four
+     *  times a second. */
     LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period,
-              AtFailure at_failure = AtFailure::Throw, double sync_period = 1e9);
+              AtFailure at_failure = AtFailure::Throw, double sync_period = 1e9, RecordingBoard* board = nullptr);
     ~LogThread();
     LogThread(const LogThread&) = delete;
     LogThread& operator=(const LogThread&) = delete;
@@ -127,10 +147,10 @@ private:
     void run();
     void writeAll();
     void write(Entry& entry);
-    void work(Entry* entry);  ///< One iteration of the thread: an entry, if there is one, and due flushes.
-    void flush();             ///< Also syncs, if that is due.
-    void pass(Entry& entry);  ///< Releases a sample, written or lost; a stream waits for the next file.
-    void count();             ///< Counts what was written; under the mutex.
+    void work(Entry* entry);    ///< One iteration of the thread: an entry, if there is one, and due flushes.
+    void flush();               ///< Also syncs, if that is due.
+    void pass(Entry& entry);    ///< Releases a sample, written or lost; a stream waits for the next file.
+    void report(bool at_once);  ///< Reports what was written, if that is due.
     void refuse(Entry& entry, const std::string& why);
     void beginOutage(const std::string& why);
     void tryAgain();
@@ -148,8 +168,11 @@ private:
     std::filesystem::path opened_;  ///< The last file that could be opened.
     std::filesystem::path sequel_;  ///< The log's next file.
     Clock::time_point next_try_, next_flush_, next_sync_;
-    LogHealth health_;            ///< Changed by the thread, under the mutex.
-    uint64_t present_bytes_ = 0;  ///< Those of `health_.bytes` that are in the present file [B].
+    LogHealth health_;  ///< Changed by the thread, under the mutex.
+    RecordingBoard* const board_;
+    types::Recording written_;    ///< So far.
+    uint64_t present_bytes_ = 0;  ///< Those of `written_.bytes` that are in the present file [B].
+    Clock::time_point next_report_;
     mutable std::mutex mutex_;
     std::condition_variable work_, room_;
     std::vector<Entry> ring_;

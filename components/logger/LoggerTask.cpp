@@ -79,22 +79,7 @@ types::Notices LoggerTask::notices() const {
     return all;
 }
 
-std::optional<types::Recording> LoggerTask::recording() const {
-    std::lock_guard lock(recording_mutex_);
-    return recording_;
-}
-
-void LoggerTask::followRecording() {
-    const auto now = std::chrono::steady_clock::now();
-    if (now < next_recording_) return;
-    next_recording_ = now + std::chrono::milliseconds(250);
-    const std::filesystem::path path = outputPath(config->file);
-    std::error_code unknown;
-    const auto disk = std::filesystem::space(path.parent_path(), unknown);
-    std::lock_guard lock(recording_mutex_);
-    recording_ = {(health_.current.empty() ? path : health_.current).string(), health_.bytes,
-                  unknown ? 0 : disk.available};
-}
+std::optional<types::Recording> LoggerTask::recording() const { return board_.get(); }
 
 bool LoggerTask::heals() const { return environment().mayLose(); }
 
@@ -242,9 +227,10 @@ bool LoggerTask::startHook() {
     recordProperties();
     constexpr double never = 1e9;  // [s]
     health_ = {};
+    board_.set(reportOn(log_->path(), 0));
     thread_.emplace(*log_, *rotation_, static_cast<size_t>(config->queue),
                     environment().is_shard ? never : config->flush_period, heals() ? AtFailure::Heal : AtFailure::Throw,
-                    config->sync_period.value_or(never));
+                    config->sync_period.value_or(never), &board_);
     return true;
 }
 
@@ -278,7 +264,6 @@ void LoggerTask::updateHook() {
         }
     });
     followHealth();
-    followRecording();
 }
 
 void LoggerTask::stopHook() {

@@ -1,7 +1,6 @@
 #pragma once
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -78,7 +77,6 @@ private:
     bool logsProperties();
     bool heals() const;
     void followHealth();
-    void followRecording();             ///< Asks the disk for its space at most four times a second.
     void recordProperties();            ///< The properties of all tasks that changed since the last call.
     log::Metadata runMetadata() const;  ///< Common to all streams of the run.
     /** Returns the metadata of the log's next stream, with the current plans. */
@@ -95,15 +93,13 @@ private:
     std::optional<Rotation> rotation_;
     std::optional<PropertyLog> properties_;
     uint64_t recorded_changes_ = 0;  ///< Changes of the tasks' records at the last record of properties.
+    RecordingBoard board_;
     std::optional<LogThread> thread_;
     std::vector<std::string> frame_notices_;
     LogHealth health_;                                        ///< As reported.
     std::map<std::string, types::PropertyValue> configured_;  ///< The property values at configure.
-    mutable std::mutex recording_mutex_;
-    std::optional<types::Recording> recording_;  ///< As shown, under the mutex.
-    std::chrono::steady_clock::time_point next_recording_;
-    size_t declared_ = 0;       ///< Streams in the log.
-    bool has_started_ = false;  ///< Since it was configured.
+    size_t declared_ = 0;                                     ///< Streams in the log.
+    bool has_started_ = false;                                ///< Since it was configured.
 };
 
 /** Registers the tasks of this folder. */
