@@ -192,6 +192,41 @@ TEST_F(GazeboSensorTest, ASonarOfTheWorldIsReadOnGazebosTopicsInSimulatedTime) {
     EXPECT_EQ(picture.data().size(), size_t(picture.step()) * picture.height());
 }
 
+TEST_F(GazeboSensorTest, EachVehicleHasItsSonarAndAResetBeginsAnew) {
+    const Reader<ignition::msgs::Float_V> red(node, "/red/sonar"),
+        blue(node, "/world/two_vehicles/model/blue/link/hull/sensor/s/insonify");
+    std::string text = worldWith(sensor("fls", properties, "<update_rate>10</update_rate><topic>/red/sonar</topic>"));
+    text.insert(text.find("</link>", text.find("<model name=\"blue\">")),
+                sensor("s", properties, "<update_rate>5</update_rate>"));
+    write(text);
+    const Process sonar(
+        insonifyWords({"gazebo", "w.world", "--out", "out", "--set", "red_hull_fls_scene.pose_timeout=60", "--set",
+                       "blue_hull_s_scene.pose_timeout=60"}),
+        folder.path());
+    int sent = 0;
+    const auto step = [&] {
+        ++sent;
+        publish(100 + 0.02 * sent, 0.002 * sent);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    };
+    const bool came = gazebo::becomesTrue([&] { return step(), red.count() > 5 && blue.count() > 3; });
+    EXPECT_TRUE(came) << readFile(folder / "stderr.txt");
+    sent = -5000;  // the simulation begins anew, at 0 s
+    const auto isAnew = [](const auto& reader) {
+        const std::lock_guard lock(reader.mutex);
+        return !reader.messages.empty() && stamp(reader.messages.back()) < 50;
+    };
+    EXPECT_TRUE(gazebo::becomesTrue([&] { return step(), isAnew(red) && isAnew(blue); }));
+    sonar.signal(SIGINT);
+    ASSERT_THAT(sonar.wait(), succeeds());
+    ASSERT_TRUE(came);
+    EXPECT_EQ(header(red.messages.front())["frame_id"], std::vector<std::string>{"red::hull::fls"});
+    EXPECT_EQ(header(blue.messages.front())["frame_id"], std::vector<std::string>{"blue::hull::s"});
+    const auto& pings = red.messages;
+    EXPECT_NE(std::vector<float>(pings.front().data().begin(), pings.front().data().end()),
+              std::vector<float>(blue.messages.front().data().begin(), blue.messages.front().data().end()));
+}
+
 TEST_F(GazeboSensorTest, AWorldThatRunsIsAskedForItsSdf) {
     const std::string text = worldWith(sensor("fls", properties, "<update_rate>5</update_rate>", "ignition"));
     ignition::transport::Node server;

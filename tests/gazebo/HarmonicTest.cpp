@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 
 #include "components/gazebo/Discovery.hpp"
+#include "components/gazebo/Multicast.hpp"
 #include "components/gazebo/PoseTask.hpp"
+#include "components/gazebo/Publisher.hpp"
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/gazebo/World.hpp"
 #include "components/scene/SceneTask.hpp"
@@ -76,6 +78,62 @@ TEST_F(HarmonicTest, PosesOfAWorldAreRead) {
     const types::Pose* const pose = &read;
     EXPECT_EQ(pose->position, glm::dvec3(1.5, 0, -5));
     EXPECT_NEAR(2 * std::atan2(pose->orientation.z, pose->orientation.w), 1.5707963, 1e-6);
+}
+
+TEST_F(HarmonicTest, TopicsHaveTheTypesOfTheGazeboThatIsThere) {
+    const TransportOptions options = TransportOptions::fromEnvironment("");
+    const std::string name = *qualifiedName(options.partition, "/rov/scan");
+    for (const auto& [type, wanted] :
+         {std::pair("gz.msgs.Pose_V", "gz.msgs.LaserScan"),
+          std::pair("ignition.msgs.Pose_V", "ignition.msgs.LaserScan"), std::pair("", "gz.msgs.LaserScan")}) {
+        SCOPED_TRACE(type);
+        const Multicast listener(options, options.topic_port);
+        std::unique_ptr<HarmonicWorld> world;
+        if (*type) {
+            HarmonicWorld::Settings settings;
+            settings.type = type;
+            world = std::make_unique<HarmonicWorld>(settings);
+        }
+        std::string offered, address;
+        bool withdrawn = false, gone = false;
+        Received others("/scan");
+        const auto listen = [&] {
+            while (const auto datagram = listener.receive()) {
+                const auto news = readDatagram(datagram->bytes, "listener", others);
+                if (!news || (news->kind != Announcement::Kind::Goodbye && news->publication.topic != name)) continue;
+                if (news->kind == Announcement::Kind::Offer)
+                    offered = news->publication.type, address = news->publication.address;
+                withdrawn |= news->kind == Announcement::Kind::Withdrawal;
+                gone |= news->kind == Announcement::Kind::Goodbye;
+            }
+        };
+        {
+            Publisher publisher(options, {{"/rov/scan", "LaserScan"}});
+            EXPECT_FALSE(publisher.hasReaders(0));
+            ASSERT_TRUE(becomesTrue([&] { return listen(), !offered.empty(); }));
+            EXPECT_EQ(offered, wanted);
+            EXPECT_THAT(address, testing::StartsWith("tcp://127.0.0.1:"));
+            std::mutex mutex;
+            std::vector<std::string> taken;
+            {
+                const Subscriber reader(options, {{"/rov/scan", [&](const std::string& read, std::string_view message) {
+                                                       const std::lock_guard lock(mutex);
+                                                       taken.push_back(read + ":" + std::string(message));
+                                                   }}});
+                ASSERT_TRUE(becomesTrue([&] { return publisher.hasReaders(0); }));
+                for (int i = 0; i < 10; ++i) publisher.publish(0, std::to_string(i));
+                EXPECT_TRUE(becomesTrue([&] {
+                    const std::lock_guard lock(mutex);
+                    return taken.size() == 10;
+                }));
+                EXPECT_EQ(taken.back(), "LaserScan:9");
+            }
+            EXPECT_TRUE(becomesTrue([&] { return !publisher.hasReaders(0); })) << "after the reader's end";
+            EXPECT_EQ(publisher.lost(), 0u);
+        }
+        EXPECT_TRUE(becomesTrue([&] { return listen(), withdrawn && gone; }));
+    }
+    EXPECT_THROW(Publisher(options, {{"/a b", "Image"}}), types::ConfigError);
 }
 
 TEST_F(HarmonicTest, FindsARestartedWorld) {
