@@ -12,6 +12,7 @@
 #include "components/command/CommandLine.hpp"
 #include "components/command/RunCommand.hpp"
 #include "components/console/Console.hpp"
+#include "components/console/Json.hpp"
 #include "components/framework/config/YamlText.hpp"
 #include "components/scene/GazeboWorld.hpp"
 #include "types/text/ConfigError.hpp"
@@ -38,11 +39,8 @@ std::string wordOf(const std::string& name) {
     return word.empty() ? "sonar" : word;
 }
 
-std::string quoted(const std::string& text) {
-    std::string all = "'";
-    for (const char letter : text) all += letter == '\'' ? "''" : std::string(1, letter);
-    return all + "'";
-}
+/** Returns a text as a value in YAML. */
+std::string quoted(const std::string& text) { return console::Json(text).dump(); }
 
 std::vector<std::string> partsOf(const std::string& scope) {
     std::vector<std::string> parts;
@@ -54,12 +52,35 @@ std::vector<std::string> partsOf(const std::string& scope) {
     return parts;
 }
 
-/** Returns the topic that Gazebo gives a sensor without one. */
+/** Returns the topic that Gazebo gives a sensor without one. As there, blanks of names become _, and what a topic may
+ *  not have is left out. */
 std::string usualTopic(const std::string& world, const std::string& sensor) {
     const std::vector<std::string> parts = partsOf(sensor);
-    std::string topic = "/world/" + world;
-    for (size_t i = 0; i + 2 < parts.size(); ++i) topic += "/model/" + parts[i];
-    return topic + "/link/" + parts[parts.size() - 2] + "/sensor/" + parts.back() + "/insonify";
+    std::string named = "/world/" + world;
+    for (size_t i = 0; i + 2 < parts.size(); ++i) named += "/model/" + parts[i];
+    named += "/link/" + parts[parts.size() - 2] + "/sensor/" + parts.back() + "/insonify";
+    std::string topic;
+    for (const char letter : named)
+        if (letter != '@' && letter != '~' && letter != ':') topic += letter == ' ' ? '_' : letter;
+    return topic;
+}
+
+/** Returns a name for ROS 2: letters, digits and single _ between slashes, no part with a digit first. */
+std::string rosTopic(const std::string& topic) {
+    std::string name = "/";
+    for (const char given : topic) {
+        const bool is_kept = std::isalnum(static_cast<unsigned char>(given)) != 0 || given == '/';
+        const char letter = is_kept ? given : '_';
+        if ((letter == '/' || letter == '_') && letter == name.back()) continue;
+        if (name.back() == '/' && std::isdigit(static_cast<unsigned char>(letter)) != 0) name += '_';
+        name += letter;
+    }
+    return name;
+}
+
+std::string withoutBlanks(std::string text) {
+    std::ranges::replace(text, ' ', '_');
+    return text;
 }
 
 /** The picture of each kind of sonar. */
@@ -83,16 +104,18 @@ public:
         taken_ = {"world", "to_gazebo", "to_ros"};
         tasks_ = topics_ = ros_topics_ = connections_ = "";
         ports_ = 0;
+        model_ports_.clear();
+        for (const std::string& model : sonars_.models) model_ports_.push_back(unique("model_" + wordOf(model)));
         for (const SonarSensor& sonar : sonars_.sonars) addSonar(sonar);
         std::string text = fmt::format(
             "# The sonars of world {0}. Made by `insonify gazebo {1} --print`.\nschedule: realtime\ntasks:\n"
             "  world:\n    type: gazebo::PoseTask\n    properties:\n      world: {2}\n{3}      bodies:\n",
-            sonars_.world, asked_.world, quoted(sonars_.world), partition("      "));
+            quoted(sonars_.world), quoted(asked_.world), quoted(sonars_.world), partition("      "));
         for (const SonarSensor& sonar : sonars_.sonars)
             text += fmt::format("        - {{port: {}, entity: {}, period: {}}}\n", names_.at(&sonar),
                                 quoted(sonar.link), sonar.update_rate > 0 ? 1 / sonar.update_rate : 0.0);
-        for (const std::string& model : sonars_.models)
-            text += fmt::format("        - {{port: model_{}, entity: {}}}\n", wordOf(model), quoted(model));
+        for (size_t i = 0; i < model_ports_.size(); ++i)
+            text += fmt::format("        - {{port: {}, entity: {}}}\n", model_ports_[i], quoted(sonars_.models[i]));
         text += tasks_;
         text += fmt::format(
             "  to_gazebo:\n    type: gazebo::PublisherTask\n    properties:\n      world: {}\n{}      topics:\n{}",
@@ -113,7 +136,18 @@ private:
     }
 
     void connect(const std::string& from, const std::string& to) {
-        connections_ += fmt::format("  - {{from: {}, to: {}}}\n", from, to);
+        connections_ += fmt::format("  - {{from: {}, to: {}}}\n", from, quoted(to));
+    }
+
+    /** Returns a word for a task and its port, with a number behind it if another task has it, or one of its own. */
+    std::string unique(const std::string& word) {
+        const auto isTaken = [&](const std::string& name) {
+            return std::ranges::any_of(own_tasks, [&](const char* own) { return taken_.contains(name + own); });
+        };
+        std::string name = word;
+        for (int again = 2; isTaken(name); ++again) name = fmt::format("{}_{}", word, again);
+        for (const char* own : own_tasks) taken_.insert(name + own);
+        return name;
     }
 
     void send(const std::string& from, const std::string& topic, const char* type, const char* ros_type,
@@ -123,8 +157,8 @@ private:
                                quoted(frame));
         connect(from, "to_gazebo." + port);
         if (!asked_.ros) return;
-        ros_topics_ += fmt::format("        - {{port: {}, topic: {}, type: {}, frame_id: {}}}\n", port, quoted(topic),
-                                   ros_type, quoted(frame));
+        ros_topics_ += fmt::format("        - {{port: {}, topic: {}, type: {}, frame_id: {}}}\n", port,
+                                   quoted(rosTopic(topic)), ros_type, quoted(withoutBlanks(frame)));
         connect(from, "to_ros." + port);
     }
 
@@ -141,9 +175,7 @@ private:
     }
 
     void addSonar(const SonarSensor& sonar) {
-        std::string name = wordOf(sonar.name);
-        for (int again = 2; !taken_.insert(name).second; ++again)
-            name = fmt::format("{}_{}", wordOf(sonar.name), again);
+        const std::string name = unique(wordOf(sonar.name));
         names_[&sonar] = name;
         const types::Mount& mount = sonar.mount;
         addTask(
@@ -155,8 +187,8 @@ private:
                 asked_.gazebo.partition.empty() ? "" : ", partition: " + quoted(asked_.gazebo.partition),
                 mount.position.x, mount.position.y, mount.position.z, mount.roll_deg, mount.pitch_deg, mount.yaw_deg));
         connect("world." + name, name + "_scene.pose");
-        for (const std::string& model : sonars_.models)
-            connect("world.model_" + wordOf(model), fmt::format("{}_scene.{}.pose", name, model));
+        for (size_t i = 0; i < model_ports_.size(); ++i)
+            connect("world." + model_ports_[i], fmt::format("{}_scene.{}.pose", name, sonars_.models[i]));
         addTask(name, sonar.type);
         connect(name + "_scene.snapshot", name + ".snapshot");
         std::string pings = name + ".ping";
@@ -188,10 +220,14 @@ private:
         }
     }
 
+    /** What follows the name of a sonar in those of its tasks. */
+    static constexpr const char* own_tasks[] = {"", "_scene", "_noise", "_receiver", "_image"};
+
     const scene::WorldSonars& sonars_;
     const Asked& asked_;
     std::map<const SonarSensor*, std::string> names_;
     std::map<std::string, std::string> properties_;  ///< By task.
+    std::vector<std::string> model_ports_;           ///< By model.
     std::set<std::string> taken_;
     std::string tasks_, topics_, ros_topics_, connections_;
     int ports_ = 0;
@@ -211,19 +247,25 @@ std::string indented(const std::string& text, const std::string& by) {
     return lines + "\n";
 }
 
-/** A file that is removed when it is no longer needed. */
-struct TemporaryFile {
-    explicit TemporaryFile(const std::string& text)
-        : path(fs::temp_directory_path() / fmt::format("insonify-world-{}.sdf", getpid())) {
-        std::ofstream(path) << text;
+/** A file in a folder of its own, which are removed when they are no longer needed. */
+class TemporaryFile {
+public:
+    explicit TemporaryFile(const std::string& text) {
+        std::string name = (fs::temp_directory_path() / "insonify_world_XXXXXX").string();
+        if (!mkdtemp(name.data())) throw types::ConfigError(name, "", "cannot be made, for the world's SDF");
+        folder_ = name;
+        std::ofstream(path()) << text;
     }
     ~TemporaryFile() {
         std::error_code gone;
-        fs::remove(path, gone);
+        fs::remove_all(folder_, gone);
     }
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
-    const fs::path path;
+    fs::path path() const { return folder_ / "world.sdf"; }
+
+private:
+    fs::path folder_;
 };
 
 bool isFile(const std::string& world) {
@@ -237,7 +279,7 @@ scene::WorldSonars sonarsIn(const Asked& asked) {
     scene::GazeboConfig config = asked.gazebo;
     config.world = asked.world;
     const TemporaryFile file(scene::requestSdf(config));
-    return scene::readWorldSonars(file.path);
+    return scene::readWorldSonars(file.path());
 }
 
 [[noreturn]] void refuseNone(const Asked& asked, const scene::WorldSonars& found) {

@@ -10,6 +10,7 @@
 #include "components/gazebo/Messages.hpp"
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/ros/Samples.hpp"
+#include "types/Check.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::gazebo {
@@ -108,19 +109,21 @@ bool PublisherTask::configureHook() {
     std::vector<Offer> offers;
     for (const TopicOut& topic : config->topics) offers.push_back({topic.topic, nameOf(topic.type)});
     try {
-        publisher_ = std::make_unique<Publisher>(TransportOptions::fromEnvironment(config->partition), offers);
+        const TransportOptions options = TransportOptions::fromEnvironment(config->partition);
+        partition_ = options.partition;
+        publisher_ = std::make_unique<Publisher>(options, offers);
     } catch (const types::ConfigError& error) {
         const types::Diagnostic& first = error.diagnostics().front();
         const std::string where = first.path.empty() ? "" : ".topics[" + first.path + "].topic";
         throw types::ConfigError("", name() + where, first.message);
     }
-    known_changes_ = 0;
+    known_changes_.reset();
     return true;
 }
 
 types::Time PublisherTask::stampOf(types::Time time) const {
     if (config->world.empty()) return time;
-    const auto offset = clockOffset(config->world, TransportOptions::fromEnvironment(config->partition).partition);
+    const auto offset = clockOffset(config->world, partition_);
     return offset ? time - *offset : time;
 }
 
@@ -137,6 +140,8 @@ void PublisherTask::send(const std::string& port, const Sample& sample, const ty
         options.returns = returns;
         try {
             publisher_->publish(i, messageOf(sample, topic.type, options, {stampOf(sample.time), topic.frame_id}));
+        } catch (const types::CheckFailure&) {
+            throw;
         } catch (const std::logic_error& error) {
             drops_.add(fmt::format("{}: {}", topic.topic, error.what()));
         }
@@ -144,7 +149,7 @@ void PublisherTask::send(const std::string& port, const Sample& sample, const ty
 }
 
 void PublisherTask::updateHook() {
-    if (const uint64_t changes = *environment().record_changes; changes != known_changes_ || changes == 0) {
+    if (const uint64_t changes = *environment().record_changes; changes != known_changes_) {
         known_changes_ = changes;
         inputs_.forEach(
             [](auto& input) { input.kept.returns = framework::upstreamReturnRules(input.port, types::left_receiver); });

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -86,7 +87,8 @@ private:
     types::Time stampOf(types::Time time) const;
 
     std::unique_ptr<Publisher> publisher_;
-    uint64_t known_changes_ = 0;  ///< The count of changes in the tasks' records when the returns' rules were read.
+    std::string partition_;
+    std::optional<uint64_t> known_changes_;  ///< Of the tasks' records, when the returns' rules were read.
     types::ThrottledWarning drops_{"message", "dropped"};
     framework::DynamicInputs<Samples, Sending> inputs_{this};
 };

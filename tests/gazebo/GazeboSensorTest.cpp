@@ -26,6 +26,7 @@ using namespace insonify;
 using namespace insonify::deployer;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 namespace {
 
@@ -80,6 +81,13 @@ std::map<std::string, std::vector<std::string>> header(const auto& message) {
     std::map<std::string, std::vector<std::string>> data;
     for (const auto& entry : message.header().data()) data[entry.key()] = {entry.value().begin(), entry.value().end()};
     return data;
+}
+
+std::vector<std::string> lines(const std::string& text) {
+    std::vector<std::string> all;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) all.push_back(line);
+    return all;
 }
 
 double stamp(const auto& message) {
@@ -239,12 +247,39 @@ TEST_F(GazeboSensorTest, AWorldThatRunsIsAskedForItsSdf) {
     ASSERT_TRUE(server.Advertise("/world/two_vehicles/generate_world_sdf", answer));
     const Outcome outcome = callInsonify(folder, {"gazebo", "two_vehicles", "--print", "--timeout", "20"});
     ASSERT_THAT(outcome, succeeds());
-    for (const char* part :
-         {"entity: 'red::hull', period: 0.2", "topic: '/world/two_vehicles/model/red/link/hull/sensor/fls/insonify'",
-          "range: 30", "beam_count: 64", "{from: world.model_blue, to: red_hull_fls_scene.blue.pose}"})
+    for (const char* part : {"entity: \"red::hull\", period: 0.2",
+                             "topic: \"/world/two_vehicles/model/red/link/hull/sensor/fls/insonify\"", "range: 30",
+                             "beam_count: 64", "{from: world.model_blue, to: \"red_hull_fls_scene.blue.pose\"}"})
         EXPECT_THAT(outcome.out, HasSubstr(part));
     writeFile(folder / "a.yml", outcome.out);
     EXPECT_THAT(callInsonify(folder, {"check", "a.yml"}), succeeds()) << outcome.out;
+}
+
+TEST_F(GazeboSensorTest, EveryKindOfSonarAndAnyNamesMakeADeployment) {
+    const std::string rest = "<update_rate>2</update_rate>", beam = "<range>20</range><noise><seed>3</seed></noise>";
+    std::string sensors, other;
+    int number = 0;
+    for (const char* kind :
+         {"SonarTask", "ScanningSonarTask", "SideScanTask", "ProfilerTask", "AltimeterTask", "Sonar3dTask"})
+        sensors += sensor("s" + std::to_string(++number), "<type>sonar::" + std::string(kind) + "</type>" + beam, rest);
+    for (const char* name : {"a b", "a_b_scene", "it&apos;s, {1}: #2", "\xC3\xA4"}) sensors += sensor(name, beam, rest);
+    std::string text = worldWith(sensors);
+    for (const char* name : {"my rov, 2", "my_rov_2", "{x}: y"})
+        other += "<model name='" + std::string(name) + "'><link name='l'/></model>";
+    text.insert(text.find("</world>"), other);
+    write(text);
+    const Outcome outcome = callInsonify(folder, {"gazebo", "w.world", "--print", "--ros"});
+    ASSERT_THAT(outcome, succeeds());
+    const scene::WorldSonars found = insonify::sdf::readSonars(folder / "w.world");
+    EXPECT_EQ(found.sonars.size(), 10u);
+    writeFile(folder / "a.yml", outcome.out);
+    const Outcome checked = callInsonify(folder, {"check", "a.yml"});
+    // The models that Gazebo does not have are the only errors.
+    EXPECT_THAT(checked.err, Not(HasSubstr("is not a key"))) << outcome.out;
+    for (const std::string& line : lines(checked.err))
+        EXPECT_THAT(line, testing::AnyOf(HasSubstr("my rov, 2"), HasSubstr("my_rov_2"), HasSubstr("{x}: y"),
+                                         HasSubstr("notice"), HasSubstr("warning")))
+            << outcome.out;
 }
 
 TEST_F(GazeboSensorTest, WrongSensorsAreRefusedWithTheirPlace) {
