@@ -29,36 +29,16 @@ struct Asked : RunOptions {
     bool print = false, ros = false;
 };
 
-/** Returns a name for tasks and ports: letters, digits and _. */
-std::string wordOf(const std::string& name) {
-    std::string word;
-    for (const char letter : name) {
-        const bool is_kept = std::isalnum(static_cast<unsigned char>(letter)) != 0;
-        if (is_kept || (!word.empty() && word.back() != '_')) word += is_kept ? letter : '_';
-    }
-    return word.empty() ? "sonar" : word;
-}
-
 /** Returns a text as a value in YAML. */
 std::string quoted(const std::string& text) { return console::Json(text).dump(); }
-
-std::vector<std::string> partsOf(const std::string& scope) {
-    std::vector<std::string> parts;
-    for (size_t begin = 0; begin <= scope.size();) {
-        const size_t end = std::min(scope.find("::", begin), scope.size());
-        parts.push_back(scope.substr(begin, end - begin));
-        begin = end + 2;
-    }
-    return parts;
-}
 
 /** Returns the topic that Gazebo gives a sensor without one. As there, blanks of names become _, and what a topic may
  *  not have is left out. */
 std::string usualTopic(const std::string& world, const std::string& sensor) {
-    const std::vector<std::string> parts = partsOf(sensor);
-    std::string named = "/world/" + world;
-    for (size_t i = 0; i + 2 < parts.size(); ++i) named += "/model/" + parts[i];
-    named += "/link/" + parts[parts.size() - 2] + "/sensor/" + parts.back() + "/insonify";
+    const size_t last = sensor.rfind("::"), link = sensor.rfind("::", last - 1);
+    std::string named = fmt::format("/world/{}/model/{}/link/{}/sensor/{}/insonify", world, sensor.substr(0, link),
+                                    sensor.substr(link + 2, last - link - 2), sensor.substr(last + 2));
+    for (size_t at = 0; (at = named.find("::")) != named.npos;) named.replace(at, 2, "/model/");
     std::string topic;
     for (const char letter : named)
         if (letter != '@' && letter != '~' && letter != ':') topic += letter == ' ' ? '_' : letter;
@@ -76,6 +56,13 @@ std::string rosTopic(const std::string& topic) {
         name += letter;
     }
     return name;
+}
+
+/** Returns a name for tasks and ports: letters, digits and _. */
+std::string wordOf(std::string name) {
+    std::ranges::replace(name, '/', '_');
+    const std::string word = rosTopic(name).substr(1);
+    return word.empty() ? "sonar" : word;
 }
 
 std::string withoutBlanks(std::string text) {
@@ -247,25 +234,16 @@ std::string indented(const std::string& text, const std::string& by) {
     return lines + "\n";
 }
 
-/** A file in a folder of its own, which are removed when they are no longer needed. */
-class TemporaryFile {
-public:
-    explicit TemporaryFile(const std::string& text) {
-        std::string name = (fs::temp_directory_path() / "insonify_world_XXXXXX").string();
-        if (!mkdtemp(name.data())) throw types::ConfigError(name, "", "cannot be made, for the world's SDF");
-        folder_ = name;
-        std::ofstream(path()) << text;
+/** A folder that is removed when it is no longer needed. */
+struct TemporaryFolder {
+    TemporaryFolder() {
+        if (!mkdtemp(path.data())) throw types::ConfigError(path, "", "cannot be made, for the world's SDF");
     }
-    ~TemporaryFile() {
+    ~TemporaryFolder() {
         std::error_code gone;
-        fs::remove_all(folder_, gone);
+        fs::remove_all(path, gone);
     }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    fs::path path() const { return folder_ / "world.sdf"; }
-
-private:
-    fs::path folder_;
+    std::string path = fs::temp_directory_path() / "insonify_world_XXXXXX";
 };
 
 bool isFile(const std::string& world) {
@@ -278,8 +256,11 @@ scene::WorldSonars sonarsIn(const Asked& asked) {
     if (isFile(asked.world)) return scene::readWorldSonars(asked.world);
     scene::GazeboConfig config = asked.gazebo;
     config.world = asked.world;
-    const TemporaryFile file(scene::requestSdf(config));
-    return scene::readWorldSonars(file.path());
+    const std::string text = scene::requestSdf(config);
+    const TemporaryFolder folder;
+    const fs::path file = fs::path(folder.path) / "world.sdf";
+    std::ofstream(file) << text;
+    return scene::readWorldSonars(file);
 }
 
 [[noreturn]] void refuseNone(const Asked& asked, const scene::WorldSonars& found) {

@@ -1,4 +1,7 @@
 #pragma once
+#include <sys/eventfd.h>
+#include <unistd.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,6 +10,28 @@
 #include "components/gazebo/TransportOptions.hpp"
 
 namespace insonify::gazebo {
+
+/** A descriptor that becomes readable when it is raised. */
+class Alarm {
+public:
+    Alarm() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+    ~Alarm() { close(descriptor_); }
+    Alarm(const Alarm&) = delete;
+    Alarm& operator=(const Alarm&) = delete;
+
+    int descriptor() const { return descriptor_; }
+    void raise() const {
+        const uint64_t one = 1;
+        [[maybe_unused]] const auto written = write(descriptor_, &one, sizeof one);
+    }
+    void clear() const {
+        uint64_t raised = 0;
+        [[maybe_unused]] const auto count = read(descriptor_, &raised, sizeof raised);
+    }
+
+private:
+    const int descriptor_;
+};
 
 /** Sends and receives datagrams of a multicast group on all networks of this machine, including loopback. Not
  *  thread-safe. */

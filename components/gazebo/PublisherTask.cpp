@@ -7,7 +7,7 @@
 
 #include "components/framework/Graph.hpp"
 #include "components/framework/execution/Timing.hpp"
-#include "components/gazebo/Messages.hpp"
+#include "components/gazebo/Publisher.hpp"
 #include "components/gazebo/Subscriptions.hpp"
 #include "components/ros/Samples.hpp"
 #include "types/Check.hpp"

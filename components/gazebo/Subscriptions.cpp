@@ -1,8 +1,6 @@
 #include "components/gazebo/Subscriptions.hpp"
 
 #include <gazebo_messages.pb.h>  // made by the build, of messages.proto
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -172,32 +170,21 @@ public:
     Worker(const TransportOptions& options, std::vector<Topic> topics)
         : topics_(std::move(topics)),
           multicast_(options, options.topic_port),
-          stop_(eventfd(0, EFD_CLOEXEC)),
           has_publisher_(topics_.size()),
           received_(topics_.empty() ? "" : ending(topics_[0].name)) {
         socket_.set(zmq::sockopt::linger, 0);
         socket_.set(zmq::sockopt::maxmsgsize, max_message);
         for (size_t i = 0; i < topics_.size(); ++i) {
             const auto name = qualifiedName(options.partition, topics_[i].name);
-            if (!name) {
-                close(stop_);
-                throw types::ConfigError("", std::to_string(i), "is no name of a topic");
-            }
+            if (!name) throw types::ConfigError("", std::to_string(i), "is no name of a topic");
             names_.push_back(*name);
             socket_.set(zmq::sockopt::subscribe, *name);
         }
-        try {
-            thread_ = types::startThread("the topics of Gazebo", [this] { run(); });
-        } catch (...) {
-            close(stop_);
-            throw;
-        }
+        thread_ = types::startThread("the topics of Gazebo", [this] { run(); });
     }
     ~Worker() {
-        const uint64_t one = 1;
-        [[maybe_unused]] const auto written = write(stop_, &one, sizeof one);
+        stop_.raise();
         thread_.join();
-        close(stop_);
     }
 
     bool hasPublisher(size_t topic) const { return has_publisher_[topic]; }
@@ -213,7 +200,7 @@ private:
             const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next - WorkerClock::now());
             zmq::pollitem_t items[] = {{socket_.handle(), 0, ZMQ_POLLIN, 0},
                                        {nullptr, multicast_.descriptor(), ZMQ_POLLIN, 0},
-                                       {nullptr, stop_, ZMQ_POLLIN, 0}};
+                                       {nullptr, stop_.descriptor(), ZMQ_POLLIN, 0}};
             try {
                 zmq::poll(items, std::size(items), std::max(wait, std::chrono::milliseconds{0}));
                 continues = !items[2].revents;
@@ -336,7 +323,7 @@ private:
     zmq::socket_t socket_{context_, zmq::socket_type::sub};
     std::map<Key, Publication> publications_;                       ///< Publications that are received.
     std::map<std::string, WorkerClock::time_point> last_received_;  ///< Time of the last datagram of their processes.
-    const int stop_;                                                ///< Becomes readable when the thread shall end.
+    const Alarm stop_;                                              ///< Becomes readable when the thread shall end.
     std::vector<std::atomic<bool>> has_publisher_;                  ///< For each topic.
     mutable std::mutex mutex_;
     Received received_;

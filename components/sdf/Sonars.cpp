@@ -49,15 +49,9 @@ std::vector<std::string> numbersIn(const std::string& text) {
     return numbers;
 }
 
-std::string trimmed(const std::string& text) {
-    const size_t begin = text.find_first_not_of(" \t\r\n");
-    return begin == text.npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
-}
-
 /** Returns a text of SDF as a value in YAML: numbers with spaces between them are a list, texts that are not plain are
  *  quoted. Lists and blocks in YAML's short form stay. */
-std::string inYaml(const std::string& text) {
-    const std::string value = trimmed(text);
+std::string inYaml(const std::string& value) {
     if (const auto numbers = numbersIn(value); numbers.size() > 1) return fmt::format("[{}]", fmt::join(numbers, ", "));
     const bool is_plain = !value.empty() && value.find_first_of(":#'\"\n\\&*!|>%@`,[]{}") == value.npos;
     const bool is_short = value.starts_with('[') || value.starts_with('{');
@@ -148,7 +142,7 @@ private:
             }
             const std::string value = child->GetValue() ? child->GetValue()->GetAsString() : "";
             if (whole == "type") {
-                sonar.type = trimmed(value);
+                sonar.type = value;
                 continue;
             }
             if (sonar.settings.size() >= max_settings)
