@@ -29,7 +29,7 @@ float elevationPower(uint i) { return numbers[first_elevation + i]; }
 #ifdef HAVE_BACKSCATTER_LAWS
 uniform uint first_backscatter;  // among the numbers
 uniform uint first_facet;        // among the vectors of the planes
-FacetRecord facetOf(uint triangle) {
+FacetRecord readFacet(uint triangle) {
     uint at = first_facet + 3u * triangle;
     return FacetRecord(planes[at], planes[at + 1u], planes[at + 2u]);
 }
@@ -37,17 +37,17 @@ float backscatterEntry(uint i) { return numbers[first_backscatter + i]; }
 #include "backscatter.glsl"
 #endif
 
-Pair pairOf(vec2 both) { return Pair(both.x, both.y); }
+Pair readPair(vec2 both) { return Pair(both.x, both.y); }
 
 // The current cell: the inverse range to which its places are relative, and the place of its pixel's echo.
 float origin = 0.0, pixel_place = 0.0;
 float inverseRange(float place) { return origin + place; }
 
-Pair edgeOf(uint k) { return Pair(numbers[2u * k], numbers[2u * k + 1u]); }
-float binEdge(uint k) { return beyond(edgeOf(k), origin); }
+Pair getEdge(uint k) { return Pair(numbers[2u * k], numbers[2u * k + 1u]); }
+float binEdge(uint k) { return beyond(getEdge(k), origin); }
 
 // Returns the bin that contains a place in range. Edge 0 is the near blanking, which may be in any bin.
-uint binOf(float place) {
+uint findBin(float place) {
     uint bin = min(uint(1.0 / (inverseRange(place) * bin_width)), bin_count - 1u);
     while (bin > 0u && binEdge(bin) < place) --bin;
     while (bin < bin_count - 1u && binEdge(bin + 1u) >= place) ++bin;
@@ -55,9 +55,9 @@ uint binOf(float place) {
 }
 
 // Length of a part of a bin; exact for a whole bin, at any distance from the origin.
-float lengthOf(uint bin, float below, float above) {
+float computeLength(uint bin, float below, float above) {
     bool whole = below == binEdge(bin + 1u) && above == binEdge(bin);
-    return whole ? sumOf(edgeOf(bin), negative(edgeOf(bin + 1u))).high : above - below;
+    return whole ? computeSum(getEdge(bin), negative(getEdge(bin + 1u))).high : above - below;
 }
 
 #ifdef HAVE_CERQUEIRA2017
@@ -67,13 +67,13 @@ const uint channels = 1u;
 #endif
 
 #ifdef HAVE_VOLUME
-uint cellOf(uint beam, uint bin, uint channel) { return 2u * beam * beam_stride + bin; }  // the volume follows
+uint findCell(uint beam, uint bin, uint channel) { return 2u * beam * beam_stride + bin; }  // the volume follows
 #else
-uint cellOf(uint beam, uint bin, uint channel) { return channels * (beam * beam_stride + bin) + channel; }
+uint findCell(uint beam, uint bin, uint channel) { return channels * (beam * beam_stride + bin) + channel; }
 #endif
 
 // Low and high word of an amount in quanta of 2^-40.
-uvec2 quantaOf(float amount) {
+uvec2 toQuanta(float amount) {
     float high = min(amount, 1048576.0) * 256.0, whole = floor(high);
     return uvec2(uint((high - whole) * 4294967296.0 + 0.5), uint(whole));
 }
@@ -92,10 +92,10 @@ shared uint first_beam, first_bin;
 shared uint group_low[group_cells], group_high[group_cells];
 
 void add(uint beam, uint bin, uint channel, float amount) {
-    uvec2 quanta = quantaOf(amount);
+    uvec2 quanta = toQuanta(amount);
     uint row = beam - first_beam, column = bin - first_bin;  // earlier beams and bins wrap to beyond the span
     if (row >= group_beams || column >= group_bins) {
-        addToMemory(cellOf(beam, bin, channel), quanta);
+        addToMemory(findCell(beam, bin, channel), quanta);
         return;
     }
     uint cell = channels * (row * group_bins + column) + channel;
@@ -121,7 +121,7 @@ void endGroup() {
     for (uint i = gl_LocalInvocationIndex; i < group_cells; i += 64u) {
         uint beam = first_beam + i / (channels * group_bins), bin = first_bin + i / channels % group_bins;
         uvec2 quanta = uvec2(group_low[i], group_high[i]);
-        if (quanta != uvec2(0u)) addToMemory(cellOf(beam, bin, i % channels), quanta);
+        if (quanta != uvec2(0u)) addToMemory(findCell(beam, bin, i % channels), quanta);
     }
 }
 
@@ -133,7 +133,7 @@ void addToBin(uint beam, uint bin, float amount, float weight) {
 }
 
 #include "jitter.glsl"
-Pair jitterOf(ivec2 pixel, uint which) {  // jitter() with all 32 bits
+Pair makeJitter(ivec2 pixel, uint which) {  // jitter() with all 32 bits
     uint word = jitterWord(uint(pixel.x), uint(pixel.y), which);
     return exactSum(float(word >> 8u) * (1.0 / 16777216.0) - 0.5, float(word & 255u) * (1.0 / 4294967296.0));
 }
@@ -146,7 +146,7 @@ Pair jitterOf(ivec2 pixel, uint which) {  // jitter() with all 32 bits
 
 #ifdef HAVE_VOLUME
 void addVolume(uint beam, uint bin, float amount) {
-    uvec2 quanta = quantaOf(abs(amount));
+    uvec2 quanta = toQuanta(abs(amount));
     if (amount < 0.0) quanta = uvec2(~quanta.x + 1u, ~quanta.y + uint(quanta.x == 0u));
     addToMemory((2u * beam + 1u) * beam_stride + bin, quanta);
 }
@@ -175,7 +175,7 @@ void depositVolume(Footprint cell, uint beam, vec2 uv) {
 struct Ray {
     Pair u, v;
 };
-vec2 directionOf(Ray ray) { return vec2(ray.u.high, ray.v.high); }
+vec2 computeDirection(Ray ray) { return vec2(ray.u.high, ray.v.high); }
 
 // A vector in the frustum's axes.
 struct Placed {
@@ -183,20 +183,20 @@ struct Placed {
 };
 vec3 rounded(Placed a) { return vec3(a.x.high, a.y.high, a.z.high); }
 
-Pair dotOf(vec3 a, vec3 b) {
-    return sumOf(sumOf(exactProduct(a.x, b.x), exactProduct(a.y, b.y)), exactProduct(a.z, b.z));
+Pair multiplyDot(vec3 a, vec3 b) {
+    return computeSum(computeSum(exactProduct(a.x, b.x), exactProduct(a.y, b.y)), exactProduct(a.z, b.z));
 }
-Pair difference(Pair a, Pair b) { return sumOf(a, negative(b)); }
+Pair difference(Pair a, Pair b) { return computeSum(a, negative(b)); }
 
 // Transforms a normal, or another vector that transforms like normals.
 Placed placed(ObjectRecord object, vec3 normal) {
-    Pair x = dotOf(object.normal_x.xyz, normal), y = dotOf(object.normal_y.xyz, normal);
-    Pair c = pairOf(axis_cosine), s = pairOf(axis_sine);
-    return Placed(sumOf(product(c, x), product(s, y)), difference(product(c, y), product(s, x)),
-                  dotOf(object.normal_z.xyz, normal));
+    Pair x = multiplyDot(object.normal_x.xyz, normal), y = multiplyDot(object.normal_y.xyz, normal);
+    Pair c = readPair(axis_cosine), s = readPair(axis_sine);
+    return Placed(computeSum(product(c, x), product(s, y)), difference(product(c, y), product(s, x)),
+                  multiplyDot(object.normal_z.xyz, normal));
 }
 
-float strengthOf(uint material) {
+float computeStrength(uint material) {
 #ifdef HAVE_CERQUEIRA2017
     return materials[material].values.y * strength_scale;
 #else
@@ -219,20 +219,20 @@ struct Seen {
 };
 
 // Distance of a plane from the sonar along its normal.
-Pair distanceOf(PlaneRecord plane, ObjectRecord object) {
+Pair computeDistance(PlaneRecord plane, ObjectRecord object) {
     vec3 n = plane.normal.xyz, point = plane.point.xyz, eye = object.eye.xyz, rest = object.eye_rest.xyz;
     Pair sum = Pair(plane.normal.w, 0.0);
     for (int i = 0; i < 3; ++i)
-        sum = sumOf(sum, product(Pair(n[i], 0.0), sumOf(exactSum(point[i], -eye[i]), Pair(-rest[i], 0.0))));
+        sum = computeSum(sum, product(Pair(n[i], 0.0), computeSum(exactSum(point[i], -eye[i]), Pair(-rest[i], 0.0))));
     return sum;
 }
 
 // Length times the cosine of incidence, and the length of the ray.
 Pair alongRay(Placed normal, Ray ray) {
-    return sumOf(sumOf(normal.x, product(normal.y, ray.u)), product(normal.z, ray.v));
+    return computeSum(computeSum(normal.x, product(normal.y, ray.u)), product(normal.z, ray.v));
 }
 Pair lengthOfRay(Ray ray) {
-    return root(sumOf(sumOf(Pair(1.0, 0.0), product(ray.u, ray.u)), product(ray.v, ray.v)));
+    return root(computeSum(computeSum(Pair(1.0, 0.0), product(ray.u, ray.u)), product(ray.v, ray.v)));
 }
 
 Seen seenAt(ivec2 pixel, Ray ray) {
@@ -248,27 +248,27 @@ Seen seenAt(ivec2 pixel, Ray ray) {
     seen.triangle = command.first_triangle + texel.y;
     PlaneRecord plane = PlaneRecord(planes[2u * seen.triangle], planes[2u * seen.triangle + 1u]);
     seen.normal = placed(object, plane.normal.xyz);
-    seen.normal_length = root(sumOf(sumOf(product(seen.normal.x, seen.normal.x), product(seen.normal.y, seen.normal.y)),
+    seen.normal_length = root(computeSum(computeSum(product(seen.normal.x, seen.normal.x), product(seen.normal.y, seen.normal.y)),
                                product(seen.normal.z, seen.normal.z)));
-    seen.distance = distanceOf(plane, object);
+    seen.distance = computeDistance(plane, object);
 #ifdef HAVE_JITTER
-    seen.ray.u = sumOf(ray.u, product(pairOf(pixel_u), jitterOf(pixel, 0u)));
-    seen.ray.v = sumOf(ray.v, product(pairOf(pixel_v), jitterOf(pixel, 1u)));
+    seen.ray.u = computeSum(ray.u, product(readPair(pixel_u), makeJitter(pixel, 0u)));
+    seen.ray.v = computeSum(ray.v, product(readPair(pixel_v), makeJitter(pixel, 1u)));
 #endif
-    seen.strength = strengthOf(command.material);
+    seen.strength = computeStrength(command.material);
 #ifdef HAVE_NORMAL_MAP
     if (texel.z != 0u) seen.mapped = uintBitsToFloat(texel.z);
 #endif
     seen.reach = object.extent.xy;
     seen.material = command.material;
 #ifdef HAVE_BACKSCATTER_LAWS
-    if (materials[seen.material].law.y > 0.0) seen.axis = normalize(rounded(placed(object, facetOf(seen.triangle).axis.xyz)));
+    if (materials[seen.material].law.y > 0.0) seen.axis = normalize(rounded(placed(object, readFacet(seen.triangle).axis.xyz)));
 #endif
     return seen;
 }
 
 // Index in share_starts of the begin of a pixel's shares; the next entry is their end.
-uint sharesOf(ivec2 pixel) {
+uint computeShares(ivec2 pixel) {
 #ifdef HAVE_CONICAL
     return uint(pixel.x + pixel.y * image_size.x);  // the boundaries of beams differ between rows
 #else
@@ -280,7 +280,7 @@ uint sharesOf(ivec2 pixel) {
 struct Angles {
     float cos_az, sin_az, cos_el, sin_el;
 };
-Angles anglesOf(vec2 uv) {
+Angles computeAngles(vec2 uv) {
     float level = sqrt(1.0 + uv.x * uv.x), per_length = 1.0 / sqrt(1.0 + dot(uv, uv));
     return Angles(1.0 / level, uv.x / level, level * per_length, uv.y * per_length);
 }
@@ -294,7 +294,7 @@ struct Covered {
 // Returns the part of the plane along a ray that a cell covers, as planeFootprint() in C++. Sets `origin` and
 // `pixel_place`.
 Covered covered(Seen seen, Ray towards, PictureCell cell) {
-    Angles at = anglesOf(directionOf(towards));
+    Angles at = computeAngles(computeDirection(towards));
     vec3 normal = rounded(seen.normal);
     Pair facing = quotient(alongRay(seen.normal, towards), lengthOfRay(towards));
     float ahead = normal.x * at.cos_az + normal.y * at.sin_az, aside = normal.y * at.cos_az - normal.x * at.sin_az;
@@ -326,11 +326,11 @@ float strengthRange(Seen seen, Covered cell, vec2 towards, float width, float he
         float cosine = mapped ? seen.mapped : min(cell.perpendicular * inverse_range, 1.0);
         LobeSlopes slopes = LobeSlopes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         if (material.law.y > 0.0) {
-            Angles at = anglesOf(towards);
+            Angles at = computeAngles(towards);
             vec3 normal = rounded(seen.normal) / seen.normal_length.high;
             LobeView view = LobeView(Axis(normal.x, normal.y, normal.z), Axis(seen.axis.x, seen.axis.y, seen.axis.z),
                                      1.0 / inverse_range, at.cos_az, at.sin_az, at.cos_el, at.sin_el, width, height, seen.mapped);
-            slopes = lobeSlopes(facetOf(seen.triangle), material.law.z, view);
+            slopes = lobeSlopes(readFacet(seen.triangle), material.law.z, view);
         }
         return strength_scale / inverse_range * backscatterOverCosine(material.law, material.values.x, cosine, slopes);
     }
@@ -343,16 +343,16 @@ struct LookDirection {
     Ray towards;
     float rise;
 };
-LookDirection lookDirectionOf(DeviceShare share, Ray ray) {
-    Pair middle = pairOf(share.middle), limit = pairOf(share.limit);
+LookDirection computeLookDirection(DeviceShare share, Ray ray) {
+    Pair middle = readPair(share.middle), limit = readPair(share.limit);
     float lean = ray.v.high * share.shear * difference(middle, ray.u).high;
     PictureRow row = pictureRow(ray.v.low + lean, pixel_v.x, beyond(negative(limit), ray.v.high), beyond(limit, ray.v.high));
     return LookDirection(Ray(middle, exactSum(ray.v.high, row.middle)), row.rise);
 }
 
 void depositShare(DeviceShare share, Ray ray, Seen seen) {
-    LookDirection look = lookDirectionOf(share, ray);
-    vec2 middle = directionOf(look.towards);
+    LookDirection look = computeLookDirection(share, ray);
+    vec2 middle = computeDirection(look.towards);
     PictureCell cell = pictureCell(middle.x, middle.y, share.width, look.rise, 1.0 / (pixel_u.x * pixel_v.x));
 #if defined(HAVE_NEAREST) || defined(HAVE_PUBLISHED)
     Ray towards = seen.ray;
@@ -364,7 +364,7 @@ void depositShare(DeviceShare share, Ray ray, Seen seen) {
         if (of_ray * of_cell > 0.0) seen.mapped *= of_cell / of_ray;
     }
 #endif
-    vec2 uv = directionOf(towards);
+    vec2 uv = computeDirection(towards);
     Covered seen_cell = covered(seen, towards, cell);
     depositCell(seen_cell.footprint, share.beam, strengthRange(seen, seen_cell, uv, cell.width, cell.height));
 #ifdef HAVE_VOLUME
@@ -374,7 +374,7 @@ void depositShare(DeviceShare share, Ray ray, Seen seen) {
 }
 
 void depositPixel(ivec2 pixel, Ray ray, Seen seen) {
-    uint at = sharesOf(pixel);
+    uint at = computeShares(pixel);
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) depositShare(shares[i], ray, seen);
 }
 
@@ -387,7 +387,7 @@ uint firstBin(Seen seen) {
 
 // (place + 0.5) * size - extent.
 Pair middle(int place, vec2 size, vec2 extent) {
-    return difference(product(Pair(float(place) + 0.5, 0.0), pairOf(size)), pairOf(extent));
+    return difference(product(Pair(float(place) + 0.5, 0.0), readPair(size)), readPair(extent));
 }
 
 void main() {
@@ -395,7 +395,7 @@ void main() {
     bool inside = all(lessThan(pixel, image_size));
     Ray ray = Ray(middle(pixel.x, pixel_u, extent_u), middle(pixel.y, pixel_v, extent_v));
     Seen seen = seenAt(min(pixel, image_size - 1), ray);
-    uint at = sharesOf(min(pixel, image_size - 1)), share = share_starts[at];
+    uint at = computeShares(min(pixel, image_size - 1)), share = share_starts[at];
     bool received = inside && share < share_starts[at + 1u];
     beginGroup(received ? shares[share].beam : 0u, received ? firstBin(seen) : bin_count);
     if (inside) depositPixel(pixel, ray, seen);

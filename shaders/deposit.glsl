@@ -1,7 +1,7 @@
 // Shared by C++ and GLSL: spreads one cell's echo over the bins that its footprint covers.
 // The includer includes footprint.glsl and trapezoid.glsl before this file, and defines:
 //     double binEdge(uint k);                      place of edge k [1/m]; edge 0 is the near blanking, edge n the far end
-//     uint binOf(double place);                    the bin that contains a place in range, up to rounding
+//     uint findBin(double place);                    the bin that contains a place in range, up to rounding
 //     void addToBin(uint beam, uint bin, double amount, double weight);
 //     uint bin_count; double bin_width [m], attenuation (amplitude, one way, cerqueira2017) [Np/m]
 
@@ -42,7 +42,7 @@ double shareAt(Footprint cell, double inverse_range) {
 double firstShare(Footprint cell, double inverse_range) {
     if (inverse_range < cell.nearest) return shareAt(cell, inverse_range);
     if (!(cell.limb > 0.0)) return 0.5;
-    return limbShare(cell, inverse_range) + 0.5 - trapezoidShare(cell, placeOf(cell, inverse_range) - cell.centre);
+    return limbShare(cell, inverse_range) + 0.5 - trapezoidShare(cell, getPlace(cell, inverse_range) - cell.centre);
 }
 
 #ifdef HAVE_PUBLISHED
@@ -52,7 +52,7 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     double range = cell.pixel > 0.0 ? 1.0 / cell.pixel : 0.0;
 #ifdef GLSL
     bool received = range > 0.0 && pixel_place >= binEdge(bin_count - 1u);
-    uint bin = received ? binOf(pixel_place) : 0u;
+    uint bin = received ? findBin(pixel_place) : 0u;
 #else
     bool received = range > 0.0 && range <= double(bin_count - 1u) * bin_width;
     uint bin = received ? uint(range / bin_width) : 0u;
@@ -72,7 +72,7 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     double place = cell.pixel;
 #endif
     if (!(cell.pixel > 0.0 && place > binEdge(bin_count)) || place > binEdge(0u)) return;
-    uint bin = binOf(place);
+    uint bin = findBin(place);
     double relative = (double(bin) + 0.5) * bin_width * cell.pixel;
     addToBin(beam, bin, strength_range * cell.size * cell.pixel * relative * relative, 0.0);
 }
@@ -80,7 +80,7 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
 // `strength_range` = strength times slant range [m].
 void depositCell(Footprint cell, uint beam, double strength_range) {
     if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;  // false for NaN
-    uint bin = binOf(cell.near_end);
+    uint bin = findBin(cell.near_end);
     while (bin > 0u && binEdge(bin) < cell.near_end) --bin;
     while (binEdge(bin + 1u) >= cell.near_end) ++bin;
     double above = cell.near_end;
@@ -88,7 +88,7 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     for (; above > cell.far_end; ++bin) {
         double below = max(binEdge(bin + 1u), cell.far_end);
         double to = above < cell.nearest ? above : cell.centre + cell.wide;
-        double share = partShare(cell, below - cell.centre, to - cell.centre, lengthOf(bin, below, to));
+        double share = partShare(cell, below - cell.centre, to - cell.centre, computeLength(bin, below, to));
         depositPart(cell, beam, bin, share, inverseRange(above), inverseRange(below), strength_range);
         above = below;
     }

@@ -28,7 +28,7 @@ Pair exactProduct(float a, float b) {
 
 Pair negative(Pair a) { return Pair(-a.high, -a.low); }
 
-Pair sumOf(Pair a, Pair b) {
+Pair computeSum(Pair a, Pair b) {
     Pair high = exactSum(a.high, b.high);
     precise float low = high.low + (a.low + b.low);
     return exactSum(high.high, low);
@@ -42,7 +42,7 @@ Pair product(Pair a, Pair b) {
 
 Pair quotient(Pair a, Pair b) {
     precise float first = a.high / b.high;
-    Pair rest = sumOf(a, negative(product(b, Pair(first, 0.0f))));
+    Pair rest = computeSum(a, negative(product(b, Pair(first, 0.0f))));
     precise float second = rest.high / b.high;
     return exactSum(first, second);
 }
@@ -50,7 +50,7 @@ Pair quotient(Pair a, Pair b) {
 // The square root of a number above 0.
 Pair root(Pair a) {
     precise float first = sqrt(a.high);
-    Pair rest = sumOf(a, negative(exactProduct(first, first)));
+    Pair rest = computeSum(a, negative(exactProduct(first, first)));
     precise float second = 0.5f * rest.high / first;
     return exactSum(first, second);
 }

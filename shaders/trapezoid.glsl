@@ -26,12 +26,12 @@ double partShare(Footprint cell, double from, double to, double length) {
 }
 
 // Place of an inverse range on a trapezoid with a limb.
-real placeOf(Footprint cell, real inverse_range) { return inverse_range + cell.limb * cell.limb / inverse_range; }
+real getPlace(Footprint cell, real inverse_range) { return inverse_range + cell.limb * cell.limb / inverse_range; }
 
 // Share up to an inverse range on a body with a limb. The part behind the limb is mirrored to the same distance before
 // it, where it represents the cells whose middles miss the body (ACOUSTICS.md 4.7).
 real limbShare(Footprint cell, real inverse_range) {
-    real place = placeOf(cell, inverse_range);
+    real place = getPlace(cell, inverse_range);
     return trapezoidShare(cell, place - cell.centre) - trapezoidShare(cell, 4.0 * cell.limb - cell.centre - place);
 }
 

@@ -16,7 +16,7 @@ fs::path resolved(const fs::path& path) {
 }
 
 /** Returns the folder of the model or ROS package that contains a folder; the folder itself: neither does. */
-fs::path modelOf(const fs::path& folder) {
+fs::path getModel(const fs::path& folder) {
     std::error_code none;
     fs::path at = folder;
     for (int level = 0; level <= 3 && at.has_relative_path(); ++level, at = at.parent_path())
@@ -36,7 +36,7 @@ bool isBelow(const fs::path& path, const fs::path& folder) {
 bool belongsTo(const fs::path& named, const fs::path& naming) {
     std::error_code failed;
     const fs::path folder = resolved(fs::absolute(naming, failed).parent_path()), own = resolved(naming).parent_path();
-    const auto isIn = [&](const fs::path& each) { return !each.empty() && isBelow(named, modelOf(each)); };
+    const auto isIn = [&](const fs::path& each) { return !each.empty() && isBelow(named, getModel(each)); };
     return isIn(folder) || isIn(own);  // the file's place, and that of the file that it links to
 }
 

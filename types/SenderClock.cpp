@@ -2,7 +2,7 @@
 
 namespace insonify::types {
 
-SenderClock::Order SenderClock::orderOf(Time stamp, Time arrival) const {
+SenderClock::Order SenderClock::findOrder(Time stamp, Time arrival) const {
     if (!newest_ || stamp > *newest_) return Order::Next;
     if (stamp == *newest_) return Order::Repeated;
     const bool begins_anew = *newest_ - stamp > max_lateness || elapsed(newest_came_, arrival) > max_silence;
@@ -26,7 +26,7 @@ void SenderClock::follow(Time delay, Time arrival) {
 }
 
 SenderClock::Reading SenderClock::read(Time stamp, Time arrival) {
-    const Order order = orderOf(stamp, arrival);
+    const Order order = findOrder(stamp, arrival);
     if (order == Order::Repeated || order == Order::Late) return {order, time_};
     const bool ours_went_back = newest_ && arrival < newest_came_;
     const Time delay = arrival - stamp;

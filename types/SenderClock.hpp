@@ -32,7 +32,7 @@ public:
     Reading read(Time stamp, Time arrival);
 
 private:
-    Order orderOf(Time stamp, Time arrival) const;
+    Order findOrder(Time stamp, Time arrival) const;
     void follow(Time delay, Time arrival);
 
     std::optional<Time> newest_;  ///< The newest stamp.

@@ -35,7 +35,7 @@ double solidSection(const RoughSurface& surface, double grazing) {
            objectSection(nothing_db, reflection, std::max(surface.squareSlope(), min_square_slope), std::sin(grazing));
 }
 
-double BackscatterTable::cosineOf(int entry) {
+double BackscatterTable::computeCosine(int entry) {
     constexpr int low = 256, high = 768;  // entries at 1/16 and 15/16
     if (entry <= low) return std::max(min_cosine, entry / 4096.0);
     if (entry <= high) return 1.0 / 16 + (entry - low) * (7 / 4096.0);
@@ -44,7 +44,7 @@ double BackscatterTable::cosineOf(int entry) {
 
 BackscatterTable::BackscatterTable(const std::function<double(double)>& section) {
     for (int i = 0; i < entries; ++i) {
-        const double cosine = cosineOf(i);
+        const double cosine = computeCosine(i);
         values_[static_cast<size_t>(i)] = section(std::asin(cosine)) / cosine;
     }
 }

@@ -42,7 +42,7 @@ public:
     explicit BackscatterTable(const std::function<double(double)>& section);
 
     /** Returns the cosine of incidence of an entry; the first has that of 0.001 deg of grazing [1]. */
-    static double cosineOf(int entry);
+    static double computeCosine(int entry);
     /** Returns the entries. */
     const std::array<double, entries>& values() const { return values_; }
 

@@ -51,15 +51,15 @@ using std::numbers::pi;
 constexpr double default_sidelobe_db = -30;
 constexpr int default_nbar = 4;
 
-Weighting weightingOf(const BeamLaw& law) { return law.weighting.value_or(Weighting::Uniform); }
+Weighting getWeighting(const BeamLaw& law) { return law.weighting.value_or(Weighting::Uniform); }
 
-Taper taperOf(const BeamLaw& law, int elements) {
-    return Taper(weightingOf(law), law.sidelobe_db.value_or(default_sidelobe_db), law.nbar.value_or(default_nbar),
+Taper computeTaper(const BeamLaw& law, int elements) {
+    return Taper(getWeighting(law), law.sidelobe_db.value_or(default_sidelobe_db), law.nbar.value_or(default_nbar),
                  elements);
 }
 
 /** Returns the number of elements of half a wavelength each. */
-int elementsOf(double aperture) { return std::max(2, static_cast<int>(std::lround(2 * aperture))); }
+int countElements(double aperture) { return std::max(2, static_cast<int>(std::lround(2 * aperture))); }
 
 /** Returns the levels relative to the level on the axis. Mirrors a curve that was measured on one side only. */
 Curve aboutTheAxis(Curve curve, const std::string& file) {
@@ -103,7 +103,7 @@ double halfPowerAngle(const std::function<double(double)>& power) {
     return low;
 }
 
-Side sideOf(const std::function<double(double)>& power) {
+Side computeSide(const std::function<double(double)>& power) {
     constexpr int steps_per_half_width = 40;
     Side side;
     side.half_width = halfPowerAngle(power);
@@ -221,7 +221,7 @@ std::complex<double> ElementField::at(double u) const {
 }
 
 void BeamLaw::check(types::Diagnostics& diagnostics) const {
-    const Weighting chosen = weightingOf(*this);
+    const Weighting chosen = getWeighting(*this);
     const int given = (width_deg ? 1 : 0) + (aperture_m ? 1 : 0) + (file.empty() ? 0 : 1);
     if (given == 0) diagnostics.push_back({"", "has no width; give width_deg, aperture_m or file"});
     if (given > 1) diagnostics.push_back({"", "has several widths; give one of width_deg, aperture_m and file"});
@@ -236,7 +236,7 @@ void BeamLaw::check(types::Diagnostics& diagnostics) const {
     if (nbar && chosen != Weighting::Taylor) diagnostics.push_back({"nbar", "is given; only taylor takes it"});
 }
 
-BeamPattern::BeamPattern(const BeamLaw& law, std::optional<double> wavelength) : taper_(taperOf(law, 64)) {
+BeamPattern::BeamPattern(const BeamLaw& law, std::optional<double> wavelength) : taper_(computeTaper(law, 64)) {
     if (law.file.empty())
         scaleTo(law, wavelength);
     else
@@ -247,13 +247,13 @@ void BeamPattern::scaleTo(const BeamLaw& law, std::optional<double> wavelength) 
     if (law.aperture_m) {
         if (!wavelength) throw types::ConfigError("", "aperture_m", "is given without frequency_khz, which it needs");
         aperture_ = *law.aperture_m / *wavelength;
-        taper_ = taperOf(law, elementsOf(aperture_));
+        taper_ = computeTaper(law, countElements(aperture_));
         return;
     }
     const double sine = 2 * std::sin(law.width_deg.value() * pi / 360);
     for (int i = 0; i < 4; ++i) {  // the width of Dolph's beams depends a little on the number of elements
         aperture_ = taper_.halfPowerWidth() / sine;
-        taper_ = taperOf(law, elementsOf(aperture_));
+        taper_ = computeTaper(law, countElements(aperture_));
     }
     aperture_ = taper_.halfPowerWidth() / sine;
 }
@@ -274,8 +274,8 @@ double BeamPattern::amplitude(double angle, double axis) const {
     return taper_.amplitude(aperture_ * (std::sin(angle) - std::sin(axis)));
 }
 
-CutShape shapeOf(const std::function<double(double)>& power) {
-    const Side right = sideOf(power), left = sideOf([&](double angle) { return power(-angle); });
+CutShape getShape(const std::function<double(double)>& power) {
+    const Side right = computeSide(power), left = computeSide([&](double angle) { return power(-angle); });
     CutShape shape{right.half_width + left.half_width, right.first_null, {}};
     if (left.first_null) shape.first_null = std::min(*left.first_null, right.first_null.value_or(*left.first_null));
     const double highest = std::max(left.sidelobe, right.sidelobe);

@@ -125,7 +125,7 @@ struct CutShape {
 };
 
 /** Returns the shape of a power pattern over angles from -pi/2 to pi/2 [rad]; the power at 0 must be 1. */
-CutShape shapeOf(const std::function<double(double)>& power);
+CutShape getShape(const std::function<double(double)>& power);
 /** Returns the integral of a power pattern over the sine of the angle, from -1 to 1 [1]. */
 double integralOverSine(const std::function<double(double)>& power);
 

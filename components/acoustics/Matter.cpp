@@ -29,7 +29,7 @@ double rockRms(double longest) {
     const double lowest = 2 * std::numbers::pi / (100 * longest), over = rock.roughness_slope - 2;  // [rad/cm], [1]
     return std::sqrt(2 * std::numbers::pi * rock.roughness * std::pow(lowest, -over) / over) / 100;
 }
-constexpr double lengthOf(double longest) { return longest / (2 * std::numbers::pi); }
+constexpr double computeLength(double longest) { return longest / (2 * std::numbers::pi); }
 constexpr double longest_of_bed = 1, longest_of_block = 0.1;  ///< [m]
 
 /** Returns the speed of sound [m/s] of a mixture of water and calcite of a density [kg/m^3], by Wood's equation
@@ -57,13 +57,13 @@ const MatterProperties table[] = {
      "ASTM E494 2015, middle of its range", moody},
     {Matter::Bronze, 0.93, 8860, 4500, 2230, 1e-3, rms(1.5e-6), length_over_rms * rms(1.5e-6), true,
      "ASTM E494 2015, compressional speed typical", moody},
-    {Matter::Granite, 0.81, 2650, 5500, 3000, 2e-3, rockRms(longest_of_block), lengthOf(longest_of_block), true,
+    {Matter::Granite, 0.81, 2650, 5500, 3000, 2e-3, rockRms(longest_of_block), computeLength(longest_of_block), true,
      "Carmichael 1989", report},
-    {Matter::Basalt, 0.81, 2700, 5400, 3000, 2e-3, rockRms(longest_of_block), lengthOf(longest_of_block), true,
+    {Matter::Basalt, 0.81, 2700, 5400, 3000, 2e-3, rockRms(longest_of_block), computeLength(longest_of_block), true,
      "Carmichael 1989", report},
     {Matter::Concrete, 0.69, 2300, 3700, 2200, 1e-2, rms(1e-3), length_over_rms * rms(1e-3), true,
      "Malhotra and Carino 2004", moody},
-    {Matter::Limestone, 0.65, 2400, 3000, 1700, 1e-2, rockRms(longest_of_block), lengthOf(longest_of_block), true,
+    {Matter::Limestone, 0.65, 2400, 3000, 1700, 1e-2, rockRms(longest_of_block), computeLength(longest_of_block), true,
      "Jensen et al. 2011", report},
     {Matter::Gravel, 0.40, 2000, 1800, 180, 0.011, 0, 0, false, "Jensen et al. 2011", none},
     {Matter::Sand, 0.355, 1900, 1650, 110, 0.0147, 0, 0, false, "Jensen et al. 2011", none},
@@ -95,7 +95,7 @@ const MatterProperties table[] = {
      "Idelchik 2007, smooth rubber, by Adams et al. 2012; length decided here"},
     {Matter::Wood, 0.15, 1100, 1900, 0, 5e-2, rms(400e-6), length_over_rms * rms(400e-6), false,
      "Bucur 2006, wet oak across the grain", moody},
-    {Matter::Rock, 0.72, 2562, 3750, 1970, 0.01374, rockRms(longest_of_bed), lengthOf(longest_of_bed), false,
+    {Matter::Rock, 0.72, 2562, 3750, 1970, 0.01374, rockRms(longest_of_bed), computeLength(longest_of_bed), false,
      "APL-UW 1994; shear speed Pickett 1963", report},
     {Matter::Rope, 0.31, 1110, 2620, 1070, 2e-2, strand_rms * rope_strand, strand_length * rope_strand, false,
      "Haynes 2014, nylon", "derived here, strands of 10 mm"},
@@ -111,7 +111,7 @@ const MatterProperties table[] = {
 
 }  // namespace
 
-const MatterProperties& propertiesOf(Matter matter) { return table[static_cast<size_t>(matter)]; }
+const MatterProperties& getProperties(Matter matter) { return table[static_cast<size_t>(matter)]; }
 
 std::optional<Matter> matterNamed(std::string_view name) {
     const auto& names = types::EnumNames<Matter>::names;
@@ -119,7 +119,7 @@ std::optional<Matter> matterNamed(std::string_view name) {
     return found == std::end(names) ? std::nullopt : std::optional(static_cast<Matter>(found - names));
 }
 
-std::string_view nameOf(Matter matter) { return types::EnumNames<Matter>::names[static_cast<size_t>(matter)]; }
+std::string_view getName(Matter matter) { return types::EnumNames<Matter>::names[static_cast<size_t>(matter)]; }
 
 size_t matterCount() { return std::size(table); }
 

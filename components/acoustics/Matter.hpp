@@ -58,10 +58,10 @@ struct MatterProperties {
     bool hasRoughness() const { return roughness > 0; }
 };
 
-const MatterProperties& propertiesOf(Matter matter);
+const MatterProperties& getProperties(Matter matter);
 /** Returns the matter of a name such as "steel"; none for a name that the table does not have. */
 std::optional<Matter> matterNamed(std::string_view name);
-std::string_view nameOf(Matter matter);
+std::string_view getName(Matter matter);
 size_t matterCount();
 
 }  // namespace insonify::acoustics

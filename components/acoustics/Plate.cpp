@@ -32,7 +32,7 @@ Wave waveIn(const Plate& plate, double speed, double frequency, double slowness)
 }
 
 /** Returns the impedance of a wave in a fluid along the normal [Pa s/m]. */
-Complex impedanceOf(const Fluid& fluid, double slowness) {
+Complex computeImpedance(const Fluid& fluid, double slowness) {
     const Complex normal = std::sqrt(Complex(1 / (fluid.sound_speed * fluid.sound_speed) - slowness * slowness, 0));
     return fluid.density /
            (std::abs(normal) > grazing_cosine / fluid.sound_speed ? normal : grazing_cosine / fluid.sound_speed);
@@ -41,7 +41,7 @@ Complex impedanceOf(const Fluid& fluid, double slowness) {
 constexpr double min_rest = 1e-3;  ///< Below this share of all returns, the rest is added to the last return [1].
 
 /** Returns the terms of a series of the given sum; `term(k)` is the k-th term. */
-std::vector<double> termsOf(double sum, size_t max_count, const auto& term) {
+std::vector<double> computeTerms(double sum, size_t max_count, const auto& term) {
     std::vector<double> terms;
     double rest = sum;
     while (terms.empty() || (rest > min_rest * sum && terms.size() < max_count)) {
@@ -66,19 +66,19 @@ PlateReturns plateReturns(const Plate& plate, const Fluid& before, const Fluid& 
     const double first = std::norm(front), in_and_out = std::norm(1.0 - front * front);
     const double second = in_and_out * std::norm(back) * crossing * crossing;
     const double straight = in_and_out * std::norm(1.0 - back * back) * crossing * crossing;
-    return {termsOf(first + second / (1 - again), max_count,
-                    [&](size_t k) { return k == 0 ? first : second * std::pow(again, k - 1); }),
-            termsOf(straight * (1 + again) / std::pow(1 - again, 3), max_count,
-                    [&](size_t k) { return straight * std::pow(k + 1, 2) * std::pow(again, k); }),
-            termsOf(std::sqrt(straight) / (1 - again), max_count,
-                    [&](size_t k) { return std::sqrt(straight) * std::pow(again, k); })};
+    return {computeTerms(first + second / (1 - again), max_count,
+                         [&](size_t k) { return k == 0 ? first : second * std::pow(again, k - 1); }),
+            computeTerms(straight * (1 + again) / std::pow(1 - again, 3), max_count,
+                         [&](size_t k) { return straight * std::pow(k + 1, 2) * std::pow(again, k); }),
+            computeTerms(std::sqrt(straight) / (1 - again), max_count,
+                         [&](size_t k) { return std::sqrt(straight) * std::pow(again, k); })};
 }
 
 PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
                             double cos_incidence) {
     const double cosine = std::clamp(cos_incidence, grazing_cosine, 1.0);
     const double slowness = std::sqrt(1 - cosine * cosine) / before.sound_speed;
-    const Complex one = before.density * before.sound_speed / cosine, other = impedanceOf(behind, slowness);
+    const Complex one = before.density * before.sound_speed / cosine, other = computeImpedance(behind, slowness);
     if (!(2 * std::numbers::pi * frequency * plate.thickness > min_phase * plate.sound_speed))
         return {(other - one) / (other + one), 2.0 * other / (other + one)};
     const Wave pressure = waveIn(plate, plate.sound_speed, frequency, slowness);

@@ -11,7 +11,7 @@ namespace {
 constexpr double far_u = 500;
 constexpr double step_u = 0.01;
 
-Weighting weightingOf(PulseWindow window) {
+Weighting getWeighting(PulseWindow window) {
     switch (window) {
         case PulseWindow::None: return Weighting::Uniform;
         case PulseWindow::Hann: return Weighting::Hann;
@@ -47,7 +47,7 @@ void PulseConfig::check(types::Diagnostics& diagnostics) const {
 Pulse::Pulse(const PulseConfig& config, double speed_of_sound) {
     if (config.bandwidth_khz) {
         unit_ = speed_of_sound / (2e3 * *config.bandwidth_khz);
-        taper_ = Taper(weightingOf(config.window.value_or(PulseWindow::None)));
+        taper_ = Taper(getWeighting(config.window.value_or(PulseWindow::None)));
     } else {
         unit_ = speed_of_sound * config.duration_us.value() * 1e-6 / 2;
     }

@@ -56,8 +56,8 @@ double RoughSurface::diffuse(double grazing) const {
     return std::min(perturbation(angle), max_lambert_ * sine * sine);
 }
 
-RoughSurface roughSurfaceOf(const MatterProperties& matter, double frequency_khz, double water_density,
-                            double speed_of_sound) {
+RoughSurface makeRoughSurface(const MatterProperties& matter, double frequency_khz, double water_density,
+                              double speed_of_sound) {
     return {{matter.density / water_density, matter.sound_speed / speed_of_sound, matter.loss},
             {matter.roughness, matter.length},
             2 * pi * 1000 * frequency_khz / speed_of_sound};

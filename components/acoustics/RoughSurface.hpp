@@ -49,7 +49,7 @@ private:
 
 /** Returns the surface of a matter in water of a density [kg/m^3] and speed of sound [m/s]. The matter must have a
  *  roughness. */
-RoughSurface roughSurfaceOf(const MatterProperties& matter, double frequency_khz, double water_density,
-                            double speed_of_sound);
+RoughSurface makeRoughSurface(const MatterProperties& matter, double frequency_khz, double water_density,
+                              double speed_of_sound);
 
 }  // namespace insonify::acoustics

@@ -117,7 +117,7 @@ Scatterer ofGrainSize(const BackscatterOptions& options) {
     return scatterer;
 }
 
-Json parametersOf(const acoustics::MatterProperties& matter) {
+Json listParameters(const acoustics::MatterProperties& matter) {
     return {{"reflection", matter.reflection},
             {"density_kg_m3", matter.density},
             {"sound_speed_m_s", matter.sound_speed},
@@ -133,11 +133,11 @@ Scatterer ofMaterial(const BackscatterOptions& options) {
     const std::string& name = options.material;
     const std::optional<acoustics::Matter> known = acoustics::matterNamed(name);
     if (!known) refuseName("--material", name, {std::begin(names), std::end(names)});
-    const acoustics::MatterProperties& matter = acoustics::propertiesOf(*known);
-    Scatterer scatterer = lambert(name, scene::lambertDb(*known), parametersOf(matter));
+    const acoustics::MatterProperties& matter = acoustics::getProperties(*known);
+    Scatterer scatterer = lambert(name, scene::lambertDb(*known), listParameters(matter));
     if (matter.hasRoughness()) {
         const acoustics::RoughSurface surface =
-            acoustics::roughSurfaceOf(matter, options.frequency_khz, water_density, options.sound_speed);
+            acoustics::makeRoughSurface(matter, options.frequency_khz, water_density, options.sound_speed);
         scatterer.law = "rough_solid";
         scatterer.parameters["reflection"] = surface.reflection();
         scatterer.parameters["lobe_share"] = surface.lobeShare();
@@ -150,7 +150,7 @@ Scatterer ofMaterial(const BackscatterOptions& options) {
     return scatterer;
 }
 
-Scatterer scattererOf(const BackscatterOptions& options) {
+Scatterer makeScatterer(const BackscatterOptions& options) {
     if (!options.sediment.empty()) return ofSediment(options);
     if (options.grain_size_phi) return ofGrainSize(options);
     if (options.lambert_db) return lambert("lambert", *options.lambert_db, Json::object());
@@ -164,7 +164,7 @@ double strengthDb(const std::function<double(double)>& section, double grazing_d
 }
 
 Json backscatterReport(const BackscatterOptions& options) {
-    const Scatterer scatterer = scattererOf(options);
+    const Scatterer scatterer = makeScatterer(options);
     Json strengths = Json::array(), warnings = Json::array();
     for (const double angle : options.grazing_deg) strengths.push_back(strengthDb(scatterer.section, angle));
     for (const std::string& outside : scatterer.outside)

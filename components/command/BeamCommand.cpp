@@ -34,7 +34,7 @@ struct Cut {
 };
 
 /** Returns the cut of a beam or an aperture with a box pattern. */
-Cut boxOf(double low, double high) {
+Cut makeBox(double low, double high) {
     Cut cut;
     cut.add(low, 1);
     cut.add(high, 1);
@@ -48,13 +48,13 @@ Cut azimuthCut(const sonar::RenderPlan& plan) {
         return std::abs(a.centre) < std::abs(b.centre);
     };
     const auto ahead = std::min_element(plan.beams.begin(), plan.beams.end(), nearer);
-    if (!plan.has(sonar::Pass::Beamform)) return boxOf(ahead->low - ahead->centre, ahead->high - ahead->centre);
+    if (!plan.has(sonar::Pass::Beamform)) return makeBox(ahead->low - ahead->centre, ahead->high - ahead->centre);
     const std::vector<double> weights =
         sonar::beamformer(plan).weights(static_cast<size_t>(ahead - plan.beams.begin()));
     Cut cut;
     for (size_t c = 0; c < weights.size(); ++c) cut.add(plan.cells[c].centre - ahead->centre, weights[c]);
     const double axis = plan.directivity->azimuth(ahead->centre, ahead->centre);
-    cut.shape = acoustics::shapeOf(
+    cut.shape = acoustics::getShape(
         [&](double angle) { return plan.directivity->azimuth(ahead->centre + angle, ahead->centre) / axis; });
     return cut;
 }
@@ -62,7 +62,7 @@ Cut azimuthCut(const sonar::RenderPlan& plan) {
 /** Returns the weights of the rows of samples. */
 Cut elevationCut(const sonar::RenderPlan& plan) {
     const double half = radians(plan.sampled.beam_height_deg) / 2;
-    if (!plan.directivity || !plan.directivity->hasElevation()) return boxOf(-half, half);
+    if (!plan.directivity || !plan.directivity->hasElevation()) return makeBox(-half, half);
     constexpr int steps = 2000;
     Cut cut;
     for (int i = 0; i <= steps; ++i) {
@@ -70,7 +70,7 @@ Cut elevationCut(const sonar::RenderPlan& plan) {
         cut.add(angle, plan.directivity->elevation(angle));
     }
     const double axis = plan.directivity->elevation(0);
-    cut.shape = acoustics::shapeOf([&](double angle) { return plan.directivity->elevation(angle) / axis; });
+    cut.shape = acoustics::getShape([&](double angle) { return plan.directivity->elevation(angle) / axis; });
     return cut;
 }
 
@@ -100,7 +100,7 @@ struct BeamOptions {
     bool json = false;
 };
 
-const sonar::PingTask& sonarOf(const framework::Deployment& deployment, const BeamOptions& options) {
+const sonar::PingTask& getSonar(const framework::Deployment& deployment, const BeamOptions& options) {
     std::string names;
     for (const auto& task : deployment.tasks()) {
         const auto* sonar = dynamic_cast<const sonar::PingTask*>(task.get());
@@ -116,7 +116,7 @@ int showBeam(const BeamOptions& options) {
     const std::string file = deploymentIn(options.deployment);
     const framework::Deployment deployment(framework::DeploymentSpec::load(file), registry);
     const sonar::RenderPlan plan =
-        sonar::makeRenderPlan(sonarOf(deployment, options).locatedConfig(), types::Geometry{});
+        sonar::makeRenderPlan(getSonar(deployment, options).locatedConfig(), types::Geometry{});
     const Cut azimuth = azimuthCut(plan), elevation = elevationCut(plan);
     if (options.json) {
         print(Json{{"azimuth", cutJson(azimuth)}, {"elevation", cutJson(elevation)}});

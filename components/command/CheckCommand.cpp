@@ -16,7 +16,7 @@ using namespace deployer;
 
 namespace {
 
-const char* nameOf(framework::ConnPolicy::Type type) {
+const char* getName(framework::ConnPolicy::Type type) {
     switch (type) {
         case framework::ConnPolicy::Data: return "data";
         case framework::ConnPolicy::Buffer: return "buffer";
@@ -35,7 +35,7 @@ Json taskJson(const framework::TaskSpec& task) {
 }
 
 Json connectionJson(const framework::Connection& connection) {
-    Json policy = {{"type", nameOf(connection.policy.type)}};
+    Json policy = {{"type", getName(connection.policy.type)}};
     if (connection.policy.type != framework::ConnPolicy::Data) policy["size"] = connection.policy.size;
     return {{"from", connection.from->path()},
             {"to", connection.to->path()},
@@ -78,7 +78,7 @@ void printGraph(framework::Deployment& deployment) {
             const std::string size =
                 connection.policy.type == framework::ConnPolicy::Data ? "" : fmt::format(" {}", connection.policy.size);
             console::printResult("  {} -> {}  {}, {}{}\n", connection.from->name(), connection.to->path(),
-                                 connection.from->typeName(), nameOf(connection.policy.type), size);
+                                 connection.from->typeName(), getName(connection.policy.type), size);
         }
     }
 }

@@ -396,7 +396,7 @@ int guarded(CLI::App& app, Action& action, int argc, char** argv) {
             console::printDiagnostic("{}\n", diagnostic.text());
         return bad_input;
     } catch (const std::exception& error) {
-        console::printDiagnostic("insonify: {}\n", types::reasonOf(error));
+        console::printDiagnostic("insonify: {}\n", types::getReason(error));
         return failed;
     } catch (...) {  // of a library of the user
         console::printDiagnostic("insonify: failed, by an exception without a reason\n");

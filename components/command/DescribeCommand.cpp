@@ -35,12 +35,12 @@ Json defaultJson(const PropertyInfo& property) {
     return value.is_number() || value.is_boolean() || value.is_array() ? value : Json(property.default_value);
 }
 
-Json boundOf(double bound) { return std::isfinite(bound) ? Json(bound) : Json(nullptr); }
+Json toBound(double bound) { return std::isfinite(bound) ? Json(bound) : Json(nullptr); }
 
 Json propertyJson(const PropertyInfo& property) {
     return {{"name", property.name},        {"type", property.type},
             {"unit", property.unit},        {"default", defaultJson(property)},
-            {"min", boundOf(property.min)}, {"max", boundOf(property.max)},
+            {"min", toBound(property.min)}, {"max", toBound(property.max)},
             {"doc", property.doc}};
 }
 
@@ -120,19 +120,19 @@ int listTasks(const framework::Registry& registry, bool json) {
 }
 
 template <class Enum>
-std::vector<std::string_view> namesOf() {
+std::vector<std::string_view> getNames() {
     return {std::begin(types::EnumNames<Enum>::names), std::end(types::EnumNames<Enum>::names)};
 }
 
 int listMaterials(bool json) {
     if (json) {
-        print({{"sediments", namesOf<scene::Sediment>()}, {"materials", namesOf<scene::Matter>()}});
+        print({{"sediments", getNames<scene::Sediment>()}, {"materials", getNames<scene::Matter>()}});
         return 0;
     }
     console::printResult("sediments (material.extras.acoustics = {{\"sediment\": NAME}})\n  {}\n",
-                         fmt::join(namesOf<scene::Sediment>(), "\n  "));
+                         fmt::join(getNames<scene::Sediment>(), "\n  "));
     console::printResult("materials (material.extras.acoustics = {{\"material\": NAME}})\n  {}\n",
-                         fmt::join(namesOf<scene::Matter>(), "\n  "));
+                         fmt::join(getNames<scene::Matter>(), "\n  "));
     return 0;
 }
 

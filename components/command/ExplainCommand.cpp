@@ -71,8 +71,8 @@ bool writesPings(const framework::TaskContext& task) {
 }
 
 /** Returns the deployment with one sonar, what it needs, and the tasks that its pings pass. */
-framework::DeploymentSpec chainOf(const framework::DeploymentSpec& spec, const framework::Deployment& whole,
-                                  const std::string& sonar) {
+framework::DeploymentSpec findChain(const framework::DeploymentSpec& spec, const framework::Deployment& whole,
+                                    const std::string& sonar) {
     std::set<std::string> kept{sonar};
     for (size_t before = 0; before != kept.size();) {
         before = kept.size();
@@ -100,14 +100,14 @@ void runTo(framework::Deployment& deployment, const sonar::PingTask& sonar, cons
         refuse(options, "--ping", fmt::format("is {}; the run has {} pings", options.ping, pings));
 }
 
-ExplainedBin explainOf(const ExplainOptions& options) {
+ExplainedBin runExplain(const ExplainOptions& options) {
     framework::Registry registry = coreTasks();
     const framework::DeploymentSpec spec = loadSpec(options.run);
     const framework::Deployment whole(spec, registry);
     ExplainedBin bin;
     bin.sonar = chooseSonar(whole, options);
     std::vector<std::unique_ptr<PingReader>> readers;  // outlive the tasks that write to them
-    framework::Deployment deployment(chainOf(spec, whole, bin.sonar), registry);
+    framework::Deployment deployment(findChain(spec, whole, bin.sonar), registry);
     auto& sonar = dynamic_cast<sonar::PingTask&>(*deployment.task(bin.sonar));
     for (const auto& task : deployment.tasks())
         for (framework::OutputPortBase* port : task->outputs())
@@ -201,7 +201,7 @@ void printText(const ExplainedBin& bin, double intensity, const ExplainOptions& 
 
 int explain(const ExplainOptions& options) {
     if (options.ping == 0) refuse(options, "--ping", "is 0; pings count from 1");
-    const ExplainedBin bin = explainOf(options);
+    const ExplainedBin bin = runExplain(options);
     const double intensity{bin.ping->bins[options.beam * bin.ping->bin_count + options.bin]};
     options.json ? print(explainedJson(bin, intensity, options)) : printText(bin, intensity, options);
     return 0;

@@ -59,7 +59,7 @@ std::string rosTopic(const std::string& topic) {
 }
 
 /** Returns a name for tasks and ports: letters, digits and _. */
-std::string wordOf(std::string name) {
+std::string getWord(std::string name) {
     std::ranges::replace(name, '/', '_');
     const std::string word = rosTopic(name).substr(1);
     return word.empty() ? "sonar" : word;
@@ -92,7 +92,7 @@ public:
         tasks_ = topics_ = ros_topics_ = connections_ = "";
         ports_ = 0;
         model_ports_.clear();
-        for (const std::string& model : sonars_.models) model_ports_.push_back(unique("model_" + wordOf(model)));
+        for (const std::string& model : sonars_.models) model_ports_.push_back(unique("model_" + getWord(model)));
         for (const SonarSensor& sonar : sonars_.sonars) addSonar(sonar);
         std::string text = fmt::format(
             "# The sonars of world {0}. Made by `insonify gazebo {1} --print`.\nschedule: realtime\ntasks:\n"
@@ -162,7 +162,7 @@ private:
     }
 
     void addSonar(const SonarSensor& sonar) {
-        const std::string name = unique(wordOf(sonar.name));
+        const std::string name = unique(getWord(sonar.name));
         names_[&sonar] = name;
         const types::Mount& mount = sonar.mount;
         addTask(
@@ -221,7 +221,7 @@ private:
 };
 
 /** Returns "task.property" of a setting: those of `noise` and `receiver` are of these tasks. */
-std::string propertyOf(const std::string& task, const std::string& path) {
+std::string findProperty(const std::string& task, const std::string& path) {
     for (const char* block : {"noise", "receiver"})
         if (path.starts_with(std::string(block) + "."))
             return fmt::format("{}_{}{}", task, block, path.substr(std::string(block).size()));
@@ -282,7 +282,7 @@ int runWorld(const Asked& asked) {
         framework::DeploymentSpec::parse(text, is_file ? asked.world + ".yml" : found.world + ".yml");
     for (const SonarSensor& sonar : found.sonars)
         for (const SonarSensor::Setting& setting : sonar.settings) {
-            const std::string property = propertyOf(writer.names().at(&sonar), setting.path);
+            const std::string property = findProperty(writer.names().at(&sonar), setting.path);
             YAML::Mark place;
             place.line = setting.line - 1;
             spec.set(

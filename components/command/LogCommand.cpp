@@ -77,7 +77,7 @@ std::unique_ptr<log::Reader> opened(const std::string& file) {
 }
 
 /** Returns the files of logs: all of each sequence whose first file is given, unless others of it are given as well. */
-std::vector<std::string> filesOf(const std::vector<std::string>& given) {
+std::vector<std::string> getFiles(const std::vector<std::string>& given) {
     std::vector<std::string> all;
     for (const std::string& file : given) {
         const log::WholeLog whole = log::openWholeLog(file, log::AtDamage::Skip);
@@ -119,14 +119,14 @@ Json posesJson(const std::vector<log::FoundPoses>& found) {
 Json metadataJson(const log::Reader& log) {
     Json all = Json::object();
     for (const log::Stream& stream : log.streams())
-        all[stream.name] = {{"metadata", stream.metadata}, {"meaning", meaningOf(log, stream)}};
+        all[stream.name] = {{"metadata", stream.metadata}, {"meaning", readMeaning(log, stream)}};
     return all;
 }
 
 void printMetadata(const log::Reader& log) {
     std::set<std::pair<std::string, std::string>> reported;  // once for all streams with the same metadata
     for (const log::Stream& stream : log.streams()) {
-        console::printResult("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
+        console::printResult("\n{}\n{}\n", stream.name, text(readMeaning(log, stream)));
         for (const auto& [key, value] : stream.metadata)
             if (reported.emplace(key, value).second)
                 console::printResult("{}:{}{}\n", key, value.find('\n') == value.npos ? " " : "\n", value);
@@ -147,7 +147,7 @@ Json printInfo(log::Reader& log, bool json, bool metadata) {
     if (!json) {
         printTable(log);
         if (!poses.empty())
-            console::printResult("\ncould be the poses of a body in `insonify replay`:\n{}", log::tableOf(poses));
+            console::printResult("\ncould be the poses of a body in `insonify replay`:\n{}", log::makeTable(poses));
         if (metadata) printMetadata(log);
         return {};
     }
@@ -174,14 +174,14 @@ void makeFolder(const fs::path& folder) {
 }
 
 /** Makes the folder of an output file. */
-void makeFolderOf(const fs::path& to) {
+void makeParentFolder(const fs::path& to) {
     if (to.has_parent_path()) makeFolder(to.parent_path());
 }
 
 /** Pings as text are about ten times as large as in the log, and slow to read. */
 void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
     constexpr double line = 40, reported_from = 1e8;  // [B]
-    const size_t index = log.indexOf(stream);
+    const size_t index = log.findIndex(stream);
     const log::Stream& pings = log.streams()[index];
     if (!log::holdsPings(pings) || pings.count == 0) return;
     types::Sonar ping;
@@ -202,8 +202,8 @@ struct ExportFormat {
 };
 
 Paths writeNpz(log::Reader& log, const Options& options) {
-    const log::Stream& stream = log.streams()[log.indexOf(options.stream)];
-    return log::exportNpz(log, stream.name, options.to, text(meaningOf(log, stream)));
+    const log::Stream& stream = log.streams()[log.findIndex(options.stream)];
+    return log::exportNpz(log, stream.name, options.to, text(readMeaning(log, stream)));
 }
 
 /** Writes text; soundings with their places on the earth where the log knows the datum. */
@@ -230,7 +230,7 @@ constexpr ExportFormat export_formats[] = {
 
 Paths exportTo(log::Reader& log, Options options) {
     const fs::path to = options.to;
-    const log::Stream& stream = log.streams()[log.indexOf(options.stream)];
+    const log::Stream& stream = log.streams()[log.findIndex(options.stream)];
     options.stream = stream.name;
     const ExportFormat* const format = types::findFormat(export_formats, to);
     const std::string_view ending = format ? format->ending : "";
@@ -242,7 +242,7 @@ Paths exportTo(log::Reader& log, Options options) {
         options.to = to / (options.stream + ".npz");
         return writeNpz(log, options);
     }
-    makeFolderOf(to);
+    makeParentFolder(to);
     if (!format)
         throw types::ConfigError(to, "--to", "may be a folder, or end in " + types::alternativeEndings(export_formats));
     return format->write(log, options);
@@ -253,7 +253,7 @@ void reportLost(const log::Copied& copied) {
 }
 
 int exportMessages(const Options& options) {
-    makeFolderOf(options.to);
+    makeParentFolder(options.to);
     log::Selection selection;
     if (!options.stream.empty()) selection.streams.insert(options.stream);
     log::McapConfig mcap = options.mcap;
@@ -263,7 +263,7 @@ int exportMessages(const Options& options) {
             "notice: {}: the folder has the metadata.yaml of another bag, so this file gets none; "
             "`ros2 bag reindex` in a folder of its own makes it a bag\n",
             options.to);
-    const std::vector<std::string> files = filesOf({options.file});
+    const std::vector<std::string> files = getFiles({options.file});
     const log::Copied copied =
         log::copyLog({files.begin(), files.end()}, options.to, {.selection = selection, .anew = mcap});
     reportLost(copied);
@@ -300,7 +300,7 @@ void readRange(const std::string& text, log::Selection& selection) {
 }
 
 /** Returns the first and last stamp of the files of a log; none: the files have no sample. */
-std::optional<std::pair<types::Time, types::Time>> spanOf(const std::vector<std::string>& files) {
+std::optional<std::pair<types::Time, types::Time>> getSpan(const std::vector<std::string>& files) {
     std::optional<std::pair<types::Time, types::Time>> span;
     for (const std::string& file : files) {
         const auto log = log::openLog(file);
@@ -311,11 +311,11 @@ std::optional<std::pair<types::Time, types::Time>> spanOf(const std::vector<std:
     return span;
 }
 
-log::Selection selectionOf(const Options& options) {
+log::Selection makeSelection(const Options& options) {
     log::Selection selection;
     selection.streams = {options.streams.begin(), options.streams.end()};
     if (!options.from.empty() || !options.until.empty()) {
-        const types::Time start = spanOf(options.files).value_or(std::pair<types::Time, types::Time>{}).first;
+        const types::Time start = getSpan(options.files).value_or(std::pair<types::Time, types::Time>{}).first;
         if (!options.from.empty()) selection.from = log::readTime(options.from, "--from", start);
         if (!options.until.empty()) selection.until = log::readTime(options.until, "--until", start);
         if (selection.from >= selection.until)
@@ -333,7 +333,7 @@ void refuseOtherNames(const std::string& to) {
 
 /** Throws for a copy without a sample, which is not made. */
 [[noreturn]] void refuseNothing(const Options& options) {
-    const auto span = spanOf(options.files);
+    const auto span = getSpan(options.files);
     throw types::ConfigError(options.files.front(), "",
                              span ? fmt::format("none of its samples is in the requested part; they are from {} to {}",
                                                 log::readable(span->first), log::readable(span->second))
@@ -343,7 +343,7 @@ void refuseOtherNames(const std::string& to) {
 /** Copies into `--to`, and reports what was lost. */
 log::Copied copyTo(const std::string& to, const std::vector<fs::path>& files, const log::CopyOptions& options) {
     refuseOtherNames(to);
-    makeFolderOf(to);
+    makeParentFolder(to);
     log::Copied copied = log::copyLog(files, to, options);
     reportLost(copied);
     return copied;
@@ -379,10 +379,10 @@ void reportOverlaps(const std::vector<std::string>& files) {
 }
 
 int logCut(Options options) {
-    options.files = filesOf(options.files);
+    options.files = getFiles(options.files);
     if (options.files.size() > 1) reportOverlaps(options.files);
     const log::Copied copied = copyTo(options.to, {options.files.begin(), options.files.end()},
-                                      {.selection = selectionOf(options), .needs_samples = true});
+                                      {.selection = makeSelection(options), .needs_samples = true});
     if (copied.samples == 0) refuseNothing(options);
     return finish(options.to, options.files.front(), copied);
 }
@@ -394,7 +394,7 @@ int logRepair(const Options& options) {
 
 int logImport(const Options& options) {
     refuseOtherNames(options.to);
-    makeFolderOf(options.to);
+    makeParentFolder(options.to);
     std::optional<framework::DeploymentSpec> spec;
     if (!options.deployment.empty()) spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
     const Imported made = importRecording(options.file, std::move(spec), options.to);

@@ -78,7 +78,7 @@ int showPlan(const RunOptions& options, bool json) {
 
     Plans plans;
     for (const auto& task : deployment.tasks())
-        if (const types::Plan* plan = framework::planOf(*task)) plans.emplace_back(task->name(), plan);
+        if (const types::Plan* plan = framework::makePlan(*task)) plans.emplace_back(task->name(), plan);
     if (plans.empty()) throw types::ConfigError(spec.file, "tasks", "has no sonar that sends a ping: nothing to plan");
     if (json)
         printJson(plans);

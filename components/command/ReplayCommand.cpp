@@ -73,7 +73,7 @@ void reportOmitted(const framework::DeploymentSpec& spec, const Asked& options) 
 /** Reports the tasks whose settings by `--set` change nothing, because the log replaces their pings. */
 void reportReplaced(const framework::DeploymentSpec& spec, const log::Reader& log, const Asked& options) {
     std::set<std::string> writers;
-    for (const std::string& stream : pingStreams(log, spec)) writers.insert(writerOf(spec, stream));
+    for (const std::string& stream : pingStreams(log, spec)) writers.insert(findWriter(spec, stream));
     for (const std::string& task : writers)
         if (std::ranges::any_of(options.set, [&](const std::string& set) { return set.starts_with(task + "."); }))
             notice(options, task + ": the log replaces what it sends; --rerender makes its pings again");
@@ -117,7 +117,7 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
             deployment.call(deployment.tasks().front()->name() + ".seek", {line.substr(seek.size())});
             return;
         } catch (const std::exception& error) {
-            console::printDiagnostic("insonify: {}\n", types::reasonOf(error));
+            console::printDiagnostic("insonify: {}\n", types::getReason(error));
         }
 }
 
@@ -164,7 +164,7 @@ types::ConfigError namingLog(types::Diagnostics diagnostics, const std::string& 
 }
 
 /** Refuses a folder of results that would replace the log, its properties and its pictures. */
-void refuseFolderOf(const std::string& log, const std::string& out) {
+void refuseFolder(const std::string& log, const std::string& out) {
     std::error_code none;
     const std::filesystem::path path = std::filesystem::absolute(log),
                                 folder = std::filesystem::is_directory(path, none) ? path : path.parent_path();
@@ -195,7 +195,7 @@ int listPoses(log::Reader& log) {
         throw types::ConfigError(log.path(), "",
                                  "has no stream that could be poses; `insonify log info` lists its streams");
     console::printResult("{}: could be the poses of a body:\n{}choose: insonify replay {} DEPLOYMENT --pose '{}'\n",
-                         log.path().string(), log::tableOf(found), log.path().string(), found.front().source);
+                         log.path().string(), log::makeTable(found), log.path().string(), found.front().source);
     return 0;
 }
 
@@ -229,7 +229,7 @@ log::PoseSource poseSource(const Asked& options, const std::string& given, const
 std::string onlySource(const framework::DeploymentSpec& spec, log::Reader& log, const Asked& options) {
     const bool is_own =
         !log.metadatum("insonify_deployment").empty();  // of another deployment, which has pings as well
-    if (is_own || hasStreamOf(spec, log)) return {};
+    if (is_own || hasStream(spec, log)) return {};
     std::vector<log::FoundPoses> found = log::findPoses(log);
     if (found.size() > 1 && options.datum.empty() && !spec.datum)
         std::erase_if(found, [](const log::FoundPoses& each) { return each.has_fixes; });
@@ -263,7 +263,7 @@ int replay(Asked options) {
     const log::WholeLog opened = log::openWholeLog(options.replay.log, log::AtDamage::Stop, options.replay.world_frame);
     log::Reader& log = *opened.log;
     if (options.deployment.empty()) return listPoses(log);
-    refuseFolderOf(options.replay.log, options.out);
+    refuseFolder(options.replay.log, options.out);
     choosePoses(log, options);
     if (!options.from.empty() && !log.samples().empty()) options.replay.from = startIn(log, options.from);
     std::vector<RecordedProperty> changed;

@@ -181,17 +181,17 @@ void refuseUnwritable(const std::filesystem::path& summary_file, const std::stri
         throw types::ConfigError(summary_file, "--summary", "cannot be written to");
 }
 
-types::Notices noticesOf(const framework::TaskContext& task) {
+types::Notices getNotices(const framework::TaskContext& task) {
     types::Notices all = task.notices();
-    if (const types::Plan* plan = framework::planOf(task))
+    if (const types::Plan* plan = framework::makePlan(task))
         for (const types::Notice& notice : without(plan->notices, all)) all.push_back(notice);
     return all;
 }
 
 /** Returns those of each task, in file order. */
-std::vector<types::Notices> noticesOf(const framework::Deployment& deployment) {
+std::vector<types::Notices> getNotices(const framework::Deployment& deployment) {
     std::vector<types::Notices> all;
-    for (const auto& task : deployment.tasks()) all.push_back(noticesOf(*task));
+    for (const auto& task : deployment.tasks()) all.push_back(getNotices(*task));
     return all;
 }
 
@@ -199,7 +199,7 @@ std::vector<types::Notices> noticesOf(const framework::Deployment& deployment) {
 void printNew(const framework::Deployment& deployment, const std::vector<types::Notices>& reported) {
     for (size_t i = 0; i < reported.size(); ++i) {
         const framework::TaskContext& task = *deployment.tasks()[i];
-        printNotices(task, without(noticesOf(task), reported[i]));
+        printNotices(task, without(getNotices(task), reported[i]));
     }
 }
 
@@ -268,7 +268,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
 
     const std::atomic<bool>& stop = stopOnSignals();
     Supervision supervision(options.health);
-    const FolderListing before = options.quiet || options.shard ? FolderListing() : listingOf(folder.path());
+    const FolderListing before = options.quiet || options.shard ? FolderListing() : listFolder(folder.path());
     console::startPrinting();
     deployment.configure();
     refuseUnmeantLength(deployment, options);
@@ -280,7 +280,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
             folder.path().string());
     callAll(deployment, options);
 
-    const std::vector<types::Notices> reported = noticesOf(deployment);
+    const std::vector<types::Notices> reported = getNotices(deployment);
     supervision.watch(deployment, stop);
     framework::RunResult result = runAll(deployment, options, stop);
     const Summary summary(deployment, result);

@@ -27,14 +27,14 @@ using namespace deployer;
 
 namespace {
 
-Json jsonOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+Json makeJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-Json jsonOf(const types::Extent& extent) {
+Json makeJson(const types::Extent& extent) {
     if (extent.isEmpty()) return nullptr;
-    return {{"min", jsonOf(extent.low)},
-            {"max", jsonOf(extent.high)},
-            {"size", jsonOf(extent.size())},
-            {"centre", jsonOf((extent.low + extent.high) / 2.0)}};
+    return {{"min", makeJson(extent.low)},
+            {"max", makeJson(extent.high)},
+            {"size", makeJson(extent.size())},
+            {"centre", makeJson((extent.low + extent.high) / 2.0)}};
 }
 
 /** The surface area of each material. */
@@ -69,7 +69,7 @@ const char* source(const types::Material& material) {
 
 /** Returns a thin wall: {thickness_m, density [kg/m^3], sound_speed [m/s], behind: "water", "air" or {density,
  *  sound_speed}}, or null. */
-Json jsonOf(const std::optional<types::Shell>& shell) {
+Json makeJson(const std::optional<types::Shell>& shell) {
     if (!shell) return {};
     Json behind = shell->has_air ? "air" : "water";
     if (shell->fill_density > 0) behind = {{"density", shell->fill_density}, {"sound_speed", shell->fill_speed}};
@@ -79,7 +79,7 @@ Json jsonOf(const std::optional<types::Shell>& shell) {
             {"behind", behind}};
 }
 
-Json jsonOf(const types::Material& material, size_t triangles, double area) {
+Json makeJson(const types::Material& material, size_t triangles, double area) {
     return {{"name", material.name},
             {"source", source(material)},
             {"matter", material.matter.empty() ? Json() : Json(material.matter)},
@@ -91,13 +91,13 @@ Json jsonOf(const types::Material& material, size_t triangles, double area) {
             {"reflectivity", material.reflectivity},
             {"normal_map", material.normal_map >= 0},
             {"surface_map", material.max_map_strength > 0},
-            {"shell", jsonOf(material.shell)},
+            {"shell", makeJson(material.shell)},
             {"mirror", material.mirror},
             {"triangles", triangles},
             {"area_m2", area}};
 }
 
-Json objectsOf(const types::Geometry& geometry) {
+Json getObjects(const types::Geometry& geometry) {
     Json objects = Json::array();
     for (const types::Object& object : geometry.objects) {
         const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
@@ -109,13 +109,13 @@ Json objectsOf(const types::Geometry& geometry) {
         objects.push_back({{"name", object.name},
                            {"materials", materials},
                            {"triangles", mesh.indices.size() / 3},
-                           {"bounds", jsonOf(types::extentOf(mesh, object.world_from_object))}});
+                           {"bounds", makeJson(types::getExtent(mesh, object.world_from_object))}});
     }
     return objects;
 }
 
-Json warningsOf(const std::string& file, const types::Geometry& geometry, const types::Extent& extent,
-                const Json& materials) {
+Json findWarnings(const std::string& file, const types::Geometry& geometry, const types::Extent& extent,
+                  const Json& materials) {
     Json warnings = Json::array();
     if (const std::string side = scene::isGltf(file) ? scene::sideWarning(geometry) : ""; !side.empty())
         warnings.push_back(side);
@@ -131,15 +131,15 @@ Json warningsOf(const std::string& file, const types::Geometry& geometry, const 
     return warnings;
 }
 
-std::string axesOf(const std::string& file, const scene::Scene& scene) {
+std::string getAxes(const std::string& file, const scene::Scene& scene) {
     const scene::SceneFormat& format = *scene::findSceneFormat(file);
     return fmt::format("{}{}: {}", format.name,
                        format.component == "meshes" ? ", unless placement.up and scale say otherwise" : "",
-                       scene::layOf(scene, {}, types::WorldFrame::AsIs));
+                       scene::describeLay(scene, {}, types::WorldFrame::AsIs));
 }
 
 /** Returns the animations of a scene: [{name, duration_s, channels}]. */
-Json animationsOf(const scene::Scene& scene) {
+Json describeAnimations(const scene::Scene& scene) {
     Json all = Json::array();
     if (!scene.animations) return all;
     for (const scene::Animation& animation : scene.animations->all)
@@ -159,25 +159,25 @@ Json sceneReport(const std::string& file, const scene::OmitRules& rules) {
     const scene::Scene scene = scene::withoutOmitted(scene::readScene(file), rules);
     const types::GeometryPtr named = scene::applyMaterialNames(scene.geometry);
     const types::Geometry& geometry = *named;
-    const types::Extent extent = types::extentOf(geometry);
+    const types::Extent extent = types::getExtent(geometry);
     const Surfaces surfaces(geometry);
     Json materials = Json::array(), nodes = Json::array();
     for (size_t i = 0; i < geometry.materials.size(); ++i)
         if (surfaces.triangles[i] > 0)
-            materials.push_back(jsonOf(geometry.materials[i], surfaces.triangles[i], surfaces.areas[i]));
+            materials.push_back(makeJson(geometry.materials[i], surfaces.triangles[i], surfaces.areas[i]));
     for (const scene::Node& node : scene.nodes) nodes.push_back(node.name);
-    Json omitted = Json::array(), warnings = warningsOf(file, geometry, extent, materials);
+    Json omitted = Json::array(), warnings = findWarnings(file, geometry, extent, materials);
     for (const types::Omission& omission : scene.omitted)
         omitted.push_back({{"name", omission.name}, {"reason", omission.reason}});
     for (const std::string& warning : scene.warnings) warnings.push_back(warning);
     return {{"file", file},
-            {"axes", axesOf(file, scene)},
-            {"bounds", jsonOf(extent)},
+            {"axes", getAxes(file, scene)},
+            {"bounds", makeJson(extent)},
             {"triangles", geometry.triangleCount()},
             {"materials", materials},
-            {"objects", objectsOf(geometry)},
+            {"objects", getObjects(geometry)},
             {"nodes", nodes},
-            {"animations", animationsOf(scene)},
+            {"animations", describeAnimations(scene)},
             {"deforming", scene.animations ? scene.animations->objects.size() : 0},
             {"omitted", omitted},
             {"not_understood", types::lines(geometry.notices)},
@@ -316,11 +316,11 @@ struct MakeOptions {
 };
 
 /** Returns what is wrong with the combination of options; empty: nothing. */
-std::string refusalOf(const MakeOptions& options) {
+std::string getRefusal(const MakeOptions& options) {
     if (options.list) return options.recipe.empty() ? "" : "--list needs no RECIPE";
     if (options.recipe.empty() == options.thing.empty()) return "give a RECIPE, or a --thing, or --list";
     if (!options.set.empty() && options.thing.empty()) return "--set is for a --thing; a recipe has its own values";
-    if (scene::extensionOf(options.out) != ".glb")
+    if (scene::getExtension(options.out) != ".glb")
         return fmt::format("--out is {}; must be a file that ends in .glb",
                            options.out.empty() ? "missing" : options.out);
     return "";
@@ -328,7 +328,7 @@ std::string refusalOf(const MakeOptions& options) {
 
 /** Hands the options to the component library worlds. */
 int makeScene(const MakeOptions& options) {
-    if (const std::string refusal = refusalOf(options); !refusal.empty())
+    if (const std::string refusal = getRefusal(options); !refusal.empty())
         throw types::ConfigError("", "scene make", refusal);
     if (!loader::isPresent("worlds")) throw types::ConfigError("", "scene make", "is in " + loader::absence("worlds"));
     std::vector<std::string> words;

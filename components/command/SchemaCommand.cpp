@@ -23,9 +23,9 @@ constexpr const char* quantity_pattern = R"(^[+-]?[0-9]*\.?[0-9]+([eE][+-]?[0-9]
 
 /** Returns Rock's key for a number of this unit: {rad: 0.3}; null where there is none. */
 const char* rockKey(const std::string& unit) {
-    const auto is = framework::unitOf(unit);
+    const auto is = framework::findUnit(unit);
     for (const auto& [key, of] : {std::pair("rad", "rad"), std::pair("kelvin", "K"), std::pair("microseconds", "s")})
-        if (is && unit != "1" && is->dimension == framework::unitOf(of)->dimension) return key;
+        if (is && unit != "1" && is->dimension == framework::findUnit(of)->dimension) return key;
     return nullptr;
 }
 
@@ -33,7 +33,7 @@ Json numberSchema(const PropertyInfo& info, const char* type) {
     Json schema = {{"type", type}};
     if (std::isfinite(info.min)) schema["minimum"] = info.min;
     if (std::isfinite(info.max)) schema["maximum"] = info.max;
-    if (!framework::unitOf(info.unit)) return schema;
+    if (!framework::findUnit(info.unit)) return schema;
     schema["type"] = {type, "string"};
     schema["pattern"] = quantity_pattern;
     if (const char* key = rockKey(info.unit)) {
@@ -56,10 +56,11 @@ Json enumSchema(const std::string& names) {
 }
 
 /** Returns the schema of a type by its name, without the fields of blocks. */
-Json schemaOf(const PropertyInfo& info, std::string type) {
+Json describeSchema(const PropertyInfo& info, std::string type) {
     const auto within = [&](const char* of) {
         const std::string prefix = of;
-        return type.starts_with(prefix) ? std::optional(schemaOf(info, type.substr(prefix.size()))) : std::nullopt;
+        return type.starts_with(prefix) ? std::optional(describeSchema(info, type.substr(prefix.size())))
+                                        : std::nullopt;
     };
     if (type.ends_with(", optional")) type.resize(type.size() - std::string(", optional").size());
     if (const auto element = within("list of ")) return {{"type", "array"}, {"items", *element}};
@@ -77,7 +78,7 @@ Json schemaOf(const PropertyInfo& info, std::string type) {
 
 /** Adds documentation and default, for editors. */
 Json documented(const PropertyInfo& info) {
-    Json schema = schemaOf(info, info.type);
+    Json schema = describeSchema(info, info.type);
     const bool has_unit = !info.unit.empty() && info.unit != "1";
     schema["description"] = has_unit ? fmt::format("{} [{}]", info.doc, info.unit) : info.doc;
     if (info.default_value.empty()) return schema;
@@ -127,7 +128,7 @@ Json blockSchema(const std::vector<PropertyInfo>& fields) {
     return root;
 }
 
-std::vector<PropertyInfo> propertiesOf(const framework::Registry::Entry& entry) {
+std::vector<PropertyInfo> getProperties(const framework::Registry::Entry& entry) {
     std::vector<PropertyInfo> all;
     const auto task = entry.make("task");
     for (const auto* properties : task->properties())
@@ -185,7 +186,7 @@ Json deploymentSchema(const framework::Registry& registry) {
     schema["if"] = {{"not", {{"required", {"libraries"}}}}};
     schema["then"] = {{"properties", {{"tasks", {{"additionalProperties", typeNames(registry)}}}}}};
     schema["$defs"]["task"] = taskSchema(registry, keys.task);
-    for (const auto& entry : registry.list()) schema["$defs"][entry.type] = blockSchema(propertiesOf(entry));
+    for (const auto& entry : registry.list()) schema["$defs"][entry.type] = blockSchema(getProperties(entry));
     return schema;
 }
 

@@ -25,7 +25,7 @@ using framework::Deployment;
 using framework::DeploymentSpec;
 
 /** Returns the inputs that determine a run's files, in addition to the files that the deployment names. */
-Json runOf(const RunOptions& options, const DeploymentSpec& spec) {
+Json getRun(const RunOptions& options, const DeploymentSpec& spec) {
     return {{"insonify", INSONIFY_VERSION},
             {"deployment", std::filesystem::path(spec.file).filename().string()},
             {"deployment_sha256", types::sha256(spec.text)},
@@ -66,7 +66,7 @@ uint64_t rehearsedPings(const DeploymentSpec& spec, const RunOptions& options, c
 }
 
 /** Returns the range of a run's pings that its shard makes; the last shard includes all that follows the last ping. */
-framework::RunLimits::Shard pingsOf(const console::Shard& shard, uint64_t pings, const std::string& file) {
+framework::RunLimits::Shard getPings(const console::Shard& shard, uint64_t pings, const std::string& file) {
     if (pings < shard.count)
         throw types::ConfigError(
             file, "--shard",
@@ -117,7 +117,7 @@ int runShard(RunOptions options) {
     if (options.out.empty()) throw types::ConfigError("", "--out", "is missing; all shards of a run share a folder");
     DeploymentSpec spec = loadSpec(options);
     for (const std::string& assignment : pinnedRays(spec)) spec.set(assignment);
-    ShardFolder folder(options.out, *options.shard, runOf(options, spec));
+    ShardFolder folder(options.out, *options.shard, getRun(options, spec));
     if (const auto manifest = folder.done()) {
         report(options, *manifest, folder.path(), "existed already, in");
         return 0;
@@ -125,7 +125,7 @@ int runShard(RunOptions options) {
     options.out = folder.begin().string();
     const uint64_t pings =
         options.limits.samples > 0 ? options.limits.samples : rehearsedPings(spec, options, options.out);
-    const auto made = pingsOf(*options.shard, pings, spec.file);
+    const auto made = getPings(*options.shard, pings, spec.file);
     options.limits.shard = made;
     const int code = runDeployment(spec, options);
     if (code != 0) return code;

@@ -15,21 +15,21 @@ using namespace deployer;
 
 namespace {
 
-Summary::Times timesOf(const framework::Statistics& seconds) {
+Summary::Times getTimes(const framework::Statistics& seconds) {
     return {seconds.count(), seconds.median() * 1e3, seconds.p99() * 1e3, seconds.max() * 1e3};
 }
 
 Summary::Task taskSummary(const framework::TaskContext& task) {
-    Summary::Task summary{task.name(), framework::toString(task.state()), timesOf(task.cycles()), {}, {}, {}, {}};
+    Summary::Task summary{task.name(), framework::toString(task.state()), getTimes(task.cycles()), {}, {}, {}, {}};
     if (const auto* one = dynamic_cast<const sonar::PingTask*>(&task)) summary.counted = one->counted();
     const framework::Timing& timing = task.timing();
-    summary.jitter = timesOf(timing.jitter);
-    summary.latency = timesOf(timing.latency);
+    summary.jitter = getTimes(timing.jitter);
+    summary.latency = getTimes(timing.latency);
     summary.overruns = timing.overruns;
     summary.late = timing.late;
     summary.errors = timing.errors;
     summary.hangs = timing.hangs;
-    for (const auto& [name, seconds] : task.stages()) summary.stages[name] = timesOf(seconds);
+    for (const auto& [name, seconds] : task.stages()) summary.stages[name] = getTimes(seconds);
     return summary;
 }
 
@@ -147,7 +147,7 @@ Summary::Summary(const framework::Deployment& deployment, const framework::RunRe
       warnings(result.warnings) {
     for (const auto& task : deployment.tasks()) {
         tasks.push_back(taskSummary(*task));
-        if (const types::Plan* plan = framework::planOf(*task)) {
+        if (const types::Plan* plan = framework::makePlan(*task)) {
             for (const types::Omission& omission : plan->omitted) addOnce(omitted, omission);
             plans[task->name()] = *plan;
         }

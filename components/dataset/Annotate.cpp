@@ -96,7 +96,7 @@ private:
                     is_ghost = isGhost(bin);
                 are_ghosts.push_back(is_ghost);
             }
-        const std::vector<int32_t> groups = picture_.groupsOf(are_ghosts);
+        const std::vector<int32_t> groups = picture_.groupBy(are_ghosts);
         for (size_t at = 0; at < groups.size(); ++at)
             if (groups[at] > 0) object_of_[at] = 2 * first_shadow_ + groups[at] - 1;
     }
@@ -160,7 +160,7 @@ private:
         const double bearing = picture_.bearing(beam);
         const double near = ranges_.empty() ? first * bin_width_ : static_cast<double>(ranges_[beam]);
         const double far = ranges_.empty() ? last * bin_width_ : near;
-        Annotation& annotation = annotationOf(object, bearing, near);
+        Annotation& annotation = findAnnotation(object, bearing, near);
         annotation.bearing_min = std::min(annotation.bearing_min, bearing);
         annotation.bearing_max = std::max(annotation.bearing_max, bearing);
         annotation.range_min = std::min(annotation.range_min, near);
@@ -172,11 +172,11 @@ private:
             if (annotation.is_shadow) continue;
             annotation.energy += intensity(bin) * (annotation.object < 0 ? 1 : static_cast<double>(truth_.share[bin]));
         }
-        const cv::Point at = picture_.pixelOf(beam, cell);
+        const cv::Point at = picture_.findPixel(beam, cell);
         widen(annotation.box, at.x, at.y);
     }
 
-    Annotation& annotationOf(int32_t object, double bearing, double range) {
+    Annotation& findAnnotation(int32_t object, double bearing, double range) {
         const auto [at, is_new] = found_.try_emplace(object);
         Annotation& annotation = at->second;
         if (!is_new) return annotation;

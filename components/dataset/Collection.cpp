@@ -21,19 +21,19 @@ namespace fs = std::filesystem;
 constexpr Part parts[] = {Part::Train, Part::Val, Part::Test};
 
 template <class Enum>
-std::string nameOf(Enum value) {
+std::string getName(Enum value) {
     return std::string(types::EnumNames<Enum>::names[static_cast<size_t>(value)]);
 }
 
 /** Returns the digests of the members of a set. */
-std::vector<std::string> digestsOf(const Title& title) {
+std::vector<std::string> getDigests(const Title& title) {
     std::vector<std::string> all;
     for (const Member& member : title.members) all.push_back(member.digest);
     return all;
 }
 
 /** Returns the picture file of a sample. */
-std::string pictureOf(const Json& record) {
+std::string makePicture(const Json& record) {
     for (const auto& [name, sum] : record["files"].items())
         if (name.ends_with(".png") && !name.ends_with("_instances.png") && !name.ends_with("_classes.png")) return name;
     throw std::runtime_error("a sample has no picture");
@@ -41,7 +41,7 @@ std::string pictureOf(const Json& record) {
 
 Json cocoImage(const Json& record, uint64_t id) {
     return {{"id", id},
-            {"file_name", pictureOf(record)},
+            {"file_name", makePicture(record)},
             {"width", record["picture"]["width"]},
             {"height", record["picture"]["height"]}};
 }
@@ -60,9 +60,9 @@ Json cocoAnnotation(const Json& each, uint64_t image, uint64_t id) {
 }  // namespace
 
 std::string Title::text() const {
-    Json json{{"version", version},       {"deployment", deployment}, {"sweep", sweep},       {"origin", origin},
-              {"format", nameOf(format)}, {"tracks", tracks},         {"one_seed", one_seed}, {"scenes", scenes},
-              {"classes", classes},       {"members", Json::array()}};
+    Json json{{"version", version},        {"deployment", deployment}, {"sweep", sweep},       {"origin", origin},
+              {"format", getName(format)}, {"tracks", tracks},         {"one_seed", one_seed}, {"scenes", scenes},
+              {"classes", classes},        {"members", Json::array()}};
     for (const Member& member : members) {
         Json& added = json["members"].emplace_back(Json{{"seed", member.seed}, {"total", member.total}});
         if (member.count) added["count"] = *member.count;
@@ -112,7 +112,7 @@ Title Title::read(const fs::path& folder, const std::string& version) {
 
 Collection::Collection(Title title, const fs::path& folder) : title_(std::move(title)) {
     for (const Member& member : title_.members) {
-        stores_.emplace_back(folder, member.digest, digestsOf(title_));
+        stores_.emplace_back(folder, member.digest, getDigests(title_));
         selections_.push_back(member.selection());
     }
 }
@@ -124,13 +124,13 @@ bool Collection::isWhole(bool closely) const {
         for (uint64_t i = 0; i < selections_[member].size(); ++i) {
             const Store& store = stores_[member];
             const uint64_t index = selections_[member][i];
-            if (!(closely ? store.has(index) : fs::exists(store.folder() / (store.stemOf(index) + ".json"))))
+            if (!(closely ? store.has(index) : fs::exists(store.folder() / (store.makeStem(index) + ".json"))))
                 return false;
         }
     return true;
 }
 
-bool Collection::Listed::isOf(Part part) const { return record["part"] == nameOf(part); }
+bool Collection::Listed::isInPart(Part part) const { return record["part"] == getName(part); }
 
 void Collection::forEach(const std::function<void(const Listed&)>& visit) const {
     uint64_t number = 0;
@@ -142,15 +142,15 @@ void Collection::forEach(const std::function<void(const Listed&)>& visit) const 
         }
 }
 
-void Collection::forEachOf(Part part, const std::function<void(const Listed&)>& visit) const {
+void Collection::forEachIn(Part part, const std::function<void(const Listed&)>& visit) const {
     forEach([&](const Listed& sample) {
-        if (sample.isOf(part)) visit(sample);
+        if (sample.isInPart(part)) visit(sample);
     });
 }
 
-uint64_t Collection::countOf(Part part) const {
+uint64_t Collection::countEach(Part part) const {
     uint64_t count = 0;
-    forEachOf(part, [&](const Listed&) { ++count; });
+    forEachIn(part, [&](const Listed&) { ++count; });
     return count;
 }
 
@@ -171,7 +171,7 @@ void Collection::write() {
     if (title_.tracks && hasPictures(title_.format)) writeTracks();
     StatisticsPage page(title_.sweep, title_.classes);
     forEach([&](const Listed& sample) {
-        page.add(sample.record, hasPictures(title_.format) ? pictureOf(sample.record) : "");
+        page.add(sample.record, hasPictures(title_.format) ? makePicture(sample.record) : "");
     });
     add("statistics.html", [&](std::ostream& out) { out << page.text(); });
     writeManifest();
@@ -179,16 +179,16 @@ void Collection::write() {
 }
 
 void Collection::writeCoco(Part part) {
-    if (countOf(part) == 0) return;
-    add("instances_" + nameOf(part) + ".json", [&](std::ostream& out) {
-        out << R"({"info":{"description":)" << textOf(Json(title_.sweep)) << R"(},"licenses":[],"categories":[)";
+    if (countEach(part) == 0) return;
+    add("instances_" + getName(part) + ".json", [&](std::ostream& out) {
+        out << R"({"info":{"description":)" << toText(Json(title_.sweep)) << R"(},"licenses":[],"categories":[)";
         for (size_t i = 0; i < title_.classes.size(); ++i)
             out << (i ? ",\n" : "\n")
-                << textOf(Json{{"id", i + 1}, {"name", title_.classes[i]}, {"supercategory", ""}});
+                << toText(Json{{"id", i + 1}, {"name", title_.classes[i]}, {"supercategory", ""}});
         out << "],\n\"images\":[";
         const char* between = "\n";
-        forEachOf(part, [&](const Listed& sample) {
-            out << between << textOf(cocoImage(sample.record, sample.number));
+        forEachIn(part, [&](const Listed& sample) {
+            out << between << toText(cocoImage(sample.record, sample.number));
             between = ",\n";
         });
         out << "],\n\"annotations\":[";
@@ -204,8 +204,8 @@ void Collection::writeCocoAnnotations(Part part, std::ostream& out) const {
     forEach([&](const Listed& sample) {
         for (const Json& each : sample.record["annotations"]) {
             ++id;
-            if (!sample.isOf(part)) continue;
-            out << between << textOf(cocoAnnotation(each, sample.number, id));
+            if (!sample.isInPart(part)) continue;
+            out << between << toText(cocoAnnotation(each, sample.number, id));
             between = ",\n";
         }
     });
@@ -214,18 +214,18 @@ void Collection::writeCocoAnnotations(Part part, std::ostream& out) const {
 void Collection::writeYolo() {
     std::string data;  // without a path: the files are in the same folder
     for (const Part part : parts) {
-        if (countOf(part) == 0) continue;
-        const std::string list = nameOf(part) + ".txt";
+        if (countEach(part) == 0) continue;
+        const std::string list = getName(part) + ".txt";
         add(list, [&](std::ostream& out) {
-            forEachOf(part, [&](const Listed& sample) { out << "./" << pictureOf(sample.record) << "\n"; });
+            forEachIn(part, [&](const Listed& sample) { out << "./" << makePicture(sample.record) << "\n"; });
         });
-        data += nameOf(part) + ": " + list + "\n";
+        data += getName(part) + ": " + list + "\n";
     }
-    if (countOf(Part::Val) == 0 && countOf(Part::Train) > 0)  // trainers require one
+    if (countEach(Part::Val) == 0 && countEach(Part::Train) > 0)  // trainers require one
         data += "val: train.txt  # not a part of its own: the sweep's split has no val\n";
     data += "names:\n";
     for (size_t i = 0; i < title_.classes.size(); ++i)
-        data += fmt::format("  {}: {}\n", i, textOf(Json(title_.classes[i])));
+        data += fmt::format("  {}: {}\n", i, toText(Json(title_.classes[i])));
     add("data.yaml", [&](std::ostream& out) { out << data; });
 }
 
@@ -259,18 +259,18 @@ void Collection::writeManifest() {
         const Json& record = sample.record;
         const Store& store = stores_[sample.member];
         ++samples, ++in_part[record["part"].get<std::string>()];
-        const std::string name = store.stemOf(record["index"]) + ".json";
+        const std::string name = store.makeStem(record["index"]) + ".json";
         for (const auto& [file, sum] : record["files"].items()) all[file] = sum;
         all[name] = types::sha256OfFile(store.folder() / name);
     });
     for (const auto& [name, sum] : files_.items()) all[name] = sum;
-    const std::vector<std::string> digests = digestsOf(title_);
+    const std::vector<std::string> digests = getDigests(title_);
     Json manifest{
         {"version", title_.version},
         {"deployment", title_.deployment},
         {"sweep", title_.sweep},
         {"digest", digests.size() == 1 ? digests[0] : types::sha256(fmt::format("{}", fmt::join(digests, "\n")))},
-        {"format", nameOf(title_.format)},
+        {"format", getName(title_.format)},
         {"samples", samples},
         {"parts", in_part},
         {"classes", title_.classes},
@@ -302,7 +302,8 @@ void Parts::add(const Title& other, size_t folder) {
     const std::string file = folders_[folder] / description_file, first = folders_[0];
     if (other.format != title_.format)
         throw types::ConfigError(
-            file, "format", fmt::format("is {}; that of {} is {}", nameOf(other.format), first, nameOf(title_.format)));
+            file, "format",
+            fmt::format("is {}; that of {} is {}", getName(other.format), first, getName(title_.format)));
     if (other.origin != title_.origin)
         throw types::ConfigError(file, "origin",
                                  fmt::format("another deployment ({}), sweep ({}), scene or --set than {} ({}, {}); "
@@ -327,11 +328,11 @@ void Parts::find() {
         const Selection selection = member.selection();
         std::map<uint64_t, const fs::path*>& places = places_.emplace_back();
         for (size_t i = 0; i < folders_.size(); ++i) {
-            const std::vector<std::string> digests = digestsOf(titles_[i]);
+            const std::vector<std::string> digests = getDigests(titles_[i]);
             if (std::ranges::count(digests, member.digest) == 0) continue;
             const Store store(folders_[i], member.digest, digests);
             for (const uint64_t index : store.recorded()) {
-                const fs::path record = folders_[i] / (store.stemOf(index) + ".json");
+                const fs::path record = folders_[i] / (store.makeStem(index) + ".json");
                 if (!selection.contains(index) || !store.has(index))
                     throw types::ConfigError(record, "",
                                              "the sample is damaged; make it again: run its shard with this --out");
@@ -361,7 +362,7 @@ void Parts::copyTo(Collection& set) const {
             const auto copy = [&](const std::string& name) {
                 return store.put(name, [&](const fs::path& to) { fs::copy_file(from / name, to); });
             };
-            const std::string record = store.stemOf(index) + ".json";
+            const std::string record = store.makeStem(index) + ".json";
             const std::optional<Json> read = readSigned(from / record);
             bool is_same = read.has_value();
             const Json files = is_same ? read->at("files") : Json::object();

@@ -65,11 +65,11 @@ private:
         uint64_t number;  ///< From 0; that of the sample in the sweep where the set is one whole sweep.
         size_t member;
         const Json& record;
-        bool isOf(Part part) const;
+        bool isInPart(Part part) const;
     };
     void forEach(const std::function<void(const Listed&)>& visit) const;
-    void forEachOf(Part part, const std::function<void(const Listed&)>& visit) const;
-    uint64_t countOf(Part part) const;
+    void forEachIn(Part part, const std::function<void(const Listed&)>& visit) const;
+    uint64_t countEach(Part part) const;
     void add(const std::string& name, const std::function<void(std::ostream&)>& writer);
     void writeCoco(Part part);
     void writeCocoAnnotations(Part part, std::ostream& out) const;

@@ -32,7 +32,7 @@ Placeable turned(const Placeable& object, const glm::dquat& turn) {
     return result;
 }
 
-double headingOf(const types::Pose& pose) {
+double computeHeading(const types::Pose& pose) {
     const glm::dvec3 ahead = pose.orientation * glm::dvec3(1, 0, 0);
     return std::atan2(ahead.y, ahead.x);
 }
@@ -120,10 +120,10 @@ std::optional<PlacedObject> Placement::tryOnce(const ObjectGroup& group, const s
     const Placeable& filed = scene_.placeables.at(name);
     glm::dvec2 at{between(group.x, word), between(group.y, word + 1)};
     if (group.frame == Frame::Vehicle) {
-        const double heading = headingOf(vehicle_), c = std::cos(heading), s = std::sin(heading);
+        const double heading = computeHeading(vehicle_), c = std::cos(heading), s = std::sin(heading);
         at = {vehicle_.position.x + c * at.x - s * at.y, vehicle_.position.y + s * at.x + c * at.y};
     }
-    const glm::dquat turn = turnOf(group, word);
+    const glm::dquat turn = computeTurn(group, word);
     Placeable object = group.tilts() ? turned(filed, turn) : filed;
     const double scale = group.scale.empty() ? 1 : between(group.scale, word + scale_words);
     object.radius *= scale, object.low *= scale;
@@ -139,7 +139,7 @@ std::optional<PlacedObject> Placement::tryOnce(const ObjectGroup& group, const s
     return placed;
 }
 
-glm::dquat Placement::turnOf(const ObjectGroup& group, uint64_t word) const {
+glm::dquat Placement::computeTurn(const ObjectGroup& group, uint64_t word) const {
     if (group.any_turn) {  // K. Shoemake, Uniform random rotations, in Graphics Gems III, 1992
         const double share = between({0, 1}, word + tilt_words), near = std::sqrt(1 - share), far = std::sqrt(share);
         const double a = types::radians(between({0, 360}, word + tilt_words + 1)),

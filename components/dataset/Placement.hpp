@@ -22,7 +22,7 @@ private:
     /** Chooses at random with equal probability. Takes words from `last_word` downwards. */
     std::vector<bool> chosen(size_t count, size_t wanted, uint64_t last_word) const;
     std::optional<PlacedObject> tryOnce(const ObjectGroup& group, const std::string& name, uint64_t word);
-    glm::dquat turnOf(const ObjectGroup& group, uint64_t word) const;
+    glm::dquat computeTurn(const ObjectGroup& group, uint64_t word) const;
     bool isFree(const ObjectGroup& group, const Circle& circle) const;
     /** Returns a random number in a span, by the word's number in this sample; the first value if both are the same. */
     double between(const std::vector<double>& span, uint64_t word) const;

@@ -201,13 +201,13 @@ SampleFiles::SampleFiles(const Sweep& sweep, Format format, const Classes& class
     : sweep_(sweep), format_(format), classes_(classes), store_(store), picture_(sweep.picture) {}
 
 void SampleFiles::write(const Recorded& recorded) {
-    const Annotated annotated = annotatedOf(recorded);
-    Json record = recordOf(recorded, annotated);
-    record["files"] = writeFiles(store_.stemOf(recorded.sample.index), recorded, annotated, record);
+    const Annotated annotated = makeAnnotated(recorded);
+    Json record = makeRecord(recorded, annotated);
+    record["files"] = writeFiles(store_.makeStem(recorded.sample.index), recorded, annotated, record);
     store_.putRecord(recorded.sample.index, std::move(record));
 }
 
-Annotated SampleFiles::annotatedOf(const Recorded& recorded) {
+Annotated SampleFiles::makeAnnotated(const Recorded& recorded) {
     const types::Sonar& ping = recorded.run.ping();
     if (sweep_.picture.shape == output::PlainShape::Range) {
         const types::DepthMap& image = *recorded.range_image;
@@ -225,7 +225,7 @@ Annotated SampleFiles::annotatedOf(const Recorded& recorded) {
                     sweep_.picture.scale);
 }
 
-Json SampleFiles::recordOf(const Recorded& recorded, const Annotated& annotated) const {
+Json SampleFiles::makeRecord(const Recorded& recorded, const Annotated& annotated) const {
     const Sample& sample = recorded.sample;
     Json record{{"index", sample.index},
                 {"part", std::string(types::EnumNames<Part>::names[static_cast<size_t>(sample.part)])},
@@ -272,7 +272,7 @@ Json SampleFiles::writeFiles(const std::string& stem, const Recorded& recorded, 
         }
     if (format_ == Format::Npz)
         files[stem + ".npz"] =
-            store_.put(stem + ".npz", [&](const fs::path& file) { writeNpz(file, recorded, textOf(meta)); });
+            store_.put(stem + ".npz", [&](const fs::path& file) { writeNpz(file, recorded, toText(meta)); });
     if (format_ == Format::Mcap)
         files[stem + ".mcap"] = store_.put(stem + ".mcap", [&](const fs::path& file) { writeMcap(file, recorded); });
     return files;

@@ -53,8 +53,8 @@ public:
 
 private:
     /** Renders the picture, and finds its annotations. */
-    Annotated annotatedOf(const Recorded& recorded);
-    Json recordOf(const Recorded& recorded, const Annotated& annotated) const;
+    Annotated makeAnnotated(const Recorded& recorded);
+    Json makeRecord(const Recorded& recorded, const Annotated& annotated) const;
     /** Writes the files. Returns their names and SHA-256 sums. */
     Json writeFiles(const std::string& stem, const Recorded& recorded, const Annotated& annotated, const Json& meta);
     std::string putPicture(const std::string& name, const types::Image& picture);

@@ -98,7 +98,7 @@ Samples::Samples(const Sweep& sweep, std::vector<std::vector<TimedPose>> traject
     for (size_t group = 0; group < sweep.objects.size(); ++group) refuseUnmatched(group);
     names_.resize(scenes_.size());
     for (size_t scene = 0; scene < scenes_.size(); ++scene)
-        for (size_t group = 0; group < sweep.objects.size(); ++group) names_[scene].push_back(namesOf(scene, group));
+        for (size_t group = 0; group < sweep.objects.size(); ++group) names_[scene].push_back(getNames(scene, group));
     for (size_t group = 0; group < sweep.objects.size(); ++group) refuseTooMany(group);
 }
 
@@ -126,7 +126,7 @@ void Samples::refuseUnmatched(size_t number) const {
     resolve(sweep_, group.avoid, nodes, path + "avoid", group.line, group.column, where);
 }
 
-std::vector<std::string> Samples::namesOf(size_t scene, size_t number) const {
+std::vector<std::string> Samples::getNames(size_t scene, size_t number) const {
     const ObjectGroup& group = sweep_.objects[number];
     std::vector<std::string> names;
     for (const std::string& pattern : group.names)
@@ -141,13 +141,13 @@ std::vector<std::string> Samples::namesOf(size_t scene, size_t number) const {
     return names;
 }
 
-std::vector<std::string> Samples::objectsOf(size_t scene) const {
+std::vector<std::string> Samples::getObjects(size_t scene) const {
     std::vector<std::string> all;
     for (const auto& names : names_[scene]) all.insert(all.end(), names.begin(), names.end());
     return all;
 }
 
-std::vector<std::pair<std::string, std::string>> Samples::settingsOf(size_t setting) const {
+std::vector<std::pair<std::string, std::string>> Samples::getSettings(size_t setting) const {
     std::vector<std::pair<std::string, std::string>> chosen;
     for (auto each = sweep_.settings.rbegin(); each != sweep_.settings.rend(); ++each) {
         chosen.emplace_back(each->property, each->values[setting % each->values.size()].yaml);
@@ -157,7 +157,7 @@ std::vector<std::pair<std::string, std::string>> Samples::settingsOf(size_t sett
     return chosen;
 }
 
-std::vector<TimedPose> Samples::runOf(uint64_t pose) const {
+std::vector<TimedPose> Samples::getRun(uint64_t pose) const {
     if (sweep_.trajectory) return trajectory_[pose];
     const std::vector<double> values =
         sweep_.grid ? gridded(*sweep_.grid, pose) : drawn(*sweep_.random, sweep_.seed, pose);
@@ -197,9 +197,9 @@ Sample Samples::at(uint64_t index) const {
     sample.pose = index % poses_;
     sample.setting = index / poses_ % settings_;
     sample.scene = index / poses_ / settings_;
-    sample.run = runOf(sample.pose);
+    sample.run = getRun(sample.pose);
     sample.objects = place(sample.scene, sample.pose, sample.run.front().at);
-    sample.settings = settingsOf(sample.setting);
+    sample.settings = getSettings(sample.setting);
     for (size_t i = 0; i < sweep_.drawn.size(); ++i)
         sample.settings.emplace_back(sweep_.drawn[i].property, sweep_.drawn[i].draw(word(sweep_, index, i)));
     sample.seed = types::hashed(sweep_.seed, index, noise_stream) | 1;

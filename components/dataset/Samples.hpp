@@ -95,18 +95,18 @@ public:
     /** Returns a sample. Throws types::ConfigError if its objects do not fit. */
     Sample at(uint64_t index) const;
     /** Returns the values of a combination of settings, "task.property" and YAML. */
-    std::vector<std::pair<std::string, std::string>> settingsOf(size_t setting) const;
+    std::vector<std::pair<std::string, std::string>> getSettings(size_t setting) const;
     /** Returns the names of all objects that are placed in a scene. */
-    std::vector<std::string> objectsOf(size_t scene) const;
+    std::vector<std::string> getObjects(size_t scene) const;
 
 private:
-    std::vector<TimedPose> runOf(uint64_t pose) const;
+    std::vector<TimedPose> getRun(uint64_t pose) const;
     std::vector<PlacedObject> place(size_t scene, uint64_t pose, const types::Pose& vehicle) const;
     /** Throws if a pattern of a group matches in none of the scenes. */
     void refuseUnmatched(size_t group) const;
     /** Throws if the count of a group is larger than the number of its objects in each scene. */
     void refuseTooMany(size_t group) const;
-    std::vector<std::string> namesOf(size_t scene, size_t group) const;
+    std::vector<std::string> getNames(size_t scene, size_t group) const;
 
     const Sweep& sweep_;
     std::vector<std::vector<TimedPose>> trajectory_;

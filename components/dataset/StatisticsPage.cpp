@@ -23,7 +23,7 @@ std::string escaped(const std::string& text) {
 }
 
 /** Returns a distinct hue per class. */
-std::string colourOf(uint32_t category) { return fmt::format("hsl({},90%,60%)", category * 137 % 360); }
+std::string getColour(uint32_t category) { return fmt::format("hsl({},90%,60%)", category * 137 % 360); }
 
 /** Returns the median of numbers by their counts, which are not all 0. */
 double median(const std::map<double, uint64_t>& counts) {
@@ -44,7 +44,7 @@ void StatisticsPage::OfSetting::add(const Json& value) {
     if (value.is_number())
         ++numbers[value];
     else if (others.size() <= max_values)
-        ++others[value.is_string() ? value.get<std::string>() : textOf(value)];
+        ++others[value.is_string() ? value.get<std::string>() : toText(value)];
 }
 
 void StatisticsPage::OfSetting::addBars(const std::string& property, Bars& bars) const {
@@ -95,7 +95,7 @@ std::string StatisticsPage::example(const Json& record, const std::string& pictu
         text +=
             fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" stroke=\"{}\"><title>{}</title></rect>\n",
                         box[0].get<int>(), box[1].get<int>(), box[2].get<int>(), box[3].get<int>(),
-                        colourOf(each["category"]), escaped(each["name"]));
+                        getColour(each["category"]), escaped(each["name"]));
     }
     return text + fmt::format("</svg><figcaption>{}, {}, {} objects</figcaption></figure>\n",
                               record["index"].get<uint64_t>(), record["part"].get<std::string>(),
@@ -123,7 +123,8 @@ std::string StatisticsPage::tableOfClasses() const {
         text += fmt::format(
             "<tr><td style=\"background:{}\">&nbsp;</td><td>{}</td><td>{}</td><td>{}</td><td>{:.0f}</td>"
             "<td>{:.2f}</td><td>{:.2f}</td></tr>\n",
-            colourOf(category), escaped(classes_[category - 1]), of.objects, of.samples, mean, of.nearest, of.farthest);
+            getColour(category), escaped(classes_[category - 1]), of.objects, of.samples, mean, of.nearest,
+            of.farthest);
     }
     return text + "</table>\n";
 }

@@ -32,7 +32,7 @@ std::string passingName(const std::string& name) {
 }
 
 /** Returns the number of the sample that a file belongs to; none if it belongs to no sample. */
-std::optional<uint64_t> indexOf(const std::string& name) {
+std::optional<uint64_t> findIndex(const std::string& name) {
     const size_t digits = name.find_first_not_of("0123456789");
     if (digits == std::string::npos || digits < 6 || digits > 18 || name[digits] != '_') return std::nullopt;
     const size_t end = name.find_first_not_of("0123456789abcdef", digits + 1);
@@ -44,29 +44,29 @@ std::string stem(const std::string& digest, uint64_t index) {
     return fmt::format("{:06}_{}", index, types::sha256(fmt::format("{}\n{}", digest, index)).substr(0, hash_digits));
 }
 
-std::string bytesOf(const fs::path& file) {
+std::string toBytes(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::string sumOf(Json record) {
+std::string computeSum(Json record) {
     record.erase("sum");
-    return types::sha256(textOf(record));
+    return types::sha256(toText(record));
 }
 
 }  // namespace
 
-std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string toText(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 std::string signedText(Json json) {
-    json["sum"] = sumOf(json);
-    return textOf(json) + "\n";
+    json["sum"] = computeSum(json);
+    return toText(json) + "\n";
 }
 
 std::optional<Json> readSigned(const fs::path& file) {
     if (!fs::exists(file)) return std::nullopt;
-    Json json = console::readJson(bytesOf(file), deepest_record);
-    if (!json.is_object() || json.value("sum", Json()) != sumOf(json)) return std::nullopt;
+    Json json = console::readJson(toBytes(file), deepest_record);
+    if (!json.is_object() || json.value("sum", Json()) != computeSum(json)) return std::nullopt;
     return json;
 }
 
@@ -78,7 +78,7 @@ Store::Store(fs::path folder, std::string digest, const std::vector<std::string>
 void Store::refuseOthers(const std::vector<std::string>& others) const {
     constexpr std::string_view of_whole_sets[] = {"manifest.json", "statistics.html", "data.yaml"};
     const auto isOwn = [&](uint64_t index, const std::string& name) {
-        return name.starts_with(stemOf(index)) || std::ranges::any_of(others, [&](const std::string& digest) {
+        return name.starts_with(makeStem(index)) || std::ranges::any_of(others, [&](const std::string& digest) {
                    return name.starts_with(stem(digest, index));
                });
     };
@@ -89,7 +89,7 @@ void Store::refuseOthers(const std::vector<std::string>& others) const {
         if (std::ranges::count(of_whole_sets, name) > 0 || name.starts_with("instances_") ||
             (name == description_file && !readSigned(entry.path())))
             foreign = name;
-        const std::optional<uint64_t> index = indexOf(name);
+        const std::optional<uint64_t> index = findIndex(name);
         has_own |= index && isOwn(*index, name);
         if (index && !isOwn(*index, name))
             throw types::ConfigError(folder_, "--out",
@@ -102,7 +102,7 @@ void Store::refuseOthers(const std::vector<std::string>& others) const {
             folder_, "--out", fmt::format("holds {}, which a data set would replace; give an empty folder", foreign));
 }
 
-std::string Store::stemOf(uint64_t index) const { return stem(digest_, index); }
+std::string Store::makeStem(uint64_t index) const { return stem(digest_, index); }
 
 std::string Store::put(const std::string& name, const std::function<void(const fs::path&)>& writer) {
     constexpr int max_tries = 5;
@@ -131,15 +131,17 @@ std::string Store::putText(const std::string& name, const std::string& text) {
     });
 }
 
-void Store::putRecord(uint64_t index, Json record) { putText(stemOf(index) + ".json", signedText(std::move(record))); }
+void Store::putRecord(uint64_t index, Json record) {
+    putText(makeStem(index) + ".json", signedText(std::move(record)));
+}
 
-std::optional<Json> Store::record(uint64_t index) const { return readSigned(folder_ / (stemOf(index) + ".json")); }
+std::optional<Json> Store::record(uint64_t index) const { return readSigned(folder_ / (makeStem(index) + ".json")); }
 
 bool Store::has(uint64_t index) const {
     const std::optional<Json> found = record(index);
     if (!found) return false;
     for (const auto& [name, sum] : (*found)["files"].items())
-        if (!name.starts_with(stemOf(index)) || name.find('/') != std::string::npos || !fs::exists(folder_ / name) ||
+        if (!name.starts_with(makeStem(index)) || name.find('/') != std::string::npos || !fs::exists(folder_ / name) ||
             types::sha256OfFile(folder_ / name) != sum.get<std::string>())
             return false;
     return true;
@@ -149,7 +151,7 @@ std::vector<uint64_t> Store::recorded() const {
     std::vector<uint64_t> all;
     for (const auto& entry : fs::directory_iterator(folder_)) {
         const std::string name = entry.path().filename();
-        if (const auto index = indexOf(name); index && name == stemOf(*index) + ".json") all.push_back(*index);
+        if (const auto index = findIndex(name); index && name == makeStem(*index) + ".json") all.push_back(*index);
     }
     std::ranges::sort(all);
     return all;

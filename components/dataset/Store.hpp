@@ -14,7 +14,7 @@ using console::Json;
 inline constexpr const char* description_file = "dataset.json";  ///< Describes the set of a folder, see Title.
 
 /** Returns JSON in one line. Replaces invalid UTF-8. */
-std::string textOf(const Json& json);
+std::string toText(const Json& json);
 
 /** Returns the bytes of a file of JSON: with the SHA-256 of the rest as its last key, `sum`. */
 std::string signedText(Json json);
@@ -34,7 +34,7 @@ public:
 
     const std::filesystem::path& folder() const { return folder_; }
     const std::string& digest() const { return digest_; }
-    std::string stemOf(uint64_t index) const;
+    std::string makeStem(uint64_t index) const;
 
     /** Calls `writer` with a temporary name, renames the file to `name`, and returns its SHA-256. */
     std::string put(const std::string& name, const std::function<void(const std::filesystem::path&)>& writer);

@@ -45,7 +45,7 @@ constexpr std::array<std::pair<uint8_t, const char*>, 11> lifecycle_states{
      {StateId::deactivating, "deactivating"},
      {StateId::error_processing, "errorprocessing"}}};
 
-ros::State stateOf(uint8_t id) {
+ros::State getState(uint8_t id) {
     const auto found = std::ranges::find(lifecycle_states, id, &std::pair<uint8_t, const char*>::first);
     return {id, found == lifecycle_states.end() ? "" : found->second};
 }
@@ -90,7 +90,7 @@ std::span<const LifecycleServer::Edge> LifecycleServer::graph() {
 }
 
 ros::TransitionDescription LifecycleServer::described(const Edge& edge) {
-    return {{edge.id, edge.label}, stateOf(edge.start), stateOf(edge.goal)};
+    return {{edge.id, edge.label}, getState(edge.start), getState(edge.goal)};
 }
 
 const LifecycleServer::Edge* LifecycleServer::find(uint8_t state, uint8_t id, const std::string& label) {
@@ -109,7 +109,7 @@ LifecycleServer::LifecycleServer(NodeServer& server, std::string task, types::De
       announced_(state()) {
     server_.serve(ros::change_state,
                   {[this](const auto& request, auto& response) { response.field = change(request.field); }});
-    server_.serve(ros::get_state, {[this](const auto&, auto& response) { response.field = stateOf(state()); }});
+    server_.serve(ros::get_state, {[this](const auto&, auto& response) { response.field = getState(state()); }});
     server_.serve(ros::get_available_states, {[](const auto&, auto& response) {
                       for (const auto& [id, label] : lifecycle_states) response.field.push_back({id, label});
                   }});
@@ -158,7 +158,7 @@ bool LifecycleServer::change(const ros::Transition& wanted) {
     const Edge* const edge = find(before, wanted.id, wanted.label);
     if (!edge) {
         const std::string named = wanted.label.empty() ? std::to_string(wanted.id) : wanted.label;
-        report_(fmt::format("there is no transition {} from the state {} of {}", named, stateOf(before).label, task_));
+        report_(fmt::format("there is no transition {} from the state {} of {}", named, getState(before).label, task_));
         return false;
     }
     const bool has_two_steps = edge->goal >= StateId::configuring;
@@ -168,7 +168,7 @@ bool LifecycleServer::change(const ros::Transition& wanted) {
         make(edge->id);
         is_shut_down_ = edge->goal == StateId::shutting_down || edge->goal == StateId::finalized;
     } catch (const std::exception& refused) {
-        report_(fmt::format("{} of {}: {}", edge->label, task_, types::reasonOf(refused)));
+        report_(fmt::format("{} of {}: {}", edge->label, task_, types::getReason(refused)));
         const uint8_t now = state();
         outcome = now == StateId::error_processing || now == StateId::finalized ? Ending::error : Ending::failure;
     }

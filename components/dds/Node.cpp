@@ -91,7 +91,7 @@ Pool& pool() {
 
 const Serdata& own(const ddsi_serdata* data) { return *static_cast<const Serdata*>(data); }
 
-Serdata* copyOf(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* bytes, size_t size) {
+Serdata* makeCopy(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* bytes, size_t size) {
     Serdata* data = pool().take(type, kind, (size + 3) / 4 * 4);
     if (!data) return nullptr;
     if (size > 0) std::memcpy(data->bytes.get(), bytes, size);
@@ -100,7 +100,7 @@ Serdata* copyOf(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* by
 }
 
 ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* chain, size_t size) {
-    if (size > own(type).maximum) return copyOf(type, kind, nullptr, 0);
+    if (size > own(type).maximum) return makeCopy(type, kind, nullptr, 0);
     Serdata* data = pool().take(type, kind, size);
     if (!data) return nullptr;
     uint32_t filled = 0;
@@ -117,7 +117,7 @@ ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, co
 
 ddsi_serdata* fromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                          const ddsrt_iovec_t* pieces, size_t size) {
-    if (size > own(type).maximum) return copyOf(type, kind, nullptr, 0);
+    if (size > own(type).maximum) return makeCopy(type, kind, nullptr, 0);
     Serdata* data = pool().take(type, kind, size);
     if (!data) return nullptr;
     size_t filled = 0;
@@ -131,7 +131,7 @@ ddsi_serdata* fromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt
 
 ddsi_serdata* fromSample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
     const Bytes& bytes = *static_cast<const Bytes*>(sample);
-    return copyOf(type, kind, bytes.data(), kind == SDK_DATA ? bytes.size() : 0);
+    return makeCopy(type, kind, bytes.data(), kind == SDK_DATA ? bytes.size() : 0);
 }
 
 bool toSample(const ddsi_serdata* data, void* sample, void**, void*) noexcept try {
@@ -152,7 +152,7 @@ ddsi_serdata* refer(const ddsi_serdata* data, size_t offset, size_t size, ddsrt_
 }
 
 // Without a key, all samples belong to one instance without content.
-ddsi_serdata* untyped(const ddsi_sertype* type) { return copyOf(type, SDK_KEY, nullptr, 0); }
+ddsi_serdata* untyped(const ddsi_sertype* type) { return makeCopy(type, SDK_KEY, nullptr, 0); }
 
 const ddsi_serdata_ops data_operations = {
     .eqkey = [](const ddsi_serdata*, const ddsi_serdata*) { return true; },
@@ -225,7 +225,7 @@ private:
     std::string logged_;
 };
 
-Guid guidOf(int32_t entity) {
+Guid makeGuid(int32_t entity) {
     dds_guid_t found{};
     dds_get_guid(entity, &found);
     Guid guid{};
@@ -235,23 +235,23 @@ Guid guidOf(int32_t entity) {
 }
 
 template <size_t size>
-Gid<size> gidOf(const Guid& guid) {
+Gid<size> toGid(const Guid& guid) {
     Gid<size> gid;
     std::copy(guid.begin(), guid.end(), gid.data.begin());
     return gid;
 }
 
 template <size_t size>
-std::vector<Gid<size>> gidsOf(const std::vector<Guid>& guids) {
+std::vector<Gid<size>> toGids(const std::vector<Guid>& guids) {
     std::vector<Gid<size>> gids;
-    for (const Guid& guid : guids) gids.push_back(gidOf<size>(guid));
+    for (const Guid& guid : guids) gids.push_back(toGid<size>(guid));
     return gids;
 }
 
 constexpr size_t longest_topic = 255;  ///< With "rt/", as in ROS 2.
 
 /** Returns "/auv" for "/auv/sonar", "/" for "sonar". */
-std::string namespaceOf(const std::string& node) {
+std::string getNamespace(const std::string& node) {
     const size_t slash = node.rfind('/');
     const std::string words = slash == node.npos ? "" : node.substr(0, slash);
     return words.starts_with('/') ? words : "/" + words;
@@ -393,13 +393,13 @@ std::string diagnosticOfNode(const std::string& name) {
 
 // Without an enclave ROS 2 does not recognise a participant as a node.
 Node::Node(uint32_t domain, const std::string& name, size_t gid_size)
-    : namespace_(namespaceOf(name)),
+    : namespace_(getNamespace(name)),
       name_(name.substr(name.rfind('/') + 1)),
       gid_size_(gid_size),
       participant_(joinDomain(domain, "enclave=/;")) {}
 Node::~Node() = default;
 
-Guid Node::guid() const { return guidOf(participant()); }
+Guid Node::guid() const { return makeGuid(participant()); }
 
 Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t maximum) const {
     ddsi_sertype* type = makeRawType(dds_type, maximum);
@@ -431,8 +431,8 @@ std::vector<Published> Node::published() {
     return found;
 }
 
-void Node::addWriter(int32_t writer) { writers_.push_back(guidOf(writer)); }
-void Node::addReader(int32_t reader) { readers_.push_back(guidOf(reader)); }
+void Node::addWriter(int32_t writer) { writers_.push_back(makeGuid(writer)); }
+void Node::addReader(int32_t reader) { readers_.push_back(makeGuid(reader)); }
 
 void Node::announce() { gid_size_ == 16 ? announceWith<16>() : announceWith<24>(); }
 
@@ -440,8 +440,8 @@ template <size_t gid_size>
 void Node::announceWith() {
     using Info = ParticipantEntitiesInfo<gid_size>;
     const Quality quality{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
-    const Info info{gidOf<gid_size>(guidOf(participant())),
-                    {{namespace_, name_, gidsOf<gid_size>(readers_), gidsOf<gid_size>(writers_)}}};
+    const Info info{toGid<gid_size>(makeGuid(participant())),
+                    {{namespace_, name_, toGids<gid_size>(readers_), toGids<gid_size>(writers_)}}};
     Bytes bytes;
     ros::encode(info, bytes);
     if (!discovery_)

@@ -13,7 +13,7 @@ namespace {
 enum class Level : uint8_t { Right, Warning, Error };
 
 /** Returns the task that a line "task: text" is about; empty if none. */
-std::string taskOf(const std::string& line, const types::DeploymentStatus& status) {
+std::string getTask(const std::string& line, const types::DeploymentStatus& status) {
     const std::string word = line.substr(0, line.find(':'));
     for (const types::TaskStatus& task : status.tasks)
         if (task.record.name == word) return word;
@@ -74,7 +74,7 @@ void NodeReports::log() {
         seen.state = task.state;
     }
     for (const LogLines::Line& line : lines_->take()) {
-        const std::string task = taskOf(line.text, status);
+        const std::string task = getTask(line.text, status);
         if (!task.empty() && line.level == LogLines::warning) {
             seen_[task].warning = line.text.substr(std::min(task.size() + 2, line.text.size()));
             seen_[task].warned = Clock::now();

@@ -21,7 +21,7 @@ constexpr const char* sim_time = "use_sim_time";
 
 uint8_t typeNumber(ros::ParameterType type) { return static_cast<uint8_t>(type); }
 
-ros::ParameterValue valueOf(const types::PropertyValue& property) {
+ros::ParameterValue getValue(const types::PropertyValue& property) {
     ros::ParameterValue value;
     if (const bool* flag = std::get_if<bool>(&property)) {
         value.type = typeNumber(ros::ParameterType::Bool);
@@ -95,7 +95,7 @@ ros::ParameterValue valueNamed(const auto& values, const std::string& name) {
 }
 
 /** Returns none if there is no such property. */
-std::optional<types::PropertyInfo> infoOf(const types::DeploymentControl& deployment, const std::string& name) {
+std::optional<types::PropertyInfo> getInfo(const types::DeploymentControl& deployment, const std::string& name) {
     for (const types::TaskInterface& task : deployment.interfaces())
         for (const types::PropertyInfo& info : task.properties)
             if (task.name + "." + info.name == name) return info;
@@ -163,10 +163,10 @@ void ParameterServer::offer() {
 }
 
 ParameterServer::Values ParameterServer::valuesIn(const types::DeploymentStatus& status) const {
-    Values values{{sim_time, valueOf(use_sim_time_())}};
+    Values values{{sim_time, getValue(use_sim_time_())}};
     for (const types::TaskStatus& task : status.tasks)
         for (const auto& [name, value] : task.record.properties)
-            values.emplace_back(task.record.name + "." + name, valueOf(value));
+            values.emplace_back(task.record.name + "." + name, getValue(value));
     return values;
 }
 
@@ -176,7 +176,7 @@ ros::ParameterDescriptor ParameterServer::descriptor(const Values& values, const
     descriptor.type = valueNamed(values, name).type;
     descriptor.read_only = name == sim_time || name.starts_with(own_ + ".");
     if (name == sim_time) descriptor.description = "whether stamps are by another clock than the wall clock";
-    const auto info = infoOf(deployment_, name);
+    const auto info = getInfo(deployment_, name);
     if (!info) return descriptor;
     descriptor.description = info->doc + (info->unit.empty() || info->unit == "1" ? "" : " [" + info->unit + "]");
     descriptor.additional_constraints = info->type;
@@ -196,7 +196,7 @@ void ParameterServer::prepare(const Values& values, const ros::Parameter& parame
     if (parameter.name == sim_time)
         throw std::runtime_error(
             fmt::format("is {}, by the deployment's schedule and tasks; it cannot be set", use_sim_time_()));
-    const auto info = infoOf(deployment_, parameter.name);
+    const auto info = getInfo(deployment_, parameter.name);
     if (!info) throw std::runtime_error("is not a property of any task");
     if (parameter.name.starts_with(own_ + "."))
         throw std::runtime_error("is a property of the task that serves parameters, which is read-only");
@@ -210,13 +210,13 @@ ros::SetParametersResult ParameterServer::setAll(std::span<const ros::Parameter>
     for (const ros::Parameter& parameter : parameters) try {
             prepare(all, parameter, to_set);
         } catch (const std::exception& error) {
-            return {false, parameter.name + ": " + types::reasonOf(error)};
+            return {false, parameter.name + ": " + types::getReason(error)};
         }
     if (!to_set.empty()) set_(to_set);
     sendChanges();
     return {true, ""};
 } catch (const std::exception& error) {
-    return {false, types::reasonOf(error)};
+    return {false, types::getReason(error)};
 }
 
 void ParameterServer::sendChanges() {

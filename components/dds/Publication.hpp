@@ -25,7 +25,7 @@ struct TopicOptions {
     std::optional<std::string> world_frame_id, child_frame_id;  ///< Override the frames that a pose names.
     std::string frame_prefix;
 };
-inline TopicOptions optionsOf(const PublisherConfig& config, const TopicOut& topic, const std::string& frame_prefix) {
+inline TopicOptions getOptions(const PublisherConfig& config, const TopicOut& topic, const std::string& frame_prefix) {
     TopicOptions options{{}, config.world_frame_id, topic.child_frame_id, frame_prefix};
     static_cast<ros::SonarOptions&>(options.messages) = topic.sonar;
     options.messages.world_frame = config.node.world_frame;
@@ -94,9 +94,9 @@ bool canBe(MessageType type) {
 
 /** Returns the types of messages that a Sample can become, as in YAML: "nav_msgs/Odometry, ...". */
 template <class Sample>
-std::string messagesOf() {
+std::string getMessages() {
     std::string all;
-    ros::forEachMessageOf<Sample>([&]<class Message>(std::type_identity<Message>) {
+    ros::forEachMessageType<Sample>([&]<class Message>(std::type_identity<Message>) {
         const auto name = types::EnumNames<MessageType>::names[static_cast<size_t>(message_type<Message>)];
         all += (all.empty() ? "" : ", ") + std::string(name);
     });
@@ -104,7 +104,7 @@ std::string messagesOf() {
 }
 
 /** Returns the writer of a topic. */
-inline Writer writerOf(Node& node, const PublisherConfig& config, const TopicOut& topic) {
+inline Writer findWriter(Node& node, const PublisherConfig& config, const TopicOut& topic) {
     const Quality quality{.reliability = config.reliability, .depth = config.depth};
     return withMessage(topic.type, [&]<class Message>(std::type_identity<Message>) {
         return Writer(node, ddsTopic(topic.topic), Message::type_name, ros::typeHash<Message>(), quality);
@@ -121,16 +121,16 @@ public:
     Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, const std::string& frame_prefix,
                 types::ThrottledWarning& drops)
         : topic_(topic.topic),
-          options_(optionsOf(config, topic, frame_prefix)),
+          options_(getOptions(config, topic, frame_prefix)),
           encode_(encoder<Sample>(topic.type)),
-          writer_(writerOf(node, config, topic)),
+          writer_(findWriter(node, config, topic)),
           drops_(drops) {
         node.addWriter(writer_.handle());
         if (encode_) return;
         const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
         throw types::ConfigError(
             "", "topics",
-            type + " cannot be made of the samples of port " + topic.port + "; they can be " + messagesOf<Sample>());
+            type + " cannot be made of the samples of port " + topic.port + "; they can be " + getMessages<Sample>());
     }
 
     /** Sets the device's frequency [kHz], which is used if the topic does not name one, and what is known of its

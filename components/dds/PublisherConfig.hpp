@@ -52,14 +52,14 @@ decltype(auto) withMessage(MessageType type, Use&& use) {
 }
 
 template <class Message, size_t i = 0>
-constexpr MessageType placeOf() {
+constexpr MessageType getPlace() {
     if constexpr (std::is_same_v<Message, std::tuple_element_t<i, SentMessages>>)
         return MessageType{i};
     else
-        return placeOf<Message, i + 1>();
+        return getPlace<Message, i + 1>();
 }
 template <class Message>
-inline constexpr MessageType message_type = placeOf<Message>();
+inline constexpr MessageType message_type = getPlace<Message>();
 
 /** Shortens "nav_msgs/msg/Odometry" to "nav_msgs/Odometry". */
 template <class Message>
@@ -116,7 +116,7 @@ struct StaticTransforms {
 };
 
 /** Returns the axes of the ping's message; none if it has no axes, or is the message of a pose. */
-inline std::optional<ros::SensorFrame> axesOf(const TopicOut& topic) {
+inline std::optional<ros::SensorFrame> getAxes(const TopicOut& topic) {
     const auto is = [&]<class Message>(std::type_identity<Message>) { return topic.type == message_type<Message>; };
     if (is(std::type_identity<ros::ProjectedSonarImage>{}) || is(std::type_identity<ros::SonarRanges>{}) ||
         is(std::type_identity<ros::SonarDetections>{}))
@@ -163,15 +163,15 @@ struct PublisherConfig {
               self.sends_rosout);
         NodeConfig::describe(self.node, visit);
     }
-    std::string frameOf(const TopicOut& topic) const {
+    std::string getFrame(const TopicOut& topic) const {
         return topic.sonar.frame_id.empty() ? frame_id : topic.sonar.frame_id;
     }
     /** Returns a diagnostic for each frame of messages with different axes, which no single transform fits. */
     std::vector<std::string> sharedFrames() const {
         std::map<std::string, std::array<std::string, 2>> by_frame;  // topics with x ahead, with z ahead
         for (const TopicOut& topic : topics)
-            if (const auto axes = axesOf(topic)) {
-                std::string& topics_so = by_frame[frameOf(topic)][*axes == ros::SensorFrame::ZForward];
+            if (const auto axes = getAxes(topic)) {
+                std::string& topics_so = by_frame[getFrame(topic)][*axes == ros::SensorFrame::ZForward];
                 topics_so += (topics_so.empty() ? "" : ", ") + topic.topic;
             }
         std::vector<std::string> shared;

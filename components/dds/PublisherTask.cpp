@@ -26,7 +26,7 @@ std::string whyNot(const Input& input, const TopicOut& topic) {
     using Sample = typename Input::Sample;
     if (canBe<Sample>(topic.type)) return "";
     const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
-    return "is " + type + "; " + input.port.typeName() + " can be " + messagesOf<Sample>();
+    return "is " + type + "; " + input.port.typeName() + " can be " + getMessages<Sample>();
 }
 
 /** Sends a sample to all topics of its input. */
@@ -159,8 +159,8 @@ ros::TFMessage PublisherTask::mounts() const {
         constexpr bool of_the_world = std::is_same_v<typename Input::Sample, types::PointCloud>;
         const auto mount = of_the_world ? std::nullopt : framework::upstreamMount(input.port);
         for (const TopicOut& topic : config->topics) {
-            const auto axes = axesOf(topic);
-            const std::string frame = environment().names.frame(config->frameOf(topic));
+            const auto axes = getAxes(topic);
+            const std::string frame = environment().names.frame(config->getFrame(topic));
             const bool is_known =
                 std::ranges::count(message.transforms, frame, &ros::TransformStamped::child_frame_id) > 0;
             if (topic.port != input.port.name() || !mount || !axes || is_known) continue;

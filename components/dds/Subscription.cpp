@@ -28,14 +28,14 @@ struct PoseMessage {
     std::string hash;
 };
 
-PoseMessage messageOf(PoseType type) {
+PoseMessage makeMessage(PoseType type) {
     const auto of = []<class T>(std::type_identity<T>) { return PoseMessage{T::type_name, ros::typeHash<T>()}; };
     if (type == PoseType::Odometry) return of(std::type_identity<ros::Odometry>{});
     if (type == PoseType::PoseStamped) return of(std::type_identity<ros::PoseStamped>{});
     return of(std::type_identity<ros::PoseWithCovarianceStamped>{});
 }
 
-const char* typeOf(PoseType type) { return messageOf(type).type; }
+const char* getType(PoseType type) { return makeMessage(type).type; }
 
 /** Returns "odometry" for "rt/auv/odometry". */
 std::string_view lastWord(std::string_view topic) { return topic.substr(topic.rfind('/') + 1); }
@@ -57,7 +57,7 @@ std::string similarTopics(const std::vector<Published>& all, const std::string& 
 }
 
 Reader reader(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
-    const PoseMessage message = messageOf(topic.type);
+    const PoseMessage message = makeMessage(topic.type);
     const Quality quality{.reliability = config.reliability, .depth = std::max(config.depth, min_depth)};
     return {node, ddsTopic(topic.topic), message.type, message.hash, quality, std::move(arrived), maximum};
 }
@@ -94,7 +94,7 @@ void Subscription::decode(types::Pose& pose) {
         decodeAs(std::get<ros::PoseWithCovarianceStamped>(messages_), pose);
 }
 
-std::string Subscription::diagnosticOf(types::Time now, const types::Pose& pose) {
+std::string Subscription::findDiagnostic(types::Time now, const types::Pose& pose) {
     if (!types::isUsable(pose)) return "position and orientation are not finite, or the orientation has no length";
     if (pose.time - now > max_ahead) return "the stamp is more than a second ahead of the clock";
     if (pose.time >= newest_ || types::elapsed(newest_came_, now) > max_silence) return "";
@@ -103,7 +103,7 @@ std::string Subscription::diagnosticOf(types::Time now, const types::Pose& pose)
 }
 
 std::string Subscription::absence(Node& node) const {
-    const std::string topic = ddsTopic(topic_), type = ddsType(typeOf(type_));
+    const std::string topic = ddsTopic(topic_), type = ddsType(getType(type_));
     const std::vector<Published> all = node.published();
     const auto writers = std::ranges::count(all, topic, &Published::topic);
     const auto of_type = std::ranges::count_if(
@@ -131,7 +131,7 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
         try {
             decode(read_);
             if (stamped_on_arrival_ || read_.time == types::Time{}) read_.time = now;
-            diagnostic = diagnosticOf(now, read_);
+            diagnostic = findDiagnostic(now, read_);
         } catch (const ros::CdrError& error) {
             diagnostic = bytes_.empty() ? "empty, or larger than any message of its type" : "not a message of its type";
             detail = std::string(": ") + error.what();

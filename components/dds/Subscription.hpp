@@ -102,7 +102,7 @@ private:
     template <class Message>
     void decodeAs(Message& message, types::Pose& pose);
     /** Returns an empty text for a valid pose. */
-    std::string diagnosticOf(types::Time now, const types::Pose& pose);
+    std::string findDiagnostic(types::Time now, const types::Pose& pose);
 
     std::string topic_;
     uint32_t domain_;

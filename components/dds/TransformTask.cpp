@@ -23,8 +23,8 @@ std::unique_ptr<Reader> transformReader(Node& node, const std::string& topic, co
 }
 
 /** Converts a pose to Rock's axes. */
-types::Pose poseOf(const ros::TransformTree::Placed& placed, const std::string& frame_id,
-                   const TransformConfig& config) {
+types::Pose getPose(const ros::TransformTree::Placed& placed, const std::string& frame_id,
+                    const TransformConfig& config) {
     ros::PoseStamped message;
     message.header.frame_id = config.world_frame_id;
     const glm::dvec3& p = placed.position;
@@ -93,7 +93,7 @@ bool TransformTask::configureHook() {
 
 bool TransformTask::startHook() {
     outputs_.forEach([this](auto& output) {
-        output.kept = {environment().names.frame(entryOf(output.port.name())->frame_id), {}, {}, 0, {}};
+        output.kept = {environment().names.frame(findEntry(output.port.name())->frame_id), {}, {}, 0, {}};
     });
     return true;
 }
@@ -145,7 +145,7 @@ void TransformTask::report(auto& output) {
     kept.time = placed->time;
     kept.life = tree_.lives();
     kept.written = now();
-    types::Pose pose = poseOf(*placed, kept.frame_id, *config);
+    types::Pose pose = getPose(*placed, kept.frame_id, *config);
     if (is_fixed) pose.time = kept.written;
     output.port.write(pose);
 }

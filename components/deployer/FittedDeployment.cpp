@@ -122,7 +122,7 @@ ChainAt chainAt(const std::string& file, uint64_t ping, const std::vector<std::s
     {
         framework::Registry registry = coreTasks();
         const framework::Deployment deployment(specWith(located, settings), registry);
-        const receiver::ReceiverTask& receiver = codingReceiverOf(deployment, located);
+        const receiver::ReceiverTask& receiver = findCodingReceiver(deployment, located);
         chain.receiver_task = receiver.name();
         chain.receiver = *receiver.config;
         const auto& noise = upstreamTask<noise::NoiseTask>(deployment, chain.receiver_task, "noise::NoiseTask");

@@ -50,20 +50,20 @@ receiver::ReceiverTask* codingReceiver(const Deployment& deployment) {
 std::vector<std::string> pinnedRays(const DeploymentSpec& spec) {
     std::vector<std::string> assignments;
     for (const framework::TaskSpec& task : spec.tasks) {
-        const auto textOf = [&](const char* key) {
+        const auto toText = [&](const char* key) {
             const YAML::Node value = framework::child(task.properties, key);
             return value.IsDefined() && value.IsScalar() ? value.Scalar() : "";
         };
-        const std::string visibility = textOf("visibility");
+        const std::string visibility = toText("visibility");
         const bool is_drawn =
-            textOf("deposit") == "gpu" || framework::child(task.properties, "published").as<bool>(false);
+            toText("deposit") == "gpu" || framework::child(task.properties, "published").as<bool>(false);
         if (task.type.starts_with("sonar::") && !is_drawn && (visibility.empty() || visibility == "auto"))
             assignments.push_back(task.name + ".visibility=cpu");
     }
     return assignments;
 }
 
-receiver::ReceiverTask& codingReceiverOf(const Deployment& deployment, const std::string& file) {
+receiver::ReceiverTask& findCodingReceiver(const Deployment& deployment, const std::string& file) {
     if (auto* found = codingReceiver(deployment)) return *found;
     throw types::ConfigError(file, "tasks",
                              "has no receiver that outputs codes, as instruments do: set output: code for one");
@@ -133,9 +133,9 @@ PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count, const
     framework::Registry registry = coreTasks();
     const DeploymentSpec spec = specWith(file, settings);
     const Deployment whole(spec, registry);
-    const std::set<std::string> kept = upstream({codingReceiverOf(whole, file).name()}, whole);
+    const std::set<std::string> kept = upstream({findCodingReceiver(whole, file).name()}, whole);
     Deployment deployment(restrictedTo(spec, kept), registry);
-    receiver::ReceiverTask& receiver = codingReceiverOf(deployment, file);
+    receiver::ReceiverTask& receiver = findCodingReceiver(deployment, file);
     PingReader reader("reader");
     receiver.ping.connectTo(reader.ping, framework::ConnPolicy::circularBuffer(count));
     deployment.configure();

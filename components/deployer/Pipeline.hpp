@@ -34,7 +34,7 @@ std::set<std::string> upstream(std::set<std::string> names, const framework::Dep
 std::vector<std::string> pinnedRays(const framework::DeploymentSpec& spec);
 
 /** Returns the first receiver that outputs codes. Throws types::ConfigError where there is none. */
-receiver::ReceiverTask& codingReceiverOf(const framework::Deployment& deployment, const std::string& file);
+receiver::ReceiverTask& findCodingReceiver(const framework::Deployment& deployment, const std::string& file);
 
 /** A configured sonar, with the quality that it has chosen, and its input of one ping. */
 struct SonarAt {

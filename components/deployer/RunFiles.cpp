@@ -19,7 +19,7 @@ namespace {
 using Files = std::vector<fs::path>;
 
 /** Returns a name without the number at its end: fan_.png for fan_000012.png. */
-std::string kindOf(const fs::path& file) {
+std::string getKind(const fs::path& file) {
     std::string stem = file.stem().string();
     while (!stem.empty() && types::isDigit(stem.back())) stem.pop_back();
     return (file.parent_path() / (stem + file.extension().string())).string();
@@ -59,7 +59,7 @@ std::string drawingCommand(const fs::path& folder, const Files& files, const fra
 
 }  // namespace
 
-FolderListing listingOf(const fs::path& folder) {
+FolderListing listFolder(const fs::path& folder) {
     FolderListing listing;
     std::error_code failed;
     fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, failed);
@@ -73,7 +73,7 @@ FolderListing listingOf(const fs::path& folder) {
 
 std::vector<fs::path> writtenSince(const FolderListing& before, const fs::path& folder) {
     Files files;
-    for (const auto& [file, state] : listingOf(folder)) {
+    for (const auto& [file, state] : listFolder(folder)) {
         const auto was = before.find(file);
         if (file.extension() != ".idx" && (was == before.end() || was->second != state)) files.push_back(file);
     }
@@ -84,7 +84,7 @@ std::string filesText(const fs::path& folder, const FolderListing& before, const
     constexpr size_t shown = 10;
     const Files files = writtenSince(before, folder);
     std::map<std::string, Files> kinds;
-    for (const fs::path& file : files) kinds[kindOf(file)].push_back(file);
+    for (const fs::path& file : files) kinds[getKind(file)].push_back(file);
     std::string text = fmt::format("files in {}{}\n", folder.string(), files.empty() ? ": none" : "");
     size_t lines = 0;
     for (const auto& [kind, of_kind] : kinds) {

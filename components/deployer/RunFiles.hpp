@@ -21,7 +21,7 @@ struct FileState {
 using FolderListing = std::map<std::filesystem::path, FileState>;
 
 /** Lists a folder; a folder that is missing or cannot be read has no files. */
-FolderListing listingOf(const std::filesystem::path& folder);
+FolderListing listFolder(const std::filesystem::path& folder);
 
 /** Returns the files that are new or others since a listing, by name; without the indices of logs. Compares no time
  *  with a clock, so that a step of the clock hides no file and shows no other. */

@@ -41,14 +41,14 @@ std::vector<fs::path> filesIn(const fs::path& folder) {
     return files;
 }
 
-Json entryOf(const fs::path& folder, const fs::path& file) {
+Json findEntry(const fs::path& folder, const fs::path& file) {
     return {{"file", file.generic_string()},
             {"bytes", fs::file_size(folder / file)},
             {"sha256", types::sha256OfFile(folder / file)}};
 }
 
 /** Returns the first difference of a folder from its manifest; empty: none. */
-std::string damageOf(const fs::path& folder, const Json& manifest) try {
+std::string findDamage(const fs::path& folder, const Json& manifest) try {
     for (const Json& entry : manifest["files"]) {
         const fs::path file = entry.value("file", "");
         std::error_code absent;
@@ -67,7 +67,7 @@ std::string damageOf(const fs::path& folder, const Json& manifest) try {
 }
 
 /** Returns the first key whose values differ, with both values; empty: none. */
-std::string differenceOf(const Json& there, const Json& asked) {
+std::string findDifference(const Json& there, const Json& asked) {
     for (const auto& [key, value] : asked.items()) {
         const Json& before = there.contains(key) ? there[key] : Json();
         if (before != value) return fmt::format("{} is {} there, and {} here", key, before.dump(), value.dump());
@@ -76,7 +76,7 @@ std::string differenceOf(const Json& there, const Json& asked) {
 }
 
 /** "shard_03_of_16" -> "16"; empty: not a shard. */
-std::string countOf(const fs::path& folder) {
+std::string countEach(const fs::path& folder) {
     const std::string name = folder.filename().string();
     const size_t of = name.rfind("_of_");
     return name.starts_with("shard_") && of != name.npos ? name.substr(of + 4) : "";
@@ -109,7 +109,7 @@ ShardFolder::~ShardFolder() {
 
 void ShardFolder::refuseOthers() const {
     for (const auto& entry : fs::directory_iterator(shared_)) {
-        const std::string count = countOf(entry.path());
+        const std::string count = countEach(entry.path());
         if (count.empty()) continue;
         if (count != std::to_string(shard_.count))
             throw types::ConfigError(
@@ -117,7 +117,7 @@ void ShardFolder::refuseOthers() const {
                 fmt::format("holds shards of {}, and this is one of {}; give another folder", count, shard_.count));
         const auto manifest = manifestIn(entry.path());
         if (!manifest) continue;
-        const std::string difference = differenceOf(manifest->value("run", Json::object()), run_);
+        const std::string difference = findDifference(manifest->value("run", Json::object()), run_);
         if (!difference.empty())
             throw types::ConfigError(shared_, "--out",
                                      "holds shards of another run: " + difference + "; give another folder");
@@ -127,7 +127,7 @@ void ShardFolder::refuseOthers() const {
 std::optional<Json> ShardFolder::done() const {
     if (!fs::exists(path_)) return std::nullopt;
     const auto manifest = manifestIn(path_);
-    const std::string damage = manifest ? damageOf(path_, *manifest) : "its manifest.json is missing or broken";
+    const std::string damage = manifest ? findDamage(path_, *manifest) : "its manifest.json is missing or broken";
     if (damage.empty()) return manifest;
     console::printDiagnostic("notice: {}: {}; the shard is made again\n", path_.string(), damage);
     return std::nullopt;
@@ -159,13 +159,13 @@ Json ShardFolder::finish(const Json& more) {
     Json manifest = {{"shard", shard_.text()}, {"run", run_}};
     manifest.update(more);
     manifest["files"] = Json::array();
-    for (const fs::path& file : filesIn(part_)) manifest["files"].push_back(entryOf(part_, file));
+    for (const fs::path& file : filesIn(part_)) manifest["files"].push_back(findEntry(part_, file));
     console::write(manifest, part_ / manifest_name);
     const Lock together(shared_, true);
     refuseOthers();  // shards that were finished meanwhile
     if (fs::exists(path_)) {
         const auto first = manifestIn(path_);
-        if (first && damageOf(path_, *first).empty()) return *first;
+        if (first && findDamage(path_, *first).empty()) return *first;
         fs::remove_all(path_);  // damaged, and made again
     }
     std::error_code failed;

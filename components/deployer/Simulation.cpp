@@ -124,7 +124,7 @@ types::Notices Simulation::notices() const {
     };
     for (const auto& task : deployment_->tasks()) {
         add(*task, task->notices());
-        if (const types::Plan* plan = framework::planOf(*task)) add(*task, plan->notices);
+        if (const types::Plan* plan = framework::makePlan(*task)) add(*task, plan->notices);
     }
     return all;
 }
@@ -289,7 +289,7 @@ void Simulation::reset(std::optional<uint64_t> seed) {
         for (framework::PropertiesBase* properties : task->properties())
             for (const framework::PropertyInfo& property : properties->list())
                 if (seed && property.name == "seed" && !own_seeds_.contains(task->name()))
-                    properties->set("seed", std::to_string(framework::seedOf(*seed, task->name())));
+                    properties->set("seed", std::to_string(framework::computeSeed(*seed, task->name())));
         if (sonar) continue;
         if (const framework::Outcome outcome = task->configure(); !outcome) throw std::runtime_error(outcome.reason);
     }

@@ -17,13 +17,13 @@ SimulationBatch::SimulationBatch(const std::string& deployment, const Simulation
     for (size_t i = 0; i < count; ++i) {
         SimulationOptions own = options;
         own.threads = 1;
-        own.seed = seedOf(options.seed, i);
+        own.seed = computeSeed(options.seed, i);
         simulations_.push_back(std::make_unique<Simulation>(deployment, std::move(own)));
     }
 }
 
-uint64_t SimulationBatch::seedOf(uint64_t seed, size_t number) {
-    return number == 0 ? seed : framework::seedOf(seed == 0 ? 1 : seed, fmt::format("simulation {}", number));
+uint64_t SimulationBatch::computeSeed(uint64_t seed, size_t number) {
+    return number == 0 ? seed : framework::computeSeed(seed == 0 ? 1 : seed, fmt::format("simulation {}", number));
 }
 
 template <class Work>

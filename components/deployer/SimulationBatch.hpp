@@ -16,14 +16,14 @@ namespace insonify::deployer {
  *  are those of single simulations, bit for bit. Used by one thread at a time. */
 class SimulationBatch {
 public:
-    /** Simulation i has the seed seedOf(options.seed, i). Throws as Simulation does, and std::invalid_argument for a
-     *  count of 0. */
+    /** Simulation i has the seed computeSeed(options.seed, i). Throws as Simulation does, and std::invalid_argument for
+     * a count of 0. */
     SimulationBatch(const std::string& deployment, const SimulationOptions& options, size_t count);
 
     size_t size() const { return simulations_.size(); }
     const Simulation& front() const { return *simulations_.front(); }
     /** Returns the seed of a simulation: the batch's own for the first, different seeds for the others. */
-    static uint64_t seedOf(uint64_t seed, size_t number);
+    static uint64_t computeSeed(uint64_t seed, size_t number);
 
     /** Steps each simulation to its own next time, with its own poses. When some fail, steps all others and throws
      *  std::runtime_error with the number of the first that failed. */

@@ -60,7 +60,7 @@ std::optional<sockaddr_in> portIn(const std::string& where) {
     return address;
 }
 
-const char* nameOf(bool is_healthy) { return is_healthy ? "200 OK" : "503 Service Unavailable"; }
+const char* getName(bool is_healthy) { return is_healthy ? "200 OK" : "503 Service Unavailable"; }
 
 }  // namespace
 
@@ -213,7 +213,7 @@ void Supervision::serve(Client& client) const {
     const std::string answer = fmt::format(
         "HTTP/1.1 {}\r\nContent-Type: application/json\r\nContent-Length: {}\r\nCache-Control: no-store\r\n"
         "Connection: close\r\n\r\n{}",
-        nameOf(state_ == State::Running), body.size(), body);
+        getName(state_ == State::Running), body.size(), body);
     send(client.socket, answer.data(), answer.size(), MSG_NOSIGNAL);
     shutdown(client.socket, SHUT_WR);
 }

@@ -38,7 +38,7 @@ public:
     /** Returns the addresses for clients, and the messages not sent. */
     types::Notices notices() const override;
     /** For tests with port 0. */
-    uint16_t portOf(End end) const { return network_->portOf(end); }
+    uint16_t getPort(End end) const { return network_->getPort(end); }
 
 protected:
     Network& network() { return *network_; }

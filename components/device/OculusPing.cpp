@@ -40,7 +40,7 @@ types::BeamArc wireArc(const types::Sonar& codes) {
 
 }  // namespace
 
-OculusPing pingOf(const OculusResult& result) {
+OculusPing makePing(const OculusResult& result) {
     OculusPing ping;
     ping.number = result.number;
     ping.frequency_hz = result.frequency_hz;
@@ -55,7 +55,7 @@ OculusPing pingOf(const OculusResult& result) {
     return ping;
 }
 
-types::Sonar sonarOf(const OculusPing& ping, types::Time time) {
+types::Sonar getSonar(const OculusPing& ping, types::Time time) {
     types::Sonar sonar;
     sonar.time = time;
     constexpr double usual_speed = 1500;  // [m/s]
@@ -85,7 +85,7 @@ void OculusEncoder::bend(double gamma) {
         bent_[code] = std::pow(static_cast<double>(code) / max_code_, gamma);
 }
 
-uint32_t OculusEncoder::indexOf(float code) const {
+uint32_t OculusEncoder::findIndex(float code) const {
     if (!(code > 0)) return 0;  // also unknown values
     return code < static_cast<float>(max_code_) ? static_cast<uint32_t>(code + 0.5f) : max_code_;
 }
@@ -97,7 +97,7 @@ void OculusEncoder::rows(const types::Sonar& codes, const std::vector<uint32_t>&
     std::vector<double> row(beams.size());
     for (size_t bin = 0; bin < codes.bin_count; ++bin) {
         for (size_t i = 0; i < beams.size(); ++i)
-            row[i] = bent_[indexOf(codes.bins[size_t{beams[i]} * codes.bin_count + bin])];
+            row[i] = bent_[findIndex(codes.bins[size_t{beams[i]} * codes.bin_count + bin])];
         double scale = maximum;
         if (result.gainBytes() > 0) {
             const double max_code = row.empty() ? 1 : std::ranges::max(row);

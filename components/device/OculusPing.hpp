@@ -24,12 +24,12 @@ struct OculusPing {
     double maxCode() const { return static_cast<double>((uint64_t{1} << bits) - 1); }
 };
 
-OculusPing pingOf(const OculusResult& result);
+OculusPing makePing(const OculusResult& result);
 
 /** Returns the ping as a receiver's output: codes as bins, divided by the root of their row's gain; beams from
  *  starboard to port, as in simulated fans. Bins have the ping's range resolution, see types::RangeBins. If
  *  the ping has no speed of sound, it is 1500 m/s. */
-types::Sonar sonarOf(const OculusPing& ping, types::Time time);
+types::Sonar getSonar(const OculusPing& ping, types::Time time);
 
 /** Converts a receiver's codes of amplitude to the image of a ping.
  *
@@ -47,7 +47,7 @@ public:
 
 private:
     void bend(double gamma);
-    uint32_t indexOf(float code) const;
+    uint32_t findIndex(float code) const;
     template <class Code>
     void rows(const types::Sonar& codes, const std::vector<uint32_t>& beams, OculusResult& result) const;
 

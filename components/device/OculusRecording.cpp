@@ -117,20 +117,20 @@ std::optional<OculusItem> OculusRecording::next() {
     return std::nullopt;
 }
 
-Bytes bytesOf(const OculusFileHeader& header) {
+Bytes toBytes(const OculusFileHeader& header) {
     NumberWriter writer{marked(file_mark, OculusFileHeader::size)};
     visitFileHeader(header, writer);
     return std::move(writer.bytes);
 }
 
-Bytes bytesOf(const OculusItem& item) {
+Bytes toBytes(const OculusItem& item) {
     NumberWriter writer{marked(item_mark, OculusItem::header_size)};
     visitItem(item, static_cast<uint32_t>(item.payload.size()), writer);
     writer.bytes.insert(writer.bytes.end(), item.payload.begin(), item.payload.end());
     return std::move(writer.bytes);
 }
 
-OculusItem itemOf(double time, std::span<const uint8_t> message) {
+OculusItem getItem(double time, std::span<const uint8_t> message) {
     return {.time = time,
             .original_size = static_cast<uint32_t>(message.size()),
             .payload = {message.begin(), message.end()}};
@@ -139,7 +139,7 @@ OculusItem itemOf(double time, std::span<const uint8_t> message) {
 OculusRecorder::OculusRecorder(const std::filesystem::path& file, const OculusFileHeader& header)
     : path_(file), file_(file, std::ios::binary) {
     if (!file_) throw types::ConfigError(file.string(), "", "cannot be written");
-    put(bytesOf(header));
+    put(toBytes(header));
 }
 
 void OculusRecorder::put(const Bytes& bytes) {
@@ -236,10 +236,11 @@ std::optional<recordings::RecordedPing> OculusReader::read() {
     if (!recorded) return std::nullopt;
     if (!begin_) begin_ = recorded->time;
     constexpr double start_of_captures = 1;  // 0 is not a valid time
-    const OculusPing ping = pingOf(recorded->ping);
+    const OculusPing ping = makePing(recorded->ping);
     recordings::RecordedPing read;
     read.since_first = recorded->time - *begin_;
-    read.ping = sonarOf(ping, types::Time::fromSeconds((*begin_ > 0 ? *begin_ : start_of_captures) + read.since_first));
+    read.ping =
+        getSonar(ping, types::Time::fromSeconds((*begin_ > 0 ? *begin_ : start_of_captures) + read.since_first));
     read.sonar.position.x = types::Pose::unknown;
     read.number = ping.number;
     read.frequency_khz = ping.frequency_hz / 1e3;

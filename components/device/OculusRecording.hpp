@@ -41,10 +41,10 @@ struct OculusItem {
     std::optional<Bytes> content() const;
 };
 
-Bytes bytesOf(const OculusFileHeader& header);
-Bytes bytesOf(const OculusItem& item);
+Bytes toBytes(const OculusFileHeader& header);
+Bytes toBytes(const OculusItem& item);
 /** Returns the item of a message of the device, at a time since the epoch [s]. */
-OculusItem itemOf(double time, std::span<const uint8_t> message);
+OculusItem getItem(double time, std::span<const uint8_t> message);
 
 /** Reads a *.oculus file item by item; skips damaged parts to the next item. */
 class OculusRecording {
@@ -78,9 +78,9 @@ public:
     OculusRecorder(const std::filesystem::path& file, const OculusFileHeader& header);
 
     /** Adds an item unchanged. Throws std::runtime_error when the system cannot write it. */
-    void write(const OculusItem& item) { put(bytesOf(item)); }
+    void write(const OculusItem& item) { put(toBytes(item)); }
     /** Adds a message of the device, at a time since the epoch [s]. */
-    void write(double time, std::span<const uint8_t> message) { write(itemOf(time, message)); }
+    void write(double time, std::span<const uint8_t> message) { write(getItem(time, message)); }
 
 private:
     void put(const Bytes& bytes);
@@ -114,7 +114,7 @@ private:
     std::string diagnostic_;
 };
 
-/** Reads the pings of an Oculus' recording as a receiver's output, see sonarOf(). Damaged parts are skipped, with a
+/** Reads the pings of an Oculus' recording as a receiver's output, see getSonar(). Damaged parts are skipped, with a
  *  notice of the first. The pings have no poses; a capture, which has no times since the epoch, starts at 1 s. */
 class OculusReader final : public recordings::RecordingReader {
 public:

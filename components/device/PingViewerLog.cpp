@@ -26,7 +26,7 @@ uint32_t bigEndian(std::span<const uint8_t> bytes, size_t at) {
 }
 
 /** Returns a text of UTF-16, big endian, or of 8 bits, of which only the letters of ASCII are kept. */
-std::string textOf(std::span<const uint8_t> bytes) {
+std::string toText(std::span<const uint8_t> bytes) {
     const bool is_wide = !bytes.empty() && bytes[0] == 0;
     std::string text;
     for (size_t i = is_wide ? 1 : 0; i < bytes.size(); i += is_wide ? 2 : 1) text += static_cast<char>(bytes[i]);
@@ -44,7 +44,7 @@ int numberIn(std::string_view digits) {
 }
 
 /** Returns the seconds of "hh:mm:ss.zzz"; none for other texts. */
-std::optional<double> secondsOf(std::string_view text) {
+std::optional<double> readSeconds(std::string_view text) {
     if (text.size() != time_letters || text[2] != ':' || text[5] != ':' || text[8] != '.') return std::nullopt;
     const int hours = numberIn(text.substr(0, 2)), minutes = numberIn(text.substr(3, 2)),
               seconds = numberIn(text.substr(6, 2)), ms = numberIn(text.substr(9, 3));
@@ -110,7 +110,7 @@ std::string PingViewerReader::readText() {
         fail(next_, fmt::format("is no text of the header of a log of Ping Viewer; it must have at most {} bytes and "
                                 "end within the file",
                                 longest));
-    const std::string text = textOf(bytesAt(next_ + head.size(), size));
+    const std::string text = toText(bytesAt(next_ + head.size(), size));
     next_ += head.size() + size;
     return text;
 }
@@ -143,7 +143,7 @@ std::optional<PingViewerReader::Record> PingViewerReader::recordAt(uint64_t at) 
     if ((text != 0 && text != time_letters && text != 2 * time_letters) || head.size() < sizes + text)
         return std::nullopt;
     Record record;
-    record.seconds = secondsOf(textOf(std::span(head).subspan(sizeof(uint32_t), text)));
+    record.seconds = readSeconds(toText(std::span(head).subspan(sizeof(uint32_t), text)));
     const size_t size = bigEndian(head, sizeof(uint32_t) + text);
     record.end = at + sizes + text + size;
     if ((text > 0 && !record.seconds) || size > max_record || record.end > size_) return std::nullopt;
@@ -202,11 +202,11 @@ void PingViewerReader::omit(Omitted& kind, const std::string& why) {
 
 std::optional<RecordedPing> PingViewerReader::read() {
     while (const auto frame = nextMessage())
-        if (auto ping = pingOf(*frame)) return ping;
+        if (auto ping = makePing(*frame)) return ping;
     return std::nullopt;
 }
 
-std::optional<RecordedPing> PingViewerReader::pingOf(const PingFrame& frame) {
+std::optional<RecordedPing> PingViewerReader::makePing(const PingFrame& frame) {
     const auto with = [&]<class Message>(std::type_identity<Message>, auto&& use) -> std::optional<RecordedPing> {
         if (const auto message = pingMessage<Message>(frame)) return use(*message);
         omit(progress_.odd, fmt::format("message {} in the record at byte {} is too short", frame.message, at_));
@@ -236,7 +236,7 @@ void setDevice(const char* name, RecordedPing& read) {
     read.sonar.position.x = types::Pose::unknown;
 }
 
-std::span<const char> charsOf(const Bytes& data) { return {reinterpret_cast<const char*>(data.data()), data.size()}; }
+std::span<const char> toChars(const Bytes& data) { return {reinterpret_cast<const char*>(data.data()), data.size()}; }
 
 }  // namespace
 
@@ -259,7 +259,7 @@ std::optional<RecordedPing> PingViewerReader::scanned(uint16_t angle, const Ping
     read.gain_db = device.gain_db[acoustics.gain];
     setResolution(acoustics.sample_period * tick * usual_speed / 2, usual_speed, read);
     const double bearing = ping360Bearing(angle, ahead).rad;
-    setFan(std::span(&bearing, 1), 0, charsOf(data), read);
+    setFan(std::span(&bearing, 1), 0, toChars(data), read);
     return read;
 }
 
@@ -281,7 +281,7 @@ std::optional<RecordedPing> PingViewerReader::sounded(const Ping1dProfile& profi
     if (made.gain <= ping1d_max_gain) read.gain_db = ping1dGainDb(made.gain);
     setResolution(sample, progress_.speed_of_sound, read);
     const double ahead = 0;
-    setFan(std::span(&ahead, 1), static_cast<uint32_t>(first), charsOf(profile.data), read);
+    setFan(std::span(&ahead, 1), static_cast<uint32_t>(first), toChars(profile.data), read);
     read.window_start = first * sample;
     read.number = made.ping_number;
     if (made.confidence > 0) read.altitude = made.distance / 1e3;

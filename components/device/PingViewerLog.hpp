@@ -73,7 +73,7 @@ private:
     /** Returns the next message; none at the end of the file. */
     std::optional<PingFrame> nextMessage();
     void setTime(const std::optional<double>& seconds);
-    std::optional<recordings::RecordedPing> pingOf(const PingFrame& frame);
+    std::optional<recordings::RecordedPing> makePing(const PingFrame& frame);
     std::optional<recordings::RecordedPing> scanned(uint16_t angle, const Ping360Acoustics& acoustics,
                                                     const Bytes& data);
     std::optional<recordings::RecordedPing> sounded(const Ping1dProfile& profile);

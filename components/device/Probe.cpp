@@ -20,13 +20,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::string_view textOf(std::span<const uint8_t> bytes) {
+std::string_view toText(std::span<const uint8_t> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-Bytes bytesOf(std::string_view text) { return {text.begin(), text.end()}; }
+Bytes toBytes(std::string_view text) { return {text.begin(), text.end()}; }
 
-std::string nameOf(uint8_t ping_device) {
+std::string getName(uint8_t ping_device) {
     switch (static_cast<PingDeviceType>(ping_device)) {
         case PingDeviceType::Ping1d: return "Blue Robotics Ping1D";
         case PingDeviceType::Ping360: return "Blue Robotics Ping360";
@@ -66,7 +66,7 @@ void addPing(std::vector<Probe>& all) {
     all.push_back({protocol, Probe::Line::Serial, 0, pingQuestion(), pingDeviceIn,
                    "nothing answers at 115200 baud: another baud rate, another program that holds the line, crossed "
                    "wires, or a device of another kind"});
-    all.push_back({"discovery of a Ping360", Probe::Line::Udp, 30303, bytesOf("Discovery"), ping360DiscoveryIn,
+    all.push_back({"discovery of a Ping360", Probe::Line::Udp, 30303, toBytes("Discovery"), ping360DiscoveryIn,
                    "finders do not see it; a simulated device answers only with `discovery` in its properties"});
 }
 
@@ -102,7 +102,7 @@ void addSeaNet(std::vector<Probe>& all) {
 void addSonar3d(std::vector<Probe>& all) {
     const std::string question = "GET /api/v1/integration/about HTTP/1.1\r\nHost: sonar\r\nConnection: close\r\n\r\n";
     for (const uint16_t port : {80, 8080, 8015})  // the maker's, and the port of deploy/hil_3d15.yml
-        all.push_back({"HTTP (Sonar 3D-15)", Probe::Line::Tcp, port, bytesOf(question), sonar3dIn,
+        all.push_back({"HTTP (Sonar 3D-15)", Probe::Line::Tcp, port, toBytes(question), sonar3dIn,
                        "what answers is no Sonar 3D-15, or firmware before 1.7.1"});
 }
 
@@ -121,7 +121,7 @@ DriverLine lineFor(const Probe& probe, const ProbeAddress& address, std::chrono:
     throw LineError("there is no such line");
 }
 
-std::string nameOf(const Probe& probe, const ProbeAddress& address) {
+std::string getName(const Probe& probe, const ProbeAddress& address) {
     const uint16_t port = portFor(probe, address);
     const std::string host = address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
     switch (probe.line) {
@@ -147,7 +147,7 @@ std::optional<std::string> converse(const Probe& probe, const DriverLine& line, 
 }
 
 /** Whether a datagram is from a device at one of these addresses. */
-bool isOf(const DriverLine::Datagram& datagram, const std::vector<Ipv4>& addresses) {
+bool isInPart(const DriverLine::Datagram& datagram, const std::vector<Ipv4>& addresses) {
     const auto has = [&](const Ipv4& address) { return std::ranges::find(addresses, address) != addresses.end(); };
     const auto status = oculusStatus(datagram.bytes);
     return has(datagram.from) || (status && has(status->address));
@@ -161,7 +161,7 @@ std::optional<std::string> overhear(const Probe& probe, const DriverLine& line, 
     while (Clock::now() < end) {
         const auto received =
             line.receiveDatagram(std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()));
-        if (!isOf(received, addresses)) continue;
+        if (!isInPart(received, addresses)) continue;
         if (auto device = probe.read(received.bytes)) return device;
     }
     return {};
@@ -190,7 +190,7 @@ std::vector<Probe> questionsFor(const ProbeAddress& address) {
         "", "ADDRESS", fmt::format("is '{}', {}; write a host, host:port, or the path of a serial line", text, why));
 }
 
-uint16_t portOf(const std::string& text, std::string_view digits) {
+uint16_t getPort(const std::string& text, std::string_view digits) {
     uint16_t port = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
     if (error != std::errc() || end != digits.data() + digits.size() || port == 0)
@@ -204,7 +204,7 @@ std::optional<std::string> pingDeviceIn(std::span<const uint8_t> bytes) {
     std::optional<std::string> device, version;
     for (const PingFrame& frame : pingFrames(bytes, 4096)) {
         if (const auto about = pingMessage<PingDeviceInformation>(frame))
-            device = fmt::format("{}, id {}, revision {}, firmware {}.{}.{}", nameOf(about->type), frame.source,
+            device = fmt::format("{}, id {}, revision {}, firmware {}.{}.{}", getName(about->type), frame.source,
                                  about->revision, about->major, about->minor, about->patch);
         if (const auto spoken = pingMessage<PingProtocolVersion>(frame))
             version = fmt::format(", protocol {}.{}.{}", spoken->major, spoken->minor, spoken->patch);
@@ -214,7 +214,7 @@ std::optional<std::string> pingDeviceIn(std::span<const uint8_t> bytes) {
 }
 
 std::optional<std::string> ping360DiscoveryIn(std::span<const uint8_t> bytes) {
-    std::string text(textOf(bytes));
+    std::string text(toText(bytes));
     if (!text.starts_with("SONAR PING360")) return {};
     for (size_t at; (at = text.find("\r\n")) != std::string::npos;)
         text.replace(at, 2, at + 2 < text.size() ? ", " : "");
@@ -247,7 +247,7 @@ std::optional<std::string> seaNetIn(std::span<const uint8_t> bytes) {
 }
 
 std::optional<std::string> sonar3dIn(std::span<const uint8_t> bytes) {
-    const std::string_view text = textOf(bytes);
+    const std::string_view text = toText(bytes);
     const std::string_view key = "\"version_short\"";
     if (!text.starts_with("HTTP/1.") || text.find("}") == std::string_view::npos) return {};
     const size_t at = text.find(key);
@@ -276,7 +276,7 @@ ProbeAddress probeAddress(const std::string& text) {
     const bool bracketed = text.starts_with('['),
                has_port = colon != std::string::npos && (bracketed ? text[colon - 1] == ']' : text.find(':') == colon);
     address.host = has_port ? text.substr(0, colon) : text;
-    if (has_port) address.port = portOf(text, std::string_view(text).substr(colon + 1));
+    if (has_port) address.port = getPort(text, std::string_view(text).substr(colon + 1));
     if (bracketed && address.host.ends_with(']')) address.host = address.host.substr(1, address.host.size() - 2);
     if (address.host.empty()) refuse(text, "which names no host");
     if (!isKnownHost(address.host)) refuse(text, "a host that this machine does not know");
@@ -284,7 +284,7 @@ ProbeAddress probeAddress(const std::string& text) {
 }
 
 ProbeOutcome ask(const Probe& probe, const ProbeAddress& address, std::chrono::milliseconds patience) {
-    ProbeOutcome outcome{probe.protocol, nameOf(probe, address), "", "", ""};
+    ProbeOutcome outcome{probe.protocol, getName(probe, address), "", "", ""};
     bool may_be_there = false;
     try {
         const DriverLine line = lineFor(probe, address, patience);
@@ -305,7 +305,7 @@ std::vector<ProbeOutcome> probe(const ProbeAddress& address, std::chrono::millis
     std::vector<ProbeOutcome> outcomes;
     std::set<std::string> answered;  // lines whose device has identified itself; they get no further probes
     for (const Probe& question : questionsFor(address)) {
-        if (answered.contains(nameOf(question, address))) continue;
+        if (answered.contains(getName(question, address))) continue;
         outcomes.push_back(ask(question, address, patience));
         if (!outcomes.back().device.empty()) answered.insert(outcomes.back().asked);
     }

@@ -18,7 +18,7 @@ bool holdsSamples(const TaskContext& task) {
 }
 
 /** Reports a task's diagnostic of its properties at the place where they are written. */
-void reportOf(const TaskSpec& spec, const types::Diagnostic& diagnostic, ConfigReader& reader) {
+void reportDiagnostic(const TaskSpec& spec, const types::Diagnostic& diagnostic, ConfigReader& reader) {
     const bool names_task = diagnostic.path.starts_with(spec.name + ".");
     const std::string path = names_task ? diagnostic.path.substr(spec.name.size() + 1) : diagnostic.path;
     const bool has_properties = spec.properties.IsDefined();
@@ -46,7 +46,7 @@ std::optional<types::Time> firstTime(const Graph& graph) {
 }
 
 // A deployment's status of a running task; waits for no task.
-types::TaskStatus statusOf(const TaskContext& task, const std::string& type) {
+types::TaskStatus getStatus(const TaskContext& task, const std::string& type) {
     types::TaskStatus status{task.record(),
                              toString(task.state()),
                              task.lastError(),
@@ -62,13 +62,13 @@ types::TaskStatus statusOf(const TaskContext& task, const std::string& type) {
     return status;
 }
 
-types::ConnectionStatus statusOf(const Connection& connection) {
+types::ConnectionStatus getStatus(const Connection& connection) {
     const std::string_view policy = types::EnumNames<ConnPolicy::Type>::names[connection.policy.type];
     return {connection.from->path(), connection.to->path(), std::string(policy), connection.channel->lost(),
             connection.channel->passedOver()};
 }
 
-types::TaskInterface interfaceOf(const TaskContext& task) {
+types::TaskInterface describeInterface(const TaskContext& task) {
     types::TaskInterface interface;
     interface.name = task.name();
     for (const PropertiesBase* properties : task.properties())
@@ -147,7 +147,7 @@ void Deployment::configure() {
             reader.report(spec.place, spec.path(), outcome.reason);
         else
             for (const types::Diagnostic& diagnostic : task->configError()->diagnostics())
-                diagnostic.file.empty() ? reportOf(spec, diagnostic, reader) : elsewhere.push_back(diagnostic);
+                diagnostic.file.empty() ? reportDiagnostic(spec, diagnostic, reader) : elsewhere.push_back(diagnostic);
     }
     types::Diagnostics diagnostics = reader.diagnostics();
     diagnostics.insert(diagnostics.end(), elsewhere.begin(), elsewhere.end());
@@ -244,14 +244,14 @@ std::vector<types::TaskRecord> Deployment::records() const {
 
 types::DeploymentStatus Deployment::status() const {
     types::DeploymentStatus status{environment_->now(), spec_.lockstep, executor_->paused(), {}, {}};
-    for (const auto& task : tasks()) status.tasks.push_back(statusOf(*task, spec_.task(task->name())->type));
-    for (const Connection& connection : connections()) status.connections.push_back(statusOf(connection));
+    for (const auto& task : tasks()) status.tasks.push_back(getStatus(*task, spec_.task(task->name())->type));
+    for (const Connection& connection : connections()) status.connections.push_back(getStatus(connection));
     return status;
 }
 
 std::vector<types::TaskInterface> Deployment::interfaces() const {
     std::vector<types::TaskInterface> interfaces;
-    for (const auto& task : tasks()) interfaces.push_back(interfaceOf(*task));
+    for (const auto& task : tasks()) interfaces.push_back(describeInterface(*task));
     return interfaces;
 }
 
@@ -265,7 +265,7 @@ std::string Deployment::call(const std::string& operation, const std::vector<std
     if (!called)
         throw types::ConfigError(
             "", operation,
-            task_name + " has no operation " + name + "; " + suggestion(name, namesOf(owner->operations())));
+            task_name + " has no operation " + name + "; " + suggestion(name, getNames(owner->operations())));
     const auto held = executor_->betweenInstants();
     return called->callText(arguments);
 }

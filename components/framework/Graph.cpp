@@ -129,7 +129,7 @@ std::optional<types::PropertyValue> valueWithin(const std::string& block, std::s
 }
 
 /** Tasks that write to a port. */
-std::vector<const TaskContext*> writersOf(const InputPortBase& port) {
+std::vector<const TaskContext*> findWriters(const InputPortBase& port) {
     std::vector<const TaskContext*> writers;
     for (const auto& channel : port.channels()) writers.push_back(&channel->source().owner());
     return writers;
@@ -137,11 +137,11 @@ std::vector<const TaskContext*> writersOf(const InputPortBase& port) {
 
 /** Calls `use` with each task that a port's samples come from, nearest first, until it returns true. */
 void forEachUpstream(const InputPortBase& port, const auto& use) {
-    std::vector<const TaskContext*> waiting = writersOf(port);
+    std::vector<const TaskContext*> waiting = findWriters(port);
     for (size_t i = 0; i < waiting.size(); ++i) {
         if (use(*waiting[i])) return;
         for (const InputPortBase* input : waiting[i]->inputs())
-            for (const TaskContext* writer : writersOf(*input))
+            for (const TaskContext* writer : findWriters(*input))
                 if (std::ranges::count(waiting, writer) == 0) waiting.push_back(writer);
     }
 }

@@ -103,7 +103,7 @@ public:
 
 /** Returns the plan of a Planned task; null: not Planned, or no plan yet. On the task's thread, or when it has
  *  stopped. */
-inline const types::Plan* planOf(const TaskContext& task) {
+inline const types::Plan* makePlan(const TaskContext& task) {
     const auto* const planned = dynamic_cast<const Planned*>(&task);
     return planned ? planned->plan() : nullptr;
 }

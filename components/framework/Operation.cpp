@@ -12,7 +12,7 @@ void OperationBase::requireCount(const std::vector<std::string>& arguments, size
         throw types::ConfigError("", name_, fmt::format("has {} arguments, takes {}", arguments.size(), signature()));
 }
 
-std::string OperationBase::signatureOf(const ValueType* result, const std::vector<const ValueType*>& arguments) {
+std::string OperationBase::makeSignature(const ValueType* result, const std::vector<const ValueType*>& arguments) {
     std::vector<std::string> names;
     for (const ValueType* argument : arguments) names.push_back(argument->name());
     return fmt::format("{}({})", result ? result->name() : "void", fmt::join(names, ", "));

@@ -36,7 +36,7 @@ protected:
     /** Throws types::ConfigError when the number of arguments is not `taken`. */
     void requireCount(const std::vector<std::string>& arguments, size_t taken) const;
     /** Returns "double(double, text)"; null `result`: no result. */
-    static std::string signatureOf(const ValueType* result, const std::vector<const ValueType*>& arguments);
+    static std::string makeSignature(const ValueType* result, const std::vector<const ValueType*>& arguments);
     /** Reads the arguments; their number is already checked. Throws types::ConfigError when an argument does not
      *  fit. */
     void read(const std::vector<std::string>& texts, const std::vector<const ValueType*>& types,
@@ -74,9 +74,9 @@ public:
 
     std::string signature() const override {
         if constexpr (std::is_void_v<R>)
-            return signatureOf(nullptr, types());
+            return makeSignature(nullptr, types());
         else
-            return signatureOf(&typeOf<R>(), types());
+            return makeSignature(&getType<R>(), types());
     }
 
     std::string callText(const std::vector<std::string>& texts) override {
@@ -87,12 +87,12 @@ public:
             return std::apply(*this, arguments), "";
         } else {
             const R result = std::apply(*this, arguments);
-            return typeOf<R>().text(&result);
+            return getType<R>().text(&result);
         }
     }
 
 private:
-    static std::vector<const ValueType*> types() { return {&typeOf<std::remove_cvref_t<Args>>()...}; }
+    static std::vector<const ValueType*> types() { return {&getType<std::remove_cvref_t<Args>>()...}; }
 
     std::function<R(Args...)> function_;
 };

@@ -97,7 +97,7 @@ FlowStatus InputPortBase::readNewestInto(void* sample, bool copy_old) {
         auto next = consumeLast();
         if (!next && !is_last) setLast(sample);
         if (!next) break;
-        is_last = next == newest || stampOf(last()) >= stampOf(sample);
+        is_last = next == newest || getStamp(last()) >= getStamp(sample);
         if (is_last) {
             copyLast(sample);
             std::swap(newest, next);

@@ -137,7 +137,7 @@ private:
     virtual void copyLast(void* sample) const = 0;
     virtual void setLast(const void* sample) = 0;
     virtual void forgetLast() = 0;
-    virtual types::Time stampOf(const void* sample) const = 0;
+    virtual types::Time getStamp(const void* sample) const = 0;
 
     /** Takes the next sample into last(), under the mutex. Returns its channel; null: none waits. */
     std::shared_ptr<ChannelBase> consumeLast();
@@ -225,7 +225,7 @@ private:
     void* last() override { return &last_; }
     void copyLast(void* sample) const override { *static_cast<T*>(sample) = last_; }
     void setLast(const void* sample) override { last_ = *static_cast<const T*>(sample); }
-    types::Time stampOf(const void* sample) const override { return portStamp(*static_cast<const T*>(sample)); }
+    types::Time getStamp(const void* sample) const override { return portStamp(*static_cast<const T*>(sample)); }
     void forgetLast() override { last_ = T{}; }
 
     T last_{};

@@ -68,11 +68,13 @@ public:
     void set(Config value) { value_ = std::move(value); }
 
     void load(ConfigReader& reader, const YAML::Node& block, const std::string& path) override {
-        readBlock(reader, block, path, blockOf<Config>(), &value_);
+        readBlock(reader, block, path, getBlock<Config>(), &value_);
     }
-    std::vector<PropertyInfo> list() const override { return listFields(blockOf<Config>(), blockOf<Config>().fresh()); }
+    std::vector<PropertyInfo> list() const override {
+        return listFields(getBlock<Config>(), getBlock<Config>().fresh());
+    }
     std::map<std::string, types::PropertyValue> values() const override {
-        return fieldValues(blockOf<Config>(), &value_);
+        return fieldValues(getBlock<Config>(), &value_);
     }
 
 private:

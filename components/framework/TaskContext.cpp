@@ -13,11 +13,11 @@
 namespace insonify::framework {
 namespace {
 
-std::string textOf(std::exception_ptr thrown) {
+std::string toText(std::exception_ptr thrown) {
     try {
         std::rethrow_exception(thrown);
     } catch (const std::exception& error) {
-        return types::reasonOf(error);
+        return types::getReason(error);
     } catch (...) {
         return "an exception that is not a std::exception";
     }
@@ -98,7 +98,7 @@ void TaskContext::setLastError(const std::string& text) {
 void TaskContext::refreshRecord() {
     types::TaskRecord record{name_, "", {}, ""};
     for (const PropertiesBase* properties : properties_) record.properties.merge(properties->values());
-    const types::Plan* const made = planOf(*this);
+    const types::Plan* const made = makePlan(*this);
     if (made) record.plan = flowYaml(*made);
     {
         std::lock_guard lock(record_mutex_);
@@ -260,7 +260,7 @@ Outcome TaskContext::applyProperties(const std::string& what) {
     try {
         if (propertiesHook()) return {};
     } catch (...) {
-        return refuse(refused + textOf(std::current_exception()));
+        return refuse(refused + toText(std::current_exception()));
     }
     return refuse(refused + name_ + " is " + toString(state()) + "; it can when it is stopped");
 }
@@ -270,13 +270,13 @@ bool TaskContext::attempt(Hook hook) {
         (this->*hook)();
         return true;
     } catch (...) {
-        setLastError(lastError() + "; then " + textOf(std::current_exception()));
+        setLastError(lastError() + "; then " + toText(std::current_exception()));
         return false;
     }
 }
 
 Outcome TaskContext::fail(const char* hook, std::exception_ptr thrown, bool undo_start, bool undo_configure) {
-    setLastError(std::string(hook) + ": " + textOf(thrown));
+    setLastError(std::string(hook) + ": " + toText(thrown));
     bool undone = true;
     if (undo_start) undone &= attempt(&TaskContext::stopHook);
     if (undo_configure) undone &= attempt(&TaskContext::cleanupHook);
@@ -297,7 +297,7 @@ void TaskContext::update() {
 void TaskContext::failCycle(const char* hook, std::exception_ptr thrown) {
     // The hook may have requested transitions itself before it threw: what they undid is not undone again.
     if (state() == TaskState::Exception || state() == TaskState::FatalError)
-        return setLastError(lastError() + "; then " + hook + ": " + textOf(thrown));
+        return setLastError(lastError() + "; then " + hook + ": " + toText(thrown));
     const bool configured = state() >= TaskState::Stopped;
     transition_ = "undo a throw";
     fail(hook, thrown, isRunning(), configured);

@@ -14,7 +14,7 @@
 namespace insonify::framework {
 namespace {
 
-std::vector<std::string> typesOf(const Registry& registry) {
+std::vector<std::string> getTypes(const Registry& registry) {
     std::vector<std::string> types;
     for (const Registry::Entry& entry : registry.list()) types.push_back(entry.type);
     return types;
@@ -56,7 +56,7 @@ std::vector<std::string> within(const std::vector<std::string>& names, const std
 
 }  // namespace
 
-uint64_t seedOf(uint64_t seed, const std::string& task) {
+uint64_t computeSeed(uint64_t seed, const std::string& task) {
     uint64_t hash = 0xcbf29ce484222325;  // FNV-1a of the name, then splitmix64 with the seed
     for (const char c : task) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
     return types::mixedBits(hash + seed * 0x9e3779b97f4a7c15) >> 11;
@@ -111,7 +111,7 @@ std::unique_ptr<TaskContext> Wiring::makeTask(const TaskSpec& spec) {
     try {
         if (auto task = registry_.make(spec.type, spec.name)) return task;
         registry_.loadAll();  // for suggestions
-        refuse("; " + suggestion(spec.type, typesOf(registry_)));
+        refuse("; " + suggestion(spec.type, getTypes(registry_)));
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& each : error.diagnostics())
             refuse(each.file.empty() && each.path.empty() ? ", which " + each.message : ": " + each.text());
@@ -219,7 +219,7 @@ void Wiring::seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t se
     const bool is_set = origin != spec_.origins.end() && origin->second.isOption();
     const YAML::Node written = child(spec.properties, "seed");
     if (written.IsDefined() && !written.IsNull() && (seed == 0 || is_set)) return;
-    const uint64_t own = seedOf(seed != 0 ? seed : spec_.seed, task.name());
+    const uint64_t own = computeSeed(seed != 0 ? seed : spec_.seed, task.name());
     for (PropertiesBase* properties : task.properties())
         for (const PropertyInfo& info : properties->list())
             if (info.name == "seed") try {
@@ -305,7 +305,7 @@ OutputPortBase* Wiring::findOutput(const ConnectionSpec& connection) {
     const YAML::Node place = child(connection.place, "from");
     try {
         if (OutputPortBase* port = task->makeOutput(name)) return port;
-        std::vector<std::string> known = namesOf(task->outputs());
+        std::vector<std::string> known = getNames(task->outputs());
         std::ranges::copy(aliasesOfPorts(*spec_.task(task->name()), true), std::back_inserter(known));
         report(place, connection.path + ".from",
                fmt::format("{} has no output port {}; {}", task->name(), name, suggestion(name, known)));
@@ -324,7 +324,7 @@ InputPortBase* Wiring::findInput(const ConnectionSpec& connection, OutputPortBas
     const YAML::Node place = child(connection.place, "to");
     try {
         if (InputPortBase* port = task->makeInput(name, source)) return port;
-        std::vector<std::string> known = namesOf(task->inputs());
+        std::vector<std::string> known = getNames(task->inputs());
         std::ranges::copy(aliasesOfPorts(*spec_.task(task->name()), false), std::back_inserter(known));
         report(place, connection.path + ".to",
                fmt::format("{} has no input port {}; {}", task->name(), name, suggestion(name, known)));
@@ -370,7 +370,7 @@ void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec, bool has_no_
     for (const std::string& name : spec.activity.trigger)
         if (!task.input(name))
             report(place, spec.path() + ".activity.trigger",
-                   "there is no input port " + name + "; " + suggestion(name, namesOf(task.inputs())));
+                   "there is no input port " + name + "; " + suggestion(name, getNames(task.inputs())));
     const bool is_misread = std::ranges::any_of(spec_.diagnostics, [&](const types::Diagnostic& diagnostic) {
         return diagnostic.path.starts_with(spec.path() + ".activity");
     });

@@ -65,6 +65,6 @@ private:
 
 /** Returns the seed of a task, from that of the deployment or of `run --seed`: stable over runs, machines and versions;
  *  below 2^53. */
-uint64_t seedOf(uint64_t seed, const std::string& task);
+uint64_t computeSeed(uint64_t seed, const std::string& task);
 
 }  // namespace insonify::framework

@@ -144,7 +144,7 @@ std::string framed(const wire::Discovery& message) {
     return datagram;
 }
 
-wire::Discovery messageOf(const std::string& process, wire::Discovery::Type type) {
+wire::Discovery makeMessage(const std::string& process, wire::Discovery::Type type) {
     wire::Discovery message;
     message.set_version(discovery_version);
     message.set_process_uuid(process);
@@ -152,7 +152,7 @@ wire::Discovery messageOf(const std::string& process, wire::Discovery::Type type
     return message;
 }
 
-std::optional<Announcement::Kind> kindOf(wire::Discovery::Type type) {
+std::optional<Announcement::Kind> getKind(wire::Discovery::Type type) {
     switch (type) {
         case wire::Discovery::ADVERTISE: return Announcement::Kind::Offer;
         case wire::Discovery::SUBSCRIBE: return Announcement::Kind::Question;
@@ -163,7 +163,7 @@ std::optional<Announcement::Kind> kindOf(wire::Discovery::Type type) {
     }
 }
 
-Publication publicationOf(const wire::Discovery::Publisher& message) {
+Publication readPublication(const wire::Discovery::Publisher& message) {
     Publication publication;
     publication.is_service = message.has_srv_pub();
     publication.topic = message.topic();
@@ -229,7 +229,7 @@ std::optional<Announcement> readDatagram(std::string_view datagram, const std::s
     if (message.process_uuid().empty() || message.process_uuid() == own_process) return {};
     received.addVersion(message.version());
     if (message.version() != discovery_version || message.flags().relay()) return {};
-    const auto kind = kindOf(message.type());
+    const auto kind = getKind(message.type());
     if (!kind) return {};
     Announcement announcement{*kind, message.process_uuid(), {}};
     if (*kind == Announcement::Kind::Question) announcement.publication.topic = message.sub().topic();
@@ -237,24 +237,26 @@ std::optional<Announcement> readDatagram(std::string_view datagram, const std::s
     const bool is_whole = message.pub().has_msg_pub() || message.pub().has_srv_pub();
     if (!is_whole || !message.pub().address().starts_with("tcp://")) return {};
     if (message.pub().scope() == wire::Discovery::Publisher::PROCESS) return {};
-    announcement.publication = publicationOf(message.pub());
+    announcement.publication = readPublication(message.pub());
     if (*kind == Announcement::Kind::Offer) received.add(announcement.publication);
     return announcement;
 }
 
 std::string askDatagram(const std::string& process, const std::string& topic) {
-    wire::Discovery message = messageOf(process, wire::Discovery::SUBSCRIBE);
+    wire::Discovery message = makeMessage(process, wire::Discovery::SUBSCRIBE);
     message.mutable_sub()->set_topic(topic);
     return framed(message);
 }
 
-std::string aliveDatagram(const std::string& process) { return framed(messageOf(process, wire::Discovery::HEARTBEAT)); }
+std::string aliveDatagram(const std::string& process) {
+    return framed(makeMessage(process, wire::Discovery::HEARTBEAT));
+}
 
-std::string goodbyeDatagram(const std::string& process) { return framed(messageOf(process, wire::Discovery::BYE)); }
+std::string goodbyeDatagram(const std::string& process) { return framed(makeMessage(process, wire::Discovery::BYE)); }
 
 std::string offerDatagram(const Publication& publication, bool begins) {
     wire::Discovery message =
-        messageOf(publication.process, begins ? wire::Discovery::ADVERTISE : wire::Discovery::UNADVERTISE);
+        makeMessage(publication.process, begins ? wire::Discovery::ADVERTISE : wire::Discovery::UNADVERTISE);
     wire::Discovery::Publisher& pub = *message.mutable_pub();
     pub.set_topic(publication.topic);
     pub.set_address(publication.address);
@@ -269,7 +271,7 @@ std::string offerDatagram(const Publication& publication, bool begins) {
 std::string connectionDatagram(const std::string& process, const std::string& node, const Publication& publication,
                                bool begins) {
     wire::Discovery message =
-        messageOf(process, begins ? wire::Discovery::NEW_CONNECTION : wire::Discovery::END_CONNECTION);
+        makeMessage(process, begins ? wire::Discovery::NEW_CONNECTION : wire::Discovery::END_CONNECTION);
     wire::Discovery::Publisher& pub = *message.mutable_pub();
     pub.set_topic(publication.topic);
     pub.set_address(publication.address);

@@ -17,7 +17,7 @@
 namespace insonify::gazebo {
 namespace {
 
-sockaddr_in placeOf(uint32_t address, uint16_t port) {
+sockaddr_in getPlace(uint32_t address, uint16_t port) {
     sockaddr_in place{};
     place.sin_family = AF_INET;
     place.sin_addr.s_addr = address;
@@ -46,7 +46,7 @@ bool set(int socket, int level, int option, const Value& value) {
     return setsockopt(socket, level, option, &value, sizeof value) == 0;
 }
 
-uint32_t numberOf(const std::string& address, const char* variable) {
+uint32_t getNumber(const std::string& address, const char* variable) {
     in_addr number{};
     if (inet_pton(AF_INET, address.c_str(), &number) != 1)
         throw types::ConfigError("", "",
@@ -59,13 +59,13 @@ uint32_t numberOf(const std::string& address, const char* variable) {
 }  // namespace
 
 Multicast::Multicast(const TransportOptions& options, uint16_t port)
-    : group_(numberOf(options.group, "DISCOVERY_MULTICAST_IP")), port_(port), addresses_(ownAddresses()) {
+    : group_(getNumber(options.group, "DISCOVERY_MULTICAST_IP")), port_(port), addresses_(ownAddresses()) {
     const std::vector<uint32_t> networks =
-        options.ip.empty() ? addresses_ : std::vector<uint32_t>{numberOf(options.ip, "IP")};
+        options.ip.empty() ? addresses_ : std::vector<uint32_t>{getNumber(options.ip, "IP")};
     receiver_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     set(receiver_, SOL_SOCKET, SO_REUSEADDR, 1);
     set(receiver_, SOL_SOCKET, SO_REUSEPORT, 1);
-    const sockaddr_in any = placeOf(htonl(INADDR_ANY), port);
+    const sockaddr_in any = getPlace(htonl(INADDR_ANY), port);
     if (receiver_ < 0 || bind(receiver_, reinterpret_cast<const sockaddr*>(&any), sizeof any) != 0) {
         const std::string why = std::strerror(errno);
         close();
@@ -99,7 +99,7 @@ void Multicast::close() {
 }
 
 void Multicast::send(const std::string& datagram) const {
-    const sockaddr_in to = placeOf(group_, port_);
+    const sockaddr_in to = getPlace(group_, port_);
     for (const int sender : senders_)
         sendto(sender, datagram.data(), datagram.size(), MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&to),
                sizeof to);
@@ -124,7 +124,7 @@ std::string addressTowards(const std::string& endpoint, const TransportOptions& 
         inet_pton(AF_INET, endpoint.substr(begin + 3, end - begin - 3).c_str(), &peer) != 1)
         return "127.0.0.1";
     const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    const sockaddr_in to = placeOf(peer.s_addr, 9);  // nothing is sent
+    const sockaddr_in to = getPlace(peer.s_addr, 9);  // nothing is sent
     sockaddr_in own{};
     socklen_t size = sizeof own;
     const bool is_known = connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 &&

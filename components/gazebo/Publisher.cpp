@@ -213,12 +213,18 @@ private:
         next_ = OfferClock::now();  // offers at once
     }
 
+    /** Returns whether a topic is in the partition of the offers: in others there may be another version of Gazebo. */
+    bool isOurs(const std::string& topic) const {
+        const auto name = TopicName::of(topic), own = TopicName::of(offers_.front().topic);
+        return name && own && name->partition == own->partition;
+    }
+
     void readDatagrams() {
         while (const auto datagram = multicast_.receive()) {
             const auto news = readDatagram(datagram->bytes, process(), others_);
             if (!news) continue;
             const Publication& publication = news->publication;
-            if (news->kind == Announcement::Kind::Offer && !scope_)
+            if (news->kind == Announcement::Kind::Offer && !scope_ && isOurs(publication.topic))
                 if (const auto scope = scopeIn(publication.type)) decideScope(*scope);
             if (news->kind != Announcement::Kind::Question || !scope_) continue;
             for (const Publication& offer : offers_)

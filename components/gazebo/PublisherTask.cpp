@@ -16,7 +16,7 @@
 namespace insonify::gazebo {
 namespace {
 
-std::string nameOf(MessageType type) {
+std::string getName(MessageType type) {
     return std::string(types::EnumNames<MessageType>::names[static_cast<size_t>(type)]);
 }
 
@@ -36,7 +36,8 @@ std::string viaRos(const Sample& sample, const ros::MessageOptions& options, con
 }
 
 template <class Sample>
-std::string messageOf(const Sample& sample, MessageType type, const ros::MessageOptions& options, const Stamp& stamp) {
+std::string makeMessage(const Sample& sample, MessageType type, const ros::MessageOptions& options,
+                        const Stamp& stamp) {
     if constexpr (std::is_same_v<Sample, types::Image>) return viaRos<ros::Image>(sample, options, stamp);
     if constexpr (std::is_same_v<Sample, types::Sonar>) {
         if (type == MessageType::FloatV) return encode(sample, stamp);
@@ -85,9 +86,9 @@ void PublisherTask::check(types::Diagnostics& diagnostics) const {
             std::string can;
             for (const MessageType type :
                  {MessageType::Image, MessageType::LaserScan, MessageType::PointCloudPacked, MessageType::FloatV})
-                if (canBe<typename Input::Sample>(type)) can += (can.empty() ? "" : ", ") + nameOf(type);
+                if (canBe<typename Input::Sample>(type)) can += (can.empty() ? "" : ", ") + getName(type);
             diagnostics.push_back(
-                {path + "type", fmt::format("is {}; {} can be {}", nameOf(topic.type), input.port.typeName(), can)});
+                {path + "type", fmt::format("is {}; {} can be {}", getName(topic.type), input.port.typeName(), can)});
         });
         if (!has_input)
             diagnostics.push_back(
@@ -107,7 +108,7 @@ bool PublisherTask::configureHook() {
     drops_.reset();
     publisher_.reset();
     std::vector<Offer> offers;
-    for (const TopicOut& topic : config->topics) offers.push_back({topic.topic, nameOf(topic.type)});
+    for (const TopicOut& topic : config->topics) offers.push_back({topic.topic, getName(topic.type)});
     try {
         const TransportOptions options = TransportOptions::fromEnvironment(config->partition);
         partition_ = options.partition;
@@ -121,7 +122,7 @@ bool PublisherTask::configureHook() {
     return true;
 }
 
-types::Time PublisherTask::stampOf(types::Time time) const {
+types::Time PublisherTask::getStamp(types::Time time) const {
     if (config->world.empty()) return time;
     const auto offset = clockOffset(config->world, partition_);
     return offset ? time - *offset : time;
@@ -139,7 +140,7 @@ void PublisherTask::send(const std::string& port, const Sample& sample, const ty
         options.frame_id = topic.frame_id;
         options.returns = returns;
         try {
-            publisher_->publish(i, messageOf(sample, topic.type, options, {stampOf(sample.time), topic.frame_id}));
+            publisher_->publish(i, makeMessage(sample, topic.type, options, {getStamp(sample.time), topic.frame_id}));
         } catch (const types::CheckFailure&) {
             throw;
         } catch (const std::logic_error& error) {

@@ -84,7 +84,7 @@ private:
     template <class Sample>
     void send(const std::string& port, const Sample& sample, const types::ReturnRules& returns);
     /** Returns the stamp of a message for a sample of our time. */
-    types::Time stampOf(types::Time time) const;
+    types::Time getStamp(types::Time time) const;
 
     std::unique_ptr<Publisher> publisher_;
     std::string partition_;

@@ -24,23 +24,23 @@
 namespace insonify::gazebo {
 namespace {
 
-glm::dvec3 vectorOf(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+glm::dvec3 toVector(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /** A message omits the identity orientation. */
 Place placeIn(const wire::Pose& message) {
     const wire::Quaternion& q = message.orientation();
-    return {vectorOf(message.position()),
+    return {toVector(message.position()),
             message.has_orientation() ? glm::dquat(q.w(), q.x(), q.y(), q.z()) : glm::dquat(1, 0, 0, 0)};
 }
 
-types::Pose poseOf(const Place& place, const types::Axes& axes) {
+types::Pose getPose(const Place& place, const types::Axes& axes) {
     types::Pose pose;
     pose.position = axes.rockFromWorld(place.position);
     pose.orientation = axes.rockFromOrientation(place.orientation);
     return pose;
 }
 
-std::optional<types::Time> stampOf(const wire::Header& header) {
+std::optional<types::Time> getStamp(const wire::Header& header) {
     constexpr int64_t latest = int64_t{1} << 40;  // [s]; more than 34,000 years
     if (!header.has_stamp()) return {};
     const int64_t seconds = header.stamp().sec();
@@ -79,9 +79,9 @@ std::optional<PoseMessage> readPoses(std::string_view bytes, types::WorldFrame f
     wire::PoseV message;
     if (!parse(bytes, message)) return {};
     const types::Axes axes{frame};
-    PoseMessage read{stampOf(message.header()), {}};
+    PoseMessage read{getStamp(message.header()), {}};
     for (const wire::Pose& pose : message.pose())
-        read.entities.push_back({pose.name(), poseOf(placeIn(pose), axes), pose.id(), placeIn(pose)});
+        read.entities.push_back({pose.name(), getPose(placeIn(pose), axes), pose.id(), placeIn(pose)});
     return read;
 }
 
@@ -89,11 +89,11 @@ std::optional<OdometryMessage> readOdometry(std::string_view bytes, types::World
     wire::Odometry message;
     if (!parse(bytes, message)) return {};
     const types::Axes axes{frame};
-    OdometryMessage read{stampOf(message.header()), poseOf(placeIn(message.pose()), axes)};
+    OdometryMessage read{getStamp(message.header()), getPose(placeIn(message.pose()), axes)};
     types::Pose& pose = read.pose;
     if (!message.has_twist() || !types::isUsable(pose)) return read;
-    pose.velocity = glm::normalize(pose.orientation) * axes.body(vectorOf(message.twist().linear()));
-    pose.angular_velocity = axes.body(vectorOf(message.twist().angular()));
+    pose.velocity = glm::normalize(pose.orientation) * axes.body(toVector(message.twist().linear()));
+    pose.angular_velocity = axes.body(toVector(message.twist().angular()));
     return read;
 }
 
@@ -118,7 +118,7 @@ types::Pose poseOfChain(const PoseMessage& message, const Chain& chain, types::W
         whole.position += glm::normalize(whole.orientation) * place.position;
         whole.orientation = whole.orientation * place.orientation;
     }
-    return poseOf(whole, types::Axes{frame});
+    return getPose(whole, types::Axes{frame});
 }
 
 namespace {

@@ -20,7 +20,7 @@ std::optional<std::string> variable(const std::string& name) {
     return {};
 }
 
-uint16_t portOf(const std::string& name, uint16_t otherwise) {
+uint16_t getPort(const std::string& name, uint16_t otherwise) {
     const std::optional<std::string> text = variable(name);
     if (!text || text->empty()) return otherwise;
     uint16_t port = 0;
@@ -56,8 +56,8 @@ TransportOptions TransportOptions::fromEnvironment(const std::string& partition)
                                  "is " + options.partition + ", which Gazebo's transport does not take");
     options.ip = variable("IP").value_or("");
     if (const auto group = variable("DISCOVERY_MULTICAST_IP"); group && !group->empty()) options.group = *group;
-    options.topic_port = portOf("DISCOVERY_MSG_PORT", options.topic_port);
-    options.service_port = portOf("DISCOVERY_SRV_PORT", options.service_port);
+    options.topic_port = getPort("DISCOVERY_MSG_PORT", options.topic_port);
+    options.service_port = getPort("DISCOVERY_SRV_PORT", options.service_port);
     return options;
 }
 

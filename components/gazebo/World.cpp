@@ -27,7 +27,7 @@ glm::dvec3 point(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /** Returns the matrix of a pose. A message omits the identity orientation. Not finite for an orientation without
  *  length. */
-glm::dmat4 matrixOf(const wire::Pose& pose) {
+glm::dmat4 toMatrix(const wire::Pose& pose) {
     const wire::Quaternion& q = pose.orientation();
     const glm::dquat turn =
         pose.has_orientation() ? glm::normalize(glm::dquat(q.w(), q.x(), q.y(), q.z())) : glm::dquat(1, 0, 0, 0);
@@ -40,7 +40,7 @@ bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(
 
 /** Returns why the sizes of a shape are invalid; empty when they are valid. */
 std::string reasonAgainst(const meshes::Shape& shape) {
-    if (const types::Diagnostic fault = meshes::faultOf(shape); !fault.message.empty())
+    if (const types::Diagnostic fault = meshes::findFault(shape); !fault.message.empty())
         return fmt::format("its {} {}", fault.path, fault.message);
     if (const auto* mesh = std::get_if<meshes::MeshShape>(&shape); mesh && !isFinite(mesh->scale))
         return "its scale is not finite";
@@ -97,7 +97,7 @@ private:
     std::optional<int> addNode(const char* kind, const std::string& name, int parent,
                                const glm::dmat4& world_from_parent, const wire::Pose& pose) {
         count();
-        const glm::dmat4 world_from_node = world_from_parent * matrixOf(pose);
+        const glm::dmat4 world_from_node = world_from_parent * toMatrix(pose);
         if (!scene::isFinite(world_from_node)) {
             builder_.notice(
                 fmt::format("{} {} is omitted: its pose is not finite, or its orientation has no length", kind, name));
@@ -117,20 +117,20 @@ private:
         const std::string name = scope + visual.name();
         if (!visual.has_geometry()) return builder_.leaveOut(name, "it has no geometry");
         if (visual.geometry().type() == wire::Geometry::EMPTY) return;
-        const glm::dmat4 node_from_visual = matrixOf(visual.pose());
-        const meshes::Shape shape = shapeOf(visual.geometry());
+        const glm::dmat4 node_from_visual = toMatrix(visual.pose());
+        const meshes::Shape shape = getShape(visual.geometry());
         const std::string fault = scene::isFinite(node_from_visual)
                                       ? reasonAgainst(shape)
                                       : "its pose is not finite, or its orientation has no length";
         if (!fault.empty()) return builder_.leaveOut(name, fault);
         builder_.addVisual(
-            name, node, node_from_visual, shape, {materialOf(visual, holders), {}},
+            name, node, node_from_visual, shape, {getMaterial(visual, holders), {}},
             {.transparency = visual.transparency(), .casts_shadow = visual.cast_shadows() || !sends_shadows_});
     }
 
     /** Returns the name of a material. Gazebo sends colours, but no names of materials; the name is that of the visual,
      *  or of its link or model, if it contains a matter. Empty for no material, or for a mesh, which has its own. */
-    static std::string materialOf(const wire::Visual& visual, const std::vector<std::string>& holders) {
+    static std::string getMaterial(const wire::Visual& visual, const std::vector<std::string>& holders) {
         const std::string& given = visual.material().script().name();
         if (!given.empty() || visual.geometry().type() == wire::Geometry::MESH) return given;
         if (!scene::matterIn(visual.name()).empty()) return visual.name();
@@ -139,7 +139,7 @@ private:
         return "";
     }
 
-    meshes::Shape shapeOf(const wire::Geometry& geometry) const {
+    meshes::Shape getShape(const wire::Geometry& geometry) const {
         switch (geometry.type()) {
             case wire::Geometry::BOX: return meshes::BoxShape{point(geometry.box().size())};
             case wire::Geometry::SPHERE: return meshes::EllipsoidShape{glm::dvec3(geometry.sphere().radius()), true};
@@ -156,7 +156,7 @@ private:
             }
             case wire::Geometry::MESH: {
                 const wire::Mesh& mesh = geometry.mesh();
-                return meshes::MeshShape{placeOf(mesh.filename()),
+                return meshes::MeshShape{getPlace(mesh.filename()),
                                          mesh.submesh(),
                                          mesh.center_submesh(),
                                          mesh.has_scale() ? point(mesh.scale()) : glm::dvec3(1),
@@ -164,14 +164,14 @@ private:
             }
             case wire::Geometry::HEIGHTMAP: {
                 const wire::Heightmap& map = geometry.heightmap();
-                return meshes::HeightmapShape{placeOf(map.filename()), point(map.size()), point(map.origin()), {}};
+                return meshes::HeightmapShape{getPlace(map.filename()), point(map.size()), point(map.origin()), {}};
             }
             default: return meshes::OtherShape{};
         }
     }
 
     /** Returns the path on this machine of a file with a path or URI on Gazebo's machine; `uri` itself if not found. */
-    std::string placeOf(const std::string& uri) const {
+    std::string getPlace(const std::string& uri) const {
         if (builder_.paths().find(uri, {})) return uri;
         const std::filesystem::path path = uri.starts_with("file://") ? uri.substr(7) : uri;
         if (!path.is_absolute()) return uri;
@@ -205,11 +205,11 @@ std::map<std::string, std::set<std::string>>& taken() {
     return worlds;
 }
 
-std::string serviceOf(const std::string& world) { return "/world/" + world + "/scene/info"; }
+std::string getService(const std::string& world) { return "/world/" + world + "/scene/info"; }
 
 }  // namespace
 
-World worldOf(std::string_view message, const std::filesystem::path& folder) {
+World getWorld(std::string_view message, const std::filesystem::path& folder) {
     wire::Scene scene;
     if (message.size() >= size_t{1} << 31 || !scene.ParseFromArray(message.data(), static_cast<int>(message.size())))
         throw types::ConfigError("", "world", "has a service that answers bytes which are no message Scene");
@@ -218,7 +218,7 @@ World worldOf(std::string_view message, const std::filesystem::path& folder) {
 
 scene::Scene readWorld(const scene::GazeboConfig& config, const std::filesystem::path& folder) {
     const TransportOptions options = TransportOptions::fromEnvironment(config.partition);
-    const std::string service = serviceOf(config.world);
+    const std::string service = getService(config.world);
     const auto name = qualifiedName(options.partition, service);
     if (!name)
         throw types::ConfigError("", "world",
@@ -228,7 +228,7 @@ scene::Scene readWorld(const scene::GazeboConfig& config, const std::filesystem:
     if (!reply.failure.empty())
         throw types::ConfigError("", "world",
                                  fmt::format("is {}; its service {} {}", config.world, service, reply.failure));
-    World world = worldOf(reply.message, folder);
+    World world = getWorld(reply.message, folder);
     const std::lock_guard lock(taken_mutex);
     taken()[*name] = std::move(world.names);
     return std::move(world.scene);
@@ -255,7 +255,7 @@ std::string requestSdf(const scene::GazeboConfig& config) {
 }
 
 std::optional<std::set<std::string>> namesTaken(const std::string& world, const std::string& partition) {
-    const auto name = qualifiedName(partition, serviceOf(world));
+    const auto name = qualifiedName(partition, getService(world));
     const std::lock_guard lock(taken_mutex);
     const auto found = name ? taken().find(*name) : taken().end();
     return found == taken().end() ? std::nullopt : std::optional(found->second);

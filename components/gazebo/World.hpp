@@ -28,7 +28,7 @@ std::string requestSdf(const scene::GazeboConfig& config);
  *  visuals. Gazebo may run on another machine. Meshes and pictures are therefore searched at the path in the message,
  *  then by the last parts of the path in the folders of meshes::ModelPaths. Geometry::notices lists visuals that cannot
  *  be shown. Throws types::ConfigError when the bytes are no Scene, or the Scene has too many parts. */
-World worldOf(std::string_view message, const std::filesystem::path& folder);
+World getWorld(std::string_view message, const std::filesystem::path& folder);
 
 /** Returns the names in a world when its scene was last read in this process; none when it was not read. */
 std::optional<std::set<std::string>> namesTaken(const std::string& world, const std::string& partition);

@@ -39,7 +39,7 @@ constexpr Field sizes[] = {{"GL_MAX_TEXTURE_SIZE", &Limits::texture_size},
                            {"GL_MAX_COMPUTE_WORK_GROUP_SIZE", &Limits::group_size},
                            {"GL_MAX_COMPUTE_WORK_GROUP_COUNT", &Limits::group_count}};
 
-int64_t sizeOf(GLenum name) {
+int64_t getSize(GLenum name) {
     GLint64 value[2] = {};  // room for GL_MAX_VIEWPORT_DIMS
     glGetInteger64v(name, value);
     return name == GL_MAX_VIEWPORT_DIMS ? std::min(value[0], value[1]) : value[0];
@@ -137,7 +137,7 @@ std::string chosen(const std::string& device) {
 bool isWord(const std::string& device) { return device == "auto" || device == "software"; }
 
 /** Returns the position in EGL's list; throws GlError when the list has no such device. */
-size_t indexOf(const std::string& device, size_t count) {
+size_t findIndex(const std::string& device, size_t count) {
     size_t index = 0;
     const auto [end, diagnostic] = std::from_chars(device.data(), device.data() + device.size(), index);
     if (diagnostic != std::errc{} || end != device.data() + device.size() || index >= count)
@@ -160,7 +160,7 @@ std::vector<Candidate> candidates(const std::string& device) {
         displays.push_back({[one] { return deviceDisplay(one); }, may_be_card});
     };
     if (!isWord(device)) {
-        add(all[indexOf(device, all.size())], false);
+        add(all[findIndex(device, all.size())], false);
         return displays;
     }
     for (bool software : {false, true})
@@ -188,13 +188,13 @@ std::string cardOfSystem() {
     return {};
 }
 
-std::string textOf(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
+std::string toText(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
 
 /** Returns whether a display gives a context on a graphics card. Leaves no context current on this thread. */
 bool isCard(EGLDisplay display) {
     const EGLContext context = display == EGL_NO_DISPLAY ? EGL_NO_CONTEXT : contextOn(display, false, EGL_NO_CONTEXT);
     if (context == EGL_NO_CONTEXT) return false;
-    const bool is_card = !isSoftwareRenderer(textOf(GL_RENDERER));
+    const bool is_card = !isSoftwareRenderer(toText(GL_RENDERER));
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
     return is_card;
@@ -210,15 +210,15 @@ void GLAPIENTRY remember(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLc
 Limits Limits::ofCurrentContext() {
     Limits limits;
     for (const Field& extension : extensions) limits.*extension.value = epoxy_has_gl_extension(extension.name);
-    limits.texture_size = sizeOf(GL_MAX_TEXTURE_SIZE);
-    limits.viewport_size = sizeOf(GL_MAX_VIEWPORT_DIMS);
-    limits.integer_samples = sizeOf(GL_MAX_INTEGER_SAMPLES);
-    limits.depth_samples = sizeOf(GL_MAX_DEPTH_TEXTURE_SAMPLES);
-    limits.storage_blocks = sizeOf(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS);
-    limits.storage_bindings = sizeOf(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
-    limits.storage_bytes = sizeOf(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
-    limits.shared_bytes = sizeOf(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
-    limits.group_invocations = sizeOf(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
+    limits.texture_size = getSize(GL_MAX_TEXTURE_SIZE);
+    limits.viewport_size = getSize(GL_MAX_VIEWPORT_DIMS);
+    limits.integer_samples = getSize(GL_MAX_INTEGER_SAMPLES);
+    limits.depth_samples = getSize(GL_MAX_DEPTH_TEXTURE_SAMPLES);
+    limits.storage_blocks = getSize(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS);
+    limits.storage_bindings = getSize(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
+    limits.storage_bytes = getSize(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+    limits.shared_bytes = getSize(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
+    limits.group_invocations = getSize(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
     limits.group_size = sizeOfAxes(GL_MAX_COMPUTE_WORK_GROUP_SIZE);
     limits.group_count = sizeOfAxes(GL_MAX_COMPUTE_WORK_GROUP_COUNT);
     return limits;
@@ -258,7 +258,7 @@ EglContext::EglContext(const std::string& device) : wanted_(chosen(device)) {
 }
 
 void EglContext::requireDevice(const std::string& device) {
-    if (const std::string name = chosen(device); !isWord(name)) indexOf(name, devices().size());
+    if (const std::string name = chosen(device); !isWord(name)) findIndex(name, devices().size());
 }
 
 bool EglContext::isAskedFor(const std::string& device) {
@@ -314,7 +314,7 @@ void EglContext::create(const std::string& device) {
     for (size_t i = 0; i < all.size(); ++i) {
         if (!all[i].may_be_card && preferredRenderer(renderers)) break;  // the remaining candidates are no cards
         if (!opens(all[i])) continue;
-        renderers[i] = textOf(GL_RENDERER);
+        renderers[i] = toText(GL_RENDERER);
         if (!all[i].may_be_card || !isSoftwareRenderer(renderers[i])) return;
         destroy();
     }
@@ -330,8 +330,8 @@ bool EglContext::createOn(void* display, bool robust, void* shared) {
 }
 
 void EglContext::watch() {
-    renderer_ = textOf(GL_RENDERER);
-    driver_ = textOf(GL_VERSION);
+    renderer_ = toText(GL_RENDERER);
+    driver_ = toText(GL_VERSION);
     software_ = isSoftwareRenderer(renderer_);
     limits_ = Limits::ofCurrentContext();
     programs_ = std::make_unique<Programs>();

@@ -45,17 +45,17 @@ GLuint compiled(const Shader& shader) {
     throw GlError(shader.file + ": " + log);
 }
 
-Shader shaderOf(GLenum stage, std::string_view file, const std::vector<std::string>& defines) {
+Shader makeShader(GLenum stage, std::string_view file, const std::vector<std::string>& defines) {
     return {stage, std::string(file), shaderSource(file, defines)};
 }
 
 std::vector<Shader> rasterShaders(std::string_view vertex, std::string_view fragment,
                                   const std::vector<std::string>& defines) {
-    return {shaderOf(GL_VERTEX_SHADER, vertex, defines), shaderOf(GL_FRAGMENT_SHADER, fragment, defines)};
+    return {makeShader(GL_VERTEX_SHADER, vertex, defines), makeShader(GL_FRAGMENT_SHADER, fragment, defines)};
 }
 
 std::vector<Shader> computeShaders(std::string_view file, const std::vector<std::string>& defines) {
-    return {shaderOf(GL_COMPUTE_SHADER, file, defines)};
+    return {makeShader(GL_COMPUTE_SHADER, file, defines)};
 }
 
 }  // namespace

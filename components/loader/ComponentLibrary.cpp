@@ -56,7 +56,7 @@ bool isName(const std::string& name) {
 }
 
 /** Returns the files of that name, each once even if several folders contain it. */
-std::vector<fs::path> filesOf(const std::string& name) {
+std::vector<fs::path> getFiles(const std::string& name) {
     std::vector<fs::path> files;
     for (const fs::path& folder : folders()) {
         std::error_code none;
@@ -68,7 +68,7 @@ std::vector<fs::path> filesOf(const std::string& name) {
 
 /** Returns why a file cannot be loaded. The system's loader would map the parts named in its headers even if they are
  *  missing. */
-std::string damageOf(const fs::path& file) {
+std::string findDamage(const fs::path& file) {
     std::error_code none;
     if (!fs::is_regular_file(file, none)) return "is no file";
     const uintmax_t size = fs::file_size(file, none);
@@ -86,7 +86,7 @@ std::string damageOf(const fs::path& file) {
 }
 
 /** Returns the version in a file, read before its code runs; empty: there is none. */
-std::string versionOf(const fs::path& file) {
+std::string getVersion(const fs::path& file) {
     static constexpr std::string_view before = interface_mark;
     std::ifstream stream(file, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(stream), {});
@@ -98,7 +98,7 @@ std::string versionOf(const fs::path& file) {
 }
 
 void refuseOtherVersion(const fs::path& file) {
-    const std::string version = versionOf(file);
+    const std::string version = getVersion(file);
     if (version == interface_version) return;
     if (version.empty()) refuse(file, "has no line INSONIFY_COMPONENT_LIBRARY, which every component library has");
     refuse(file, "is for Insonify " + version + "; this is " + interface_version + ": rebuild it");
@@ -127,7 +127,7 @@ void showOwnSymbols() {
 const ComponentLibrary& open(const fs::path& file) {
     const std::lock_guard alone(loaded().mutex);
     if (const auto known = loaded().all.find(file); known != loaded().all.end()) return known->second;
-    if (const std::string damage = damageOf(file); !damage.empty()) refuse(file, "cannot be loaded: it " + damage);
+    if (const std::string damage = findDamage(file); !damage.empty()) refuse(file, "cannot be loaded: it " + damage);
     refuseOtherVersion(file);
     showOwnSymbols();
     void* const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -179,10 +179,10 @@ std::vector<std::string> present() {
     return {names.begin(), names.end()};
 }
 
-bool isPresent(const std::string& name) { return isName(name) && !filesOf(name).empty(); }
+bool isPresent(const std::string& name) { return isName(name) && !getFiles(name).empty(); }
 
 const ComponentLibrary& load(const std::string& name) {
-    const std::vector<fs::path> files = isName(name) ? filesOf(name) : std::vector<fs::path>{};
+    const std::vector<fs::path> files = isName(name) ? getFiles(name) : std::vector<fs::path>{};
     if (files.empty()) throw types::ConfigError("", "", "needs " + absence(name));
     if (files.size() > 1)
         refuse(files[0], "is the component library " + name + ", and so is " + files[1].string() + "; one is allowed");
@@ -196,7 +196,7 @@ const ComponentLibrary& loadFile(const fs::path& file) {
     return open(whole);
 }
 
-Installation installationOf(const fs::path& own) {
+Installation findInstallation(const fs::path& own) {
     const fs::path around = own.parent_path().parent_path();
     std::error_code none;
     if (fs::exists(around / "build.ninja", none)) return Installation::Clone;
@@ -207,7 +207,7 @@ Installation installationOf(const fs::path& own) {
                                                                          : Installation::Prefix;
 }
 
-std::string absence(const std::string& name) { return absence(name, installationOf(ownFile())); }
+std::string absence(const std::string& name) { return absence(name, findInstallation(ownFile())); }
 
 std::string absence(const std::string& name, Installation installation) {
 #if defined(__aarch64__)

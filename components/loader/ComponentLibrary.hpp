@@ -55,7 +55,7 @@ const ComponentLibrary& loadFile(const std::filesystem::path& file);
 enum class Installation { Clone, Wheel, DebianPackage, Prefix };
 
 /** Returns the installation that a library or program belongs to; wheels and archives are alike. */
-Installation installationOf(const std::filesystem::path& file);
+Installation findInstallation(const std::filesystem::path& file);
 
 /** Returns "the component library dds, which is not here; `scripts/setup dds` installs it", by what installs it in this
  *  installation or in a given one. */

@@ -35,7 +35,7 @@ public:
             lose(fmt::format("{}: bytes {} to {} ({} in all): {}", log.path().string(), gap.from, gap.to,
                              gap.to - gap.from, gap.what));
         std::vector<std::optional<size_t>> numbers;
-        for (size_t i = 0; i < log.streams().size(); ++i) numbers.push_back(numberOf(log, i));
+        for (size_t i = 0; i < log.streams().size(); ++i) numbers.push_back(getNumber(log, i));
         for (const SampleRef& at : log.samples())
             if (numbers[at.stream] && wanted(at)) take(log, at, *numbers[at.stream]);
     }
@@ -46,7 +46,7 @@ public:
     }
 
 private:
-    std::optional<size_t> numberOf(const Reader& log, size_t index) {
+    std::optional<size_t> getNumber(const Reader& log, size_t index) {
         const Stream& stream = log.streams()[index];
         if (!takes(selection_, stream)) return {};
         const auto known = numbers_.find(stream.name);
@@ -100,13 +100,13 @@ private:
 void refuse(const Readers& logs, const Selection& selection) {
     for (const std::string& name : selection.streams)
         if (std::ranges::none_of(logs, [&](const auto& log) { return log->find(name); }))
-            logs.front()->indexOf(name);  // throws, with the existing names
+            logs.front()->findIndex(name);  // throws, with the existing names
     for (const auto& log : logs)
         if (log->streams().empty()) throw types::ConfigError(log->path(), "", "holds no stream");
 }
 
 /** Returns the streams' own names, for names or topics. */
-std::set<std::string> namesOf(const Readers& logs, const std::set<std::string>& given) {
+std::set<std::string> getNames(const Readers& logs, const std::set<std::string>& given) {
     std::set<std::string> names;
     for (const std::string& name : given)
         for (const auto& log : logs)
@@ -141,7 +141,7 @@ Copied copyLog(const std::vector<std::filesystem::path>& logs, const std::filesy
     for (const auto& log : logs) readers.push_back(openLog(log, options.at_damage));
     refuse(readers, options.selection);
     CopyOptions named = options;
-    named.selection.streams = namesOf(readers, options.selection.streams);
+    named.selection.streams = getNames(readers, options.selection.streams);
     refuseOtherTypes(readers, named.selection);
     Copier copier(named, to);
     for (const auto& log : readers) copier.add(*log);

@@ -38,14 +38,14 @@ struct Run {
 };
 
 template <types::Arrayed T>
-std::vector<size_t> shapeOf(const T& sample) {
+std::vector<size_t> getShape(const T& sample) {
     return sample.shape();
 }
-std::vector<size_t> shapeOf(const Sonar& ping) { return {ping.beam_count, ping.bin_count}; }
-std::vector<size_t> shapeOf(const Image& picture) {
+std::vector<size_t> getShape(const Sonar& ping) { return {ping.beam_count, ping.bin_count}; }
+std::vector<size_t> getShape(const Image& picture) {
     return {picture.size.height, picture.size.width, picture.pixel_size};
 }
-std::vector<size_t> shapeOf(const DepthMap& map) { return {map.vertical_size, map.horizontal_size}; }
+std::vector<size_t> getShape(const DepthMap& map) { return {map.vertical_size, map.horizontal_size}; }
 
 void readShaped(Reader& log, const SampleRef& at, Sonar& ping) { readPing(log, at, ping); }
 void readShaped(Reader& log, const SampleRef& at, Image& picture) {
@@ -75,10 +75,10 @@ std::vector<Run> runsOfOneShape(Reader& log, const std::string& stream) {
     T sample;
     log.forEachRef(stream, [&](const SampleRef& at) {
         readShaped(log, at, sample);
-        if (runs.empty() || runs.back().shape != shapeOf(sample)) runs.push_back({shapeOf(sample), {}});
+        if (runs.empty() || runs.back().shape != getShape(sample)) runs.push_back({getShape(sample), {}});
         runs.back().samples.push_back(at);
     });
-    if (runs.empty()) runs.push_back({shapeOf(T{}), {}});
+    if (runs.empty()) runs.push_back({getShape(T{}), {}});
     return runs;
 }
 
@@ -276,9 +276,9 @@ void writeValue(NpzFile& npz, const std::vector<Number>& numbers) {
 }
 
 template <class T>
-auto valueOf(const T& sample) {
+auto getValue(const T& sample) {
     if constexpr (types::Scalar<T>)
-        return types::numberOf(sample);
+        return types::getNumber(sample);
     else
         return sample;
 }
@@ -286,10 +286,10 @@ auto valueOf(const T& sample) {
 template <class T>
 void writeValues(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     std::vector<double> time;
-    std::vector<decltype(valueOf(T{}))> values;
+    std::vector<decltype(getValue(T{}))> values;
     log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
         time.push_back(at.time.seconds());
-        values.push_back(valueOf(sample));
+        values.push_back(getValue(sample));
     });
     NpzFile npz(path);
     npz.array("time", {time.size()}, time);
@@ -426,7 +426,7 @@ void writeValues(Reader& log, const std::string& stream, const std::filesystem::
         if constexpr (Text<T>)
             csv.line(at.time, quoted(value));
         else
-            csv.line(at.time, types::numberOf(value));
+            csv.line(at.time, types::getNumber(value));
     });
     csv.close();
 }
@@ -462,7 +462,7 @@ bool writeByType(const Stream& declared, const auto& write) {
 }  // namespace
 
 std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
-    const Stream& declared = log.streams()[log.indexOf(stream)];
+    const Stream& declared = log.streams()[log.findIndex(stream)];
     if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path, meta);
     if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path, meta);
     if (declared.holds<DepthMap>()) return writeRuns<DepthMap>(log, stream, path, meta);
@@ -488,7 +488,7 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
 
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path,
                const std::optional<EarthColumns>& earth) {
-    const Stream& declared = log.streams()[log.indexOf(stream)];
+    const Stream& declared = log.streams()[log.findIndex(stream)];
     if (holdsPings(declared)) return writePings(log, stream, path);
     if (declared.holds<types::PointCloud>())
         return writeParts<types::PointCloud>(

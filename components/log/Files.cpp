@@ -19,7 +19,7 @@
 namespace insonify::log {
 
 Verdict check(const std::filesystem::path& path) {
-    if (storageOf(path) == Storage::Pocolog && !std::filesystem::is_directory(path)) return pocolog::check(path);
+    if (getStorage(path) == Storage::Pocolog && !std::filesystem::is_directory(path)) return pocolog::check(path);
     const auto log = openLog(path);
     Verdict verdict{log->streams().size(), 0, 0, {}};
     for (const Stream& stream : log->streams()) verdict.set_backs += stream.set_backs;

@@ -22,7 +22,7 @@ void readEnum(const Metadata& texts, const char* key, E& value) {
     if (found != std::end(names)) value = static_cast<E>(found - std::begin(names));
 }
 
-ros::MessageOptions optionsOf(const DeclaredTopic& topic) {
+ros::MessageOptions getOptions(const DeclaredTopic& topic) {
     ros::MessageOptions options;
     options.world_frame = topic.foreign;
     readEnum(*topic.texts, "insonify_order", options.order);
@@ -47,7 +47,7 @@ private:
 };
 
 /** Calls `use` with the first type of samples, and its message, that the topic's messages are read as. */
-void withSampleOf(const DeclaredTopic& topic, auto&& use) {
+void withSample(const DeclaredTopic& topic, auto&& use) {
     if (topic.encoding != "cdr") return;
     const auto named = topic.texts->find("insonify_type");
     bool is_found = false;
@@ -58,7 +58,7 @@ void withSampleOf(const DeclaredTopic& topic, auto&& use) {
         use(sample, message);
     };
     types::forEachSampleType([&]<class T>(std::type_identity<T> sample) {
-        ros::forEachMessageOf<T>([&]<class Message>(std::type_identity<Message> message) {
+        ros::forEachMessageType<T>([&]<class Message>(std::type_identity<Message> message) {
             if constexpr (ros::ReadFrom<T, Message>) offer(sample, message);
         });
     });
@@ -66,7 +66,7 @@ void withSampleOf(const DeclaredTopic& topic, auto&& use) {
 
 }  // namespace
 
-Stream streamOf(const DeclaredTopic& topic) {
+Stream getStream(const DeclaredTopic& topic) {
     std::string name = topic.name.substr(topic.name.starts_with('/'));
     std::ranges::replace(name, '/', '.');
     Stream stream;
@@ -74,17 +74,17 @@ Stream streamOf(const DeclaredTopic& topic) {
     stream.topic = topic.name;
     stream.type = topic.type.empty() ? topic.encoding : topic.type;
     if (topic.encoding == "cdr") stream.message = topic.type;
-    withSampleOf(topic, [&]<class T, class Message>(std::type_identity<T>, std::type_identity<Message>) {
+    withSample(topic, [&]<class T, class Message>(std::type_identity<T>, std::type_identity<Message>) {
         stream.type = typelibName<T>();
         stream.sample = types::sampleIndex<T>();
     });
     return stream;
 }
 
-std::unique_ptr<MessageDecoder> decoderOf(const DeclaredTopic& topic) {
+std::unique_ptr<MessageDecoder> makeDecoder(const DeclaredTopic& topic) {
     std::unique_ptr<MessageDecoder> decoder;
-    withSampleOf(topic, [&]<class T, class Message>(std::type_identity<T>, std::type_identity<Message>) {
-        decoder = std::make_unique<TypedDecoder<T, Message>>(optionsOf(topic));
+    withSample(topic, [&]<class T, class Message>(std::type_identity<T>, std::type_identity<Message>) {
+        decoder = std::make_unique<TypedDecoder<T, Message>>(getOptions(topic));
     });
     return decoder;
 }

@@ -28,9 +28,9 @@ struct DeclaredTopic {
 
 /** Returns the stream of a topic without its metadata: its written name, else "a.b" for "/a/b", and the type of its
  *  samples. */
-Stream streamOf(const DeclaredTopic& topic);
+Stream getStream(const DeclaredTopic& topic);
 
 /** Returns the decoder of a topic's messages; null: they are not samples. */
-std::unique_ptr<MessageDecoder> decoderOf(const DeclaredTopic& topic);
+std::unique_ptr<MessageDecoder> makeDecoder(const DeclaredTopic& topic);
 
 }  // namespace insonify::log

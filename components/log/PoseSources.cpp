@@ -33,7 +33,7 @@ void forEachMessage(Reader& log, auto&& wanted, auto&& use) {
     for (const SampleRef& at : log.samples()) {
         if (!is_wanted[at.stream]) continue;
         try {
-            ros::decode(log.bytesOf(at), message);
+            ros::decode(log.toBytes(at), message);
         } catch (const ros::CdrError& error) {
             throw types::ConfigError(
                 log.path(), log.streams()[at.stream].name,
@@ -53,11 +53,11 @@ void forEachTransform(Reader& log, auto&& use) {
             });
 }
 
-types::Time stampOf(const ros::Time& stamp, types::Time otherwise) {
+types::Time getStamp(const ros::Time& stamp, types::Time otherwise) {
     return stamp == ros::Time{} ? otherwise : ros::fromRos(stamp);
 }
 
-std::string nameOf(const std::string& frame) { return frame.substr(frame.starts_with('/')); }
+std::string getName(const std::string& frame) { return frame.substr(frame.starts_with('/')); }
 
 /** What the transforms of a log say of one frame. */
 struct Edge {
@@ -68,7 +68,7 @@ struct Edge {
 };
 
 /** Returns the frame that a chain upwards ends at; empty: the parents form a circle. */
-std::string rootOf(const std::map<std::string, Edge>& edges, const std::string& frame) {
+std::string findRoot(const std::map<std::string, Edge>& edges, const std::string& frame) {
     std::string root = frame;
     for (size_t steps = 0; steps <= edges.size(); ++steps) {
         const auto edge = edges.find(root);
@@ -81,15 +81,16 @@ std::string rootOf(const std::map<std::string, Edge>& edges, const std::string& 
 void findTransforms(Reader& log, std::vector<FoundPoses>& found) {
     std::map<std::string, Edge> edges;
     forEachTransform(log, [&](const SampleRef& at, const ros::TransformStamped& transform, bool is_static) {
-        if (edges.size() >= ros::TransformTree::max_frames && !edges.contains(nameOf(transform.child_frame_id))) return;
-        Edge& edge = edges[nameOf(transform.child_frame_id)];
-        const types::Time time = stampOf(transform.header.stamp, at.time);
-        if (edge.count++ == 0) edge.parent = nameOf(transform.header.frame_id), edge.first = time;
+        if (edges.size() >= ros::TransformTree::max_frames && !edges.contains(getName(transform.child_frame_id)))
+            return;
+        Edge& edge = edges[getName(transform.child_frame_id)];
+        const types::Time time = getStamp(transform.header.stamp, at.time);
+        if (edge.count++ == 0) edge.parent = getName(transform.header.frame_id), edge.first = time;
         edge.last = time;
         edge.moves |= !is_static;
     });
     for (const auto& [child, edge] : edges) {
-        const std::string root = edge.moves ? rootOf(edges, child) : "";
+        const std::string root = edge.moves ? findRoot(edges, child) : "";
         if (root.empty()) continue;
         for (const std::string& parent : std::set<std::string>{root, edge.parent})
             found.push_back({fmt::format("{}{}{}", parent, arrow, child), ros::TFMessage::type_name, parent, child,
@@ -101,7 +102,7 @@ void findTransforms(Reader& log, std::vector<FoundPoses>& found) {
 std::string frameOfFixes(Reader& log, const SampleRef& at) {
     if (log.streams()[at.stream].message != ros::NavSatFix::type_name) return "";
     ros::NavSatFix fix;
-    ros::decode(log.bytesOf(at), fix);
+    ros::decode(log.toBytes(at), fix);
     return fix.header.frame_id;
 }
 
@@ -131,7 +132,7 @@ std::string choices(Reader& log) {
 class Attitudes {
 public:
     Attitudes(Reader& log, const std::string& source) {
-        const size_t stream = log.indexOf(source);
+        const size_t stream = log.findIndex(source);
         if (log.streams()[stream].holds<types::Imu>())
             read<types::Imu>(log, stream);
         else if (log.streams()[stream].holds<types::Pose>())
@@ -252,8 +253,8 @@ types::Notices followFrames(Reader& log, const PoseSource& asked, types::WorldFr
     forEachTransform(log, [&](const SampleRef&, const ros::TransformStamped& transform, bool is_static) {
         stamped |= !is_static && transform.header.stamp != ros::Time{};
     });
-    Follower follower(nameOf(asked.source.substr(0, middle)), nameOf(asked.source.substr(middle + arrow.size())), frame,
-                      stamped);
+    Follower follower(getName(asked.source.substr(0, middle)), getName(asked.source.substr(middle + arrow.size())),
+                      frame, stamped);
     forEachTransform(log, [&](const SampleRef& at, const ros::TransformStamped& transform, bool is_static) {
         follower.add(at, transform, is_static);
     });
@@ -268,7 +269,7 @@ types::Notices followFrames(Reader& log, const PoseSource& asked, types::WorldFr
 }
 
 /** Returns what there is to say of fixes that became poses. */
-types::Notices noticesOf(Reader& log, const PoseSource& asked, size_t omitted, glm::dvec3 first) {
+types::Notices getNotices(Reader& log, const PoseSource& asked, size_t omitted, glm::dvec3 first) {
     constexpr double far = 1e5;  // [m]
     types::Notices notices;
     if (omitted > 0)
@@ -289,8 +290,8 @@ types::Notices noticesOf(Reader& log, const PoseSource& asked, size_t omitted, g
 }
 
 /** Returns the datum of a source, or else of the world. */
-types::Datum datumOf(Reader& log, const PoseSource& asked, const std::optional<types::Datum>& world,
-                     const types::Datum& first) {
+types::Datum findDatum(Reader& log, const PoseSource& asked, const std::optional<types::Datum>& world,
+                       const types::Datum& first) {
     if (asked.datum && world && !isSamePlace(*asked.datum, *world))
         refuseSource(
             log, asked,
@@ -320,7 +321,7 @@ types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream,
         types::Datum place = fix.place();
         if (!fix.hasPosition() || std::abs(place.height_m) > 1e7) continue;
         if (!datum) {
-            datum = datumOf(log, asked, world, place);
+            datum = findDatum(log, asked, world, place);
             made.child = frameOfFixes(log, at);
         }
         if (std::isnan(place.height_m)) place.height_m = datum->height_m;
@@ -334,7 +335,7 @@ types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream,
     Stream placed;
     placed.name = asked.stream;
     log.addPoses(std::move(placed), std::move(made));
-    return noticesOf(log, asked, omitted, first);
+    return getNotices(log, asked, omitted, first);
 }
 
 }  // namespace
@@ -371,7 +372,7 @@ std::vector<FoundPoses> findPoses(Reader& log) {
     return found;
 }
 
-std::string tableOf(const std::vector<FoundPoses>& found) {
+std::string makeTable(const std::vector<FoundPoses>& found) {
     std::string table =
         fmt::format("  {:24} {:44} {:28} {:>8} {:>26} {:>26}\n", "--pose", "type", "frames", "number", "first", "last");
     for (const FoundPoses& each : found)

@@ -53,7 +53,7 @@ struct FoundPoses {
 std::vector<FoundPoses> findPoses(Reader& log);
 
 /** Returns a table of them, a line each. */
-std::string tableOf(const std::vector<FoundPoses>& found);
+std::string makeTable(const std::vector<FoundPoses>& found);
 
 /** Makes the stream of a source's poses, in Rock's axes, at the times of their own stamps, or of their messages where
  *  these have none. A stream of the log that has this name already gets "_recorded" behind it.

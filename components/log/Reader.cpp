@@ -32,7 +32,7 @@ const Stream* Reader::find(const std::string& name) const {
     return find(by_topic);
 }
 
-size_t Reader::indexOf(const std::string& name) const {
+size_t Reader::findIndex(const std::string& name) const {
     if (const Stream* stream = find(name)) return static_cast<size_t>(stream - streams_.data());
     std::string names;
     for (const Stream& stream : streams_) names += (names.empty() ? "" : ", ") + stream.name;
@@ -113,7 +113,7 @@ types::SampleView Reader::sampleAt(const SampleRef& at) {
 
 void Reader::verify(const SampleRef& at) {
     if (!streams_[at.stream].sample) return;
-    if (const char* diagnostic = diagnosticOf(sampleAt(at))) failSample(at, diagnostic);
+    if (const char* diagnostic = findDiagnostic(sampleAt(at))) failSample(at, diagnostic);
 }
 
 void Reader::addSample(size_t number, types::Time received, types::Time time, uint64_t position) {
@@ -122,7 +122,7 @@ void Reader::addSample(size_t number, types::Time received, types::Time time, ui
 }
 
 void Reader::failSample(const SampleRef& at, const std::string& what) const {
-    throw types::ConfigError(path_, streams_[at.stream].name, "the sample " + placeOf(at) + " " + what);
+    throw types::ConfigError(path_, streams_[at.stream].name, "the sample " + getPlace(at) + " " + what);
 }
 
 void Reader::failType(const SampleRef& at, size_t wanted) const {
@@ -142,15 +142,15 @@ types::SampleRoom roomFor(size_t sample, types::SampleTypes& samples) {
     return room;
 }
 
-const char* diagnosticOf(types::SampleView sample) {
-    return std::visit([](const auto* held) { return types::diagnosticOf(*held); }, sample);
+const char* findDiagnostic(types::SampleView sample) {
+    return std::visit([](const auto* held) { return types::findDiagnostic(*held); }, sample);
 }
 
 namespace {
 
 constexpr LogFormat all_formats[] = {{".log", Storage::Pocolog}, {".mcap", Storage::Mcap}, {".db3", Storage::Db3}};
 
-const LogFormat* formatOf(const std::filesystem::path& path) { return types::findFormat(all_formats, path); }
+const LogFormat* getFormat(const std::filesystem::path& path) { return types::findFormat(all_formats, path); }
 
 /** Returns the files of the bag in a folder: those of its metadata.yaml, else the only one. Throws ConfigError for a
  *  folder with none, or with several and no metadata. */
@@ -171,7 +171,8 @@ std::vector<std::filesystem::path> filesOfBag(const std::filesystem::path& folde
     std::string names;
     if (files.empty())
         for (const auto& entry : std::filesystem::directory_iterator(folder, none))
-            if (const LogFormat* const format = formatOf(entry.path()); format && format->storage != Storage::Pocolog) {
+            if (const LogFormat* const format = getFormat(entry.path());
+                format && format->storage != Storage::Pocolog) {
                 files.push_back(entry.path());
                 names += (names.empty() ? "" : ", ") + entry.path().filename().string();
             }
@@ -207,15 +208,15 @@ public:
         return sum;
     }
     const std::string& layout(size_t stream) const override { return layouts_[stream]; }
-    std::span<const char> bytesOf(const SampleRef& at) override {
+    std::span<const char> toBytes(const SampleRef& at) override {
         const auto& [part, place] = places_[at.number];
-        return part->bytesOf(place);
+        return part->toBytes(place);
     }
 
 private:
     void add(Reader& part) {
         std::vector<size_t> numbers;
-        for (size_t i = 0; i < part.streams().size(); ++i) numbers.push_back(numberOf(part, i));
+        for (size_t i = 0; i < part.streams().size(); ++i) numbers.push_back(getNumber(part, i));
         for (const SampleRef& at : part.samples()) {
             places_.emplace_back(&part, at);
             addSample(numbers[at.stream], at.received, at.time, at.position);
@@ -225,7 +226,7 @@ private:
             gaps_.push_back(std::move(gap));
         }
     }
-    size_t numberOf(const Reader& part, size_t index) {
+    size_t getNumber(const Reader& part, size_t index) {
         const Stream& stream = part.streams()[index];
         const auto same = std::ranges::find(streams_, stream.name, &Stream::name);
         if (same != streams_.end() && same->type != stream.type)
@@ -254,7 +255,7 @@ private:
 };
 
 std::unique_ptr<Reader> openFile(const std::filesystem::path& path, AtDamage at_damage, types::WorldFrame foreign) {
-    const Storage storage = storageOf(path);
+    const Storage storage = getStorage(path);
     if (storage == Storage::Mcap) return std::make_unique<mcap::Reader>(path, at_damage, foreign);
     if (storage == Storage::Db3)
 #ifdef INSONIFY_SQLITE
@@ -270,7 +271,7 @@ std::unique_ptr<Reader> openFile(const std::filesystem::path& path, AtDamage at_
 }  // namespace
 
 const LogFormat* findLogFormat(const std::filesystem::path& path) {
-    const LogFormat* const format = formatOf(path);
+    const LogFormat* const format = getFormat(path);
     return format && format->isWritten() ? format : nullptr;
 }
 
@@ -278,8 +279,8 @@ std::string logEndings() {
     return types::alternativeEndings(all_formats, [](const LogFormat& format) { return format.isWritten(); });
 }
 
-Storage storageOf(const std::filesystem::path& path) {
-    const LogFormat* const format = formatOf(path);
+Storage getStorage(const std::filesystem::path& path) {
+    const LogFormat* const format = getFormat(path);
     return format ? format->storage : Storage::Pocolog;
 }
 
@@ -300,16 +301,16 @@ std::optional<unsigned> sequenceNumber(const std::filesystem::path& log) {
     return number;
 }
 
-std::map<unsigned, std::filesystem::path> sequenceOf(const std::filesystem::path& log) {
+std::map<unsigned, std::filesystem::path> findSequence(const std::filesystem::path& log) {
     std::map<unsigned, std::filesystem::path> files;
     if (!sequenceNumber(log)) return files;
     std::error_code failed;
-    const auto nameOf = [](const std::filesystem::path& file) { return file.stem().stem().string(); };
+    const auto getName = [](const std::filesystem::path& file) { return file.stem().stem().string(); };
     const auto folder = log.parent_path();
     for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, failed)) {
         const std::filesystem::path file = folder / entry.path().filename();
         if (const auto number = sequenceNumber(file); number && file.extension() == log.extension() &&
-                                                      nameOf(file) == nameOf(log) && entry.is_regular_file(failed))
+                                                      getName(file) == getName(log) && entry.is_regular_file(failed))
             files[*number] = file;
     }
     return files;
@@ -319,7 +320,7 @@ WholeLog openWholeLog(const std::filesystem::path& path, AtDamage at_damage, typ
     Parts parts;
     parts.push_back(openLog(path, at_damage, foreign));
     WholeLog whole{nullptr, {path}, {}};
-    const auto files = sequenceOf(path);
+    const auto files = findSequence(path);
     const auto isOfThisRun = [&](const Reader& part) {
         const auto same = [&](const char* key) { return part.metadatum(key) == parts.front()->metadatum(key); };
         return same("insonify_deployment") && same("insonify_seed");

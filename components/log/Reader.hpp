@@ -37,7 +37,7 @@ public:
     /** Finds a stream by its name, its topic, or "/task/port"; null when there is none. */
     const Stream* find(const std::string& name) const;
     /** Returns the index of a stream. Throws ConfigError with the names of the streams when there is none. */
-    size_t indexOf(const std::string& name) const;
+    size_t findIndex(const std::string& name) const;
     /** Returns the metadatum of the first stream that has this key; empty: there is none. */
     std::string metadatum(const std::string& key) const;
 
@@ -72,7 +72,7 @@ public:
     /** Returns the declared layout of a stream's samples: typelib's registry, or a message's schema. */
     virtual const std::string& layout(size_t stream) const = 0;
     /** Returns the bytes of one sample in its format, decompressed; valid until the next call. */
-    virtual std::span<const char> bytesOf(const SampleRef& at) = 0;
+    virtual std::span<const char> toBytes(const SampleRef& at) = 0;
 
     /** Calls `use(sample, ref)` for each sample of the stream, in order; the sample is valid only during the call. */
     template <class T, class Use>
@@ -85,7 +85,7 @@ public:
     }
     /** Calls `use(ref)` for each sample of the stream, in order. */
     void forEachRef(const std::string& stream, auto&& use) const {
-        const size_t index = indexOf(stream);
+        const size_t index = findIndex(stream);
         for (const SampleRef& at : samples_)
             if (at.stream == index) use(at);
     }
@@ -96,7 +96,7 @@ protected:
     virtual void decode(const SampleRef& at, types::SampleRoom room) = 0;
     [[noreturn]] void failSample(const SampleRef& at, const std::string& what) const;
     /** Returns the place of a sample for messages: "at byte 120". */
-    virtual std::string placeOf(const SampleRef& at) const { return "at byte " + std::to_string(at.position); }
+    virtual std::string getPlace(const SampleRef& at) const { return "at byte " + std::to_string(at.position); }
 
     /** Adds a sample of a declared stream to the index. */
     void addSample(size_t stream, types::Time received, types::Time time, uint64_t position);
@@ -119,7 +119,7 @@ private:
 types::SampleRoom roomFor(size_t sample, types::SampleTypes& samples);
 
 /** Returns how a sample contradicts itself, to follow "a sample"; null: it does not. */
-const char* diagnosticOf(types::SampleView sample);
+const char* findDiagnostic(types::SampleView sample);
 
 enum class Storage : uint8_t { Pocolog, Mcap, Db3 };
 
@@ -135,8 +135,8 @@ const LogFormat* findLogFormat(const std::filesystem::path& path);
 /** Returns the endings of the formats that are written, for a message: ".log or .mcap". */
 std::string logEndings();
 /** Returns the format of a file by its name; pocolog for other endings. */
-Storage storageOf(const std::filesystem::path& path);
-inline bool isMcap(const std::filesystem::path& path) { return storageOf(path) == Storage::Mcap; }
+Storage getStorage(const std::filesystem::path& path);
+inline bool isMcap(const std::filesystem::path& path) { return getStorage(path) == Storage::Mcap; }
 
 /** Opens a log of any format, see pocolog::Reader, mcap::Reader and db3::Reader, or the folder of a bag with all of its
  * files; a file with another ending is read as pocolog. Throws ConfigError for other files. @param foreign axes of
@@ -148,7 +148,7 @@ std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_d
 /** Returns a file's number in its sequence: 3 for x.3.log; none for x.log. */
 std::optional<unsigned> sequenceNumber(const std::filesystem::path& log);
 /** Returns the files of a log's sequence by their numbers, of which some may be missing; none for x.log. */
-std::map<unsigned, std::filesystem::path> sequenceOf(const std::filesystem::path& log);
+std::map<unsigned, std::filesystem::path> findSequence(const std::filesystem::path& log);
 
 /** A log of one file or several. */
 struct WholeLog {

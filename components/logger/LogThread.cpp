@@ -14,8 +14,8 @@ namespace insonify::logger {
 namespace {
 
 /** Returns the files that follow `log` from an earlier run by their number, also after missing numbers. */
-std::map<unsigned, std::filesystem::path> sequelsOf(const std::filesystem::path& log) {
-    auto sequels = log::sequenceOf(log);
+std::map<unsigned, std::filesystem::path> findSequels(const std::filesystem::path& log) {
+    auto sequels = log::findSequence(log);
     std::erase_if(sequels, [&](const auto& file) { return file.first <= *log::sequenceNumber(log); });
     return sequels;
 }
@@ -27,7 +27,7 @@ std::chrono::nanoseconds nanoseconds(double seconds) {
 }
 
 /** Returns x.1.log for x.0.log and for x.log. */
-std::filesystem::path sequelOf(const std::filesystem::path& log) {
+std::filesystem::path findSequel(const std::filesystem::path& log) {
     if (log::sequenceNumber(log)) return nextInSequence(log);
     return log.parent_path() / (log.stem().string() + ".1" + log.extension().string());
 }
@@ -35,13 +35,13 @@ std::filesystem::path sequelOf(const std::filesystem::path& log) {
 }  // namespace
 
 void refuseSequels(const std::filesystem::path& log) {
-    for (const auto& [number, sequel] : sequelsOf(log))
+    for (const auto& [number, sequel] : findSequels(log))
         if (log::isBeingWritten(sequel))
             throw types::ConfigError(sequel, "", "the log cannot be removed: another logger writes it");
 }
 
 void removeSequels(const std::filesystem::path& log) {
-    for (auto sequels = sequelsOf(log); !sequels.empty(); sequels.erase(std::prev(sequels.end())))
+    for (auto sequels = findSequels(log); !sequels.empty(); sequels.erase(std::prev(sequels.end())))
         log::removeLog(sequels.rbegin()->second);
 }
 
@@ -67,18 +67,18 @@ void Rotation::before(types::Time now) {
 
 void Rotation::removeOldest() const {
     const double room = *max_total_ - *max_size_;  // without that of the file that begins
-    auto files = log::sequenceOf(log_.path());
+    auto files = log::findSequence(log_.path());
     std::erase_if(files, [&](const auto& file) { return file.first < first_; });
-    const auto sizeOf = [&](const std::filesystem::path& file) {  // a file exceeds its limit by a part of a sample
+    const auto getSize = [&](const std::filesystem::path& file) {  // a file exceeds its limit by a part of a sample
         std::error_code none;
         const uintmax_t size = file == log_.path() ? log_.size() : std::filesystem::file_size(file, none);
         return std::min(static_cast<double>(size), *max_size_);
     };
     double total = 0;
-    for (const auto& [number, file] : files) total += sizeOf(file);
+    for (const auto& [number, file] : files) total += getSize(file);
     for (auto oldest = files.begin(); total > room && oldest != files.end() && oldest->second != log_.path();
          ++oldest) {
-        const double size = sizeOf(oldest->second);
+        const double size = getSize(oldest->second);
         if (log::removeLog(oldest->second)) total -= size;
     }
 }
@@ -254,7 +254,7 @@ void LogThread::refuse(Entry& entry, const std::string& why) {
 void LogThread::beginOutage(const std::string& why) {
     const bool is_empty = kept_at_opening_ == log_.kept();  // continues in the same empty file
     const bool is_unopened = log_.path() != opened_;        // at the rotation
-    sequel_ = is_empty || is_unopened ? log_.path() : sequelOf(log_.path());
+    sequel_ = is_empty || is_unopened ? log_.path() : findSequel(log_.path());
     next_try_ = Clock::now() + retry_period;
     std::lock_guard lock(mutex_);
     ++health_.outages;
@@ -267,7 +267,7 @@ void LogThread::tryAgain() {
     next_try_ = Clock::now() + retry_period;
     std::string failure;
     try {
-        if (std::filesystem::is_directory(sequel_)) sequel_ = sequelOf(sequel_);
+        if (std::filesystem::is_directory(sequel_)) sequel_ = findSequel(sequel_);
         log_.next(sequel_);
         opened_ = sequel_;
         for (; !pending_.empty(); pending_.erase(pending_.begin())) pending_.front()(log_);

@@ -102,7 +102,7 @@ public:
 
     /** Adds a sample of a stream, received at that time. Throws std::runtime_error once the file has failed. */
     void push(size_t stream, types::Time received, auto sample) {
-        const size_t bytes = bytesOf(*types::carriedSample(sample));
+        const size_t bytes = toBytes(*types::carriedSample(sample));
         Entry& entry = freeEntry(bytes);
         entry.stream = stream;
         entry.bytes = bytes;
@@ -130,7 +130,7 @@ private:
 
     /** Returns the size of a sample in memory, without that of texts in lists [B]. */
     template <class T>
-    static size_t bytesOf(const T& sample) {
+    static size_t toBytes(const T& sample) {
         size_t bytes = sizeof(T);
         if constexpr (types::Described<T>) {
             const auto add = [&]<class Value>(const types::Field&, const Value& value) {

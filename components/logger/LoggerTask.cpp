@@ -20,7 +20,7 @@ template <class T>
 constexpr bool in_sonar_frame = std::is_same_v<T, types::Sonar> || std::is_same_v<T, types::SonarDetections>;
 
 template <class Input>
-constexpr size_t sampleOf(const Input&) {
+constexpr size_t findSample(const Input&) {
     return types::sampleIndex<typename Input::Sample>();
 }
 
@@ -40,14 +40,14 @@ void checkInput(const framework::InputPortBase& port, const std::string& stream,
 }
 
 /** A JSON object. */
-std::string textOf(const types::Mount& mount) {
+std::string toText(const types::Mount& mount) {
     const glm::dvec3& p = mount.position;
     return fmt::format(R"({{"position": [{}, {}, {}], "roll_deg": {}, "pitch_deg": {}, "yaw_deg": {}}})", p.x, p.y, p.z,
                        mount.roll_deg, mount.pitch_deg, mount.yaw_deg);
 }
 
 /** Returns the deployment's properties by their aliases, with their present values. */
-std::vector<PropertyAlias> aliasesOf(const LoggerTask& logger, const std::vector<types::TaskRecord>& records) {
+std::vector<PropertyAlias> makeAliases(const LoggerTask& logger, const std::vector<types::TaskRecord>& records) {
     std::vector<PropertyAlias> aliases;
     for (const framework::PropertyAlias& alias : framework::propertyAliases(logger)) {
         const auto task = std::ranges::find(records, alias.task, &types::TaskRecord::name);
@@ -120,7 +120,7 @@ log::Metadata LoggerTask::streamMetadata(const framework::StreamName& stream) {
     return metadata;
 }
 
-std::string LoggerTask::bodyOf(const framework::InputPortBase& port) const {
+std::string LoggerTask::getBody(const framework::InputPortBase& port) const {
     std::set<std::string> logged;
     inputs_.forEach([&]<class Input>(const Input& input) {
         if (std::is_same_v<typename Input::Sample, types::Pose>) logged.insert(input.kept.name.path());
@@ -131,15 +131,15 @@ std::string LoggerTask::bodyOf(const framework::InputPortBase& port) const {
 }
 
 template <class Input>
-log::Metadata LoggerTask::metadataOf(const Input& input) {
+log::Metadata LoggerTask::getMetadata(const Input& input) {
     log::Metadata metadata = streamMetadata(input.kept.name);
     if constexpr (in_sonar_frame<typename Input::Sample>) {
         if (const auto khz = framework::upstreamNumber(input.port, {"frequency_khz", "absorption.frequency_khz"}))
             metadata["insonify_frequency_khz"] = fmt::format("{}", *khz);
         const auto mount = framework::upstreamMount(input.port);
         if (!mount) return metadata;
-        metadata["insonify_mount"] = textOf(*mount);
-        if (const std::string body = bodyOf(input.port); !body.empty()) metadata["insonify_body"] = body;
+        metadata["insonify_mount"] = toText(*mount);
+        if (const std::string body = getBody(input.port); !body.empty()) metadata["insonify_body"] = body;
     }
     return metadata;
 }
@@ -157,7 +157,7 @@ std::vector<std::string> LoggerTask::sharedFrames() const {
         const auto given = config->mcap.streams.find(stream);
         const bool is_given = given != config->mcap.streams.end() && given->second.frame_id;
         const std::string frame = is_given ? *given->second.frame_id : config->mcap.frame_id;
-        const Claim own{stream, textOf(*mount) + bodyOf(input.port)};
+        const Claim own{stream, toText(*mount) + getBody(input.port)};
         const Claim& first = claims.emplace(frame, own).first->second;
         if (first.place != own.place)
             shared.push_back(
@@ -240,7 +240,7 @@ void LoggerTask::recordProperties() {
     recorded_changes_ = changes;
     const std::vector<types::TaskRecord> records = environment().records();
     try {
-        properties_->record(records, now(), runMetadata(), aliasesOf(*this, records), framework::taskModels(*this));
+        properties_->record(records, now(), runMetadata(), makeAliases(*this, records), framework::taskModels(*this));
     } catch (const std::exception& failure) {
         if (!heals()) throw;
         warn(fmt::format("{} ends here: {}", config->property_file, failure.what()));
@@ -255,9 +255,9 @@ void LoggerTask::updateHook() {
         if (!config->record || environment().rehearsing) return input.port.clear();
         for (typename Input::Carried sample{}; input.port.readNew(sample);) {
             if (!input.kept.number) {
-                log::Metadata metadata = metadataOf(input);
+                log::Metadata metadata = getMetadata(input);
                 log::addSampleMetadata(types::carriedSample(sample), metadata);
-                thread_->declare(declaration(sampleOf(input), input.kept.name, std::move(metadata)));
+                thread_->declare(declaration(findSample(input), input.kept.name, std::move(metadata)));
                 input.kept.number = declared_++;
             }
             thread_->push(*input.kept.number, received, std::move(sample));
@@ -289,7 +289,7 @@ void LoggerTask::cleanupHook() {
     if (!std::exchange(has_started_, false)) return;  // the files of an earlier run stay
     inputs_.forEach([&](const auto& input) {
         if (input.kept.number) return;
-        declaration(sampleOf(input), input.kept.name, metadataOf(input))(*log_);
+        declaration(findSample(input), input.kept.name, getMetadata(input))(*log_);
         ++declared_;
     });
     log_->close();

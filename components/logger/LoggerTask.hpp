@@ -82,9 +82,9 @@ private:
     /** Returns the metadata of the log's next stream, with the current plans. */
     log::Metadata streamMetadata(const framework::StreamName& stream);
     /** Adds what is known of the sonar whose pings an input takes. */
-    log::Metadata metadataOf(const auto& input);
+    log::Metadata getMetadata(const auto& input);
     /** Returns the first stream of poses in the log that the pings of a port depend on; empty: none. */
-    std::string bodyOf(const framework::InputPortBase& port) const;
+    std::string getBody(const framework::InputPortBase& port) const;
     /** Returns the frames that several sonars claim in an MCAP file. */
     std::vector<std::string> sharedFrames() const;
 

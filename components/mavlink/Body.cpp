@@ -31,7 +31,7 @@ constexpr const char* not_finite = "position and orientation are not finite, or 
 
 }  // namespace
 
-types::Pose poseOf(const AttitudeQuaternion& attitude, const LocalPositionNed& position) {
+types::Pose getPose(const AttitudeQuaternion& attitude, const LocalPositionNed& position) {
     const glm::dvec3 velocity{position.vx, position.vy, position.vz};
     glm::dvec3 place{position.x, position.y, position.z};
     if (isFinite(velocity)) place += velocity * between(position.time_boot_ms, attitude.time_boot_ms).seconds();
@@ -41,7 +41,7 @@ types::Pose poseOf(const AttitudeQuaternion& attitude, const LocalPositionNed& p
     return pose;
 }
 
-types::Pose poseOf(const VisionPositionEstimate& estimate) {
+types::Pose getPose(const VisionPositionEstimate& estimate) {
     const glm::dquat turned = glm::angleAxis(double{estimate.yaw}, glm::dvec3(0, 0, 1)) *
                               glm::angleAxis(double{estimate.pitch}, glm::dvec3(0, 1, 0)) *
                               glm::angleAxis(double{estimate.roll}, glm::dvec3(1, 0, 0));
@@ -53,7 +53,7 @@ bool Body::wants(uint32_t message) const {
     return message == AttitudeQuaternion::kind.message || message == LocalPositionNed::kind.message;
 }
 
-bool Body::isOf(const Frame& frame) const {
+bool Body::isInPart(const Frame& frame) const {
     return wants(frame.message) && frame.system == config_.system_id &&
            frame.component == config_.component_id.value_or(frame.component);
 }
@@ -72,9 +72,9 @@ bool Body::listensTo(const Sender& sender, Time now) {
 
 Body::Taken Body::take(const Frame& frame, uint64_t way, Time now) {
     if (!listensTo({way, frame.component}, now)) return {{}, "from another sender while the first is still sending"};
-    if (const auto attitude = messageOf<AttitudeQuaternion>(frame)) return take(*attitude, now);
-    if (const auto position = messageOf<LocalPositionNed>(frame)) return take(*position, now);
-    if (const auto estimate = messageOf<VisionPositionEstimate>(frame)) return take(*estimate, now);
+    if (const auto attitude = makeMessage<AttitudeQuaternion>(frame)) return take(*attitude, now);
+    if (const auto position = makeMessage<LocalPositionNed>(frame)) return take(*position, now);
+    if (const auto estimate = makeMessage<VisionPositionEstimate>(frame)) return take(*estimate, now);
     return {};
 }
 
@@ -119,7 +119,7 @@ Body::Taken Body::take(const AttitudeQuaternion& attitude, Time now) {
     if (gap > max_gap || Time{} - gap > max_gap)
         return {{}, incomplete(AttitudeQuaternion::name, LocalPositionNed::name, now)};
     incomplete_since_.reset();
-    return stamped(poseOf(attitude, *position_), reading);
+    return stamped(getPose(attitude, *position_), reading);
 }
 
 Body::Taken Body::take(const LocalPositionNed& position, Time now) {
@@ -133,7 +133,7 @@ Body::Taken Body::take(const LocalPositionNed& position, Time now) {
 }
 
 Body::Taken Body::take(const VisionPositionEstimate& estimate, Time now) {
-    const types::Pose pose = poseOf(estimate);
+    const types::Pose pose = getPose(estimate);
     if (!types::isUsable(pose)) return {{}, not_finite};
     constexpr uint64_t latest = uint64_t{1} << 60;  // [us]; more than 36,000 years
     if (estimate.usec > latest) return {{}, "the stamp is out of bounds"};

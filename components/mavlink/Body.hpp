@@ -114,7 +114,7 @@ struct PayloadReader {
 
 /** Returns a message as a frame. */
 template <class Message>
-Frame frameOf(const Message& message, uint8_t system, uint8_t component, uint8_t sequence = 0, int version = 2) {
+Frame getFrame(const Message& message, uint8_t system, uint8_t component, uint8_t sequence = 0, int version = 2) {
     Frame frame{version, sequence, system, component, Message::kind.message, {}};
     PayloadWriter writer{frame.payload};
     Message::describe(message, writer);
@@ -124,7 +124,7 @@ Frame frameOf(const Message& message, uint8_t system, uint8_t component, uint8_t
 /** Returns the message of a frame; none when the frame has another message. Restores the trailing zeros that version 2
  *  omits, and ignores extension fields. */
 template <class Message>
-std::optional<Message> messageOf(const Frame& frame) {
+std::optional<Message> makeMessage(const Frame& frame) {
     if (frame.message != Message::kind.message) return {};
     std::array<uint8_t, Message::kind.size> payload{};
     std::copy_n(frame.payload.begin(), std::min(payload.size(), frame.payload.size()), payload.begin());
@@ -194,8 +194,8 @@ struct PoseConfig {
 
 /** Return poses in our axes (world x north, y west, z up; body x forward, y left, z up) from messages in MAVLink's
  *  axes. Values that the message does not have are unknown; the time is 0. */
-types::Pose poseOf(const AttitudeQuaternion& attitude, const LocalPositionNed& position);
-types::Pose poseOf(const VisionPositionEstimate& estimate);
+types::Pose getPose(const AttitudeQuaternion& attitude, const LocalPositionNed& position);
+types::Pose getPose(const VisionPositionEstimate& estimate);
 
 /** The sender of a message. The same component at two addresses counts as two senders. */
 struct Sender {
@@ -223,7 +223,7 @@ public:
         std::string diagnostic;  ///< Why the message was dropped; empty when it was not.
     };
     /** Returns whether the frame is a message of this body's source and of this body. */
-    bool isOf(const Frame& frame) const;
+    bool isInPart(const Frame& frame) const;
     /** Returns whether this body's source uses the message. */
     bool wants(uint32_t message) const;
     Taken take(const Frame& frame, uint64_t way, types::Time now);

@@ -19,7 +19,7 @@ struct Extent {
 };
 
 /** Returns the sizes of the frame that begins with the first byte; none when the bytes end within the frame. */
-std::optional<Extent> extentOf(std::span<const uint8_t> bytes) {
+std::optional<Extent> getExtent(std::span<const uint8_t> bytes) {
     if (bytes.size() < header_1) return {};
     if (bytes[0] == magic_1) {
         const Extent extent{header_1, bytes[1]};
@@ -29,7 +29,7 @@ std::optional<Extent> extentOf(std::span<const uint8_t> bytes) {
     return extent.whole() <= bytes.size() ? std::optional(extent) : std::nullopt;
 }
 
-Frame frameOf(std::span<const uint8_t> bytes, const Extent& extent) {
+Frame getFrame(std::span<const uint8_t> bytes, const Extent& extent) {
     const auto payload = bytes.subspan(extent.header, extent.payload);
     Frame frame{.payload = {payload.begin(), payload.end()}};
     if (bytes[0] == magic_1) {
@@ -47,12 +47,12 @@ Frame frameOf(std::span<const uint8_t> bytes, const Extent& extent) {
     return frame;
 }
 
-uint16_t sumOf(std::span<const uint8_t> behind_magic, uint8_t crc_extra) {
+uint16_t computeSum(std::span<const uint8_t> behind_magic, uint8_t crc_extra) {
     return crc(std::span(&crc_extra, 1), crc(behind_magic));
 }
 
 bool addsUp(std::span<const uint8_t> bytes, const Extent& extent, uint8_t crc_extra) {
-    return device::read<uint16_t>(bytes, extent.sum()) == sumOf(bytes.subspan(1, extent.sum() - 1), crc_extra);
+    return device::read<uint16_t>(bytes, extent.sum()) == computeSum(bytes.subspan(1, extent.sum() - 1), crc_extra);
 }
 
 /** Reads the frames of a datagram in order. */
@@ -69,10 +69,10 @@ private:
     /** Reads a frame, if there is one, and returns the number of bytes to skip. */
     size_t step() {
         if (bytes_[0] != magic_1 && bytes_[0] != magic_2) return refuse("bytes that are no frame", 1);
-        const auto extent = extentOf(bytes_);
+        const auto extent = getExtent(bytes_);
         if (!extent) return refuse("a frame that is cut off", 1);
         if ((extent->flags & ~is_signed) != 0) return refuse("a frame with unknown flags", extent->whole());
-        Frame frame = frameOf(bytes_, *extent);
+        Frame frame = getFrame(bytes_, *extent);
         const auto kind = std::ranges::find(kinds_, frame.message, &Kind::message);
         if (kind == kinds_.end()) return extent->whole();
         if (!addsUp(bytes_, *extent, kind->crc_extra)) return refuse("a frame with a wrong checksum", 1);
@@ -120,7 +120,7 @@ Bytes Frame::bytes(uint8_t crc_extra) const {
                static_cast<uint8_t>(message >> 8),
                static_cast<uint8_t>(message >> 16)};
     all.insert(all.end(), payload.begin(), payload.begin() + static_cast<std::ptrdiff_t>(size));
-    device::append(all, sumOf(std::span<const uint8_t>(all).subspan(1), crc_extra));
+    device::append(all, computeSum(std::span<const uint8_t>(all).subspan(1), crc_extra));
     return all;
 }
 

@@ -8,7 +8,7 @@ namespace {
 constexpr uint8_t our_system = 255, our_component = 190;  // those of a ground station
 constexpr types::Time request_period{1'000'000};
 
-std::string textOf(const Frame& frame) {
+std::string toText(const Frame& frame) {
     const char* name = frame.message == AttitudeQuaternion::kind.message ? AttitudeQuaternion::name
                        : frame.message == LocalPositionNed::kind.message ? LocalPositionNed::name
                                                                          : VisionPositionEstimate::name;
@@ -45,7 +45,7 @@ bool PoseTask::startHook() {
     requested_ = {};
     has_written_ = false;
     outputs_.forEach([this](auto& output) {
-        output.kept.body = std::make_unique<Body>(*entryOf(output.port.name()), config->origin);
+        output.kept.body = std::make_unique<Body>(*findEntry(output.port.name()), config->origin);
     });
     return true;
 }
@@ -72,7 +72,7 @@ void PoseTask::take(const Frame& frame, device::Client client) {
     bool is_wanted = false, is_of_one = false;
     outputs_.forEach([&](auto& output) {
         is_wanted |= output.kept.body->wants(frame.message);
-        if (!output.kept.body->isOf(frame)) return;
+        if (!output.kept.body->isInPart(frame)) return;
         is_of_one = true;
         const Body::Taken taken = output.kept.body->take(frame, client.number, now());
         if (!taken.diagnostic.empty()) drops_.add(output.port.name() + ": " + taken.diagnostic);
@@ -80,7 +80,7 @@ void PoseTask::take(const Frame& frame, device::Client client) {
         has_written_ = true;
         output.port.write(*taken.pose);
     });
-    if (is_wanted && !is_of_one) others_.add(textOf(frame));
+    if (is_wanted && !is_of_one) others_.add(toText(frame));
 }
 
 void PoseTask::request(types::Time now) {
@@ -106,7 +106,7 @@ void PoseTask::requestFor(const Body& body, device::Client client, types::Time n
 
 template <class Message>
 void PoseTask::send(const Message& message, device::Client client) {
-    const Frame frame = frameOf(message, our_system, our_component, peers_[client]++);
+    const Frame frame = getFrame(message, our_system, our_component, peers_[client]++);
     network_->send(client, frame.bytes(Message::kind.crc_extra));
 }
 

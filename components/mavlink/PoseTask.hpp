@@ -35,7 +35,7 @@ public:
     /** Wakes the task for datagrams that arrived before it ran, and for requests [s]. */
     double wakeAfter() const override { return 0.5; }
     /** Returns the UDP port, for tests with port 0. */
-    uint16_t port() const { return network_->portOf(0); }
+    uint16_t port() const { return network_->getPort(0); }
 
 private:
     bool configureHook() override;

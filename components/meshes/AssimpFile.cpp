@@ -27,7 +27,7 @@ namespace {
 
 static_assert(std::is_same_v<ai_real, float>);
 
-Surface surfaceOf(const aiMesh& from) {
+Surface getSurface(const aiMesh& from) {
     Surface surface;
     surface.positions.reserve(from.mNumVertices);
     for (unsigned i = 0; i < from.mNumVertices; ++i)
@@ -42,7 +42,7 @@ Surface surfaceOf(const aiMesh& from) {
 }
 
 /** Returns a placing for each mesh of each node, without recursion. */
-std::vector<FileMeshes::Placing> placingsOf(const aiScene& from, const glm::dmat4& world_from_file) {
+std::vector<FileMeshes::Placing> getPlacings(const aiScene& from, const glm::dmat4& world_from_file) {
     struct Visit {
         const aiNode* node;
         glm::dmat4 world_from_parent;
@@ -149,9 +149,9 @@ FileMeshes readByAssimp(const std::filesystem::path& file, MeshAxes axes) {
         meshes.materials.push_back(from->mMaterials[i]->GetName().C_Str());
     for (unsigned i = 0; i < from->mNumMeshes; ++i) {
         const aiMesh& mesh = *from->mMeshes[i];
-        meshes.parts.push_back({mesh.mName.C_Str(), mesh.mMaterialIndex, surfaceOf(mesh)});
+        meshes.parts.push_back({mesh.mName.C_Str(), mesh.mMaterialIndex, getSurface(mesh)});
     }
-    meshes.placings = placingsOf(*from, axes == MeshAxes::ZUp ? z_up_from_y_up : glm::dmat4(1));
+    meshes.placings = getPlacings(*from, axes == MeshAxes::ZUp ? z_up_from_y_up : glm::dmat4(1));
     return meshes;
 }
 

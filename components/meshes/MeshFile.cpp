@@ -136,7 +136,7 @@ void await(pid_t process, const std::filesystem::path& file, const ReadLimits& l
 }
 
 /** Returns the meshes of a file at the same indices; without triangles if no triangle is usable. */
-std::vector<types::Mesh> meshesOf(FileMeshes& from, types::Notices& notices) {
+std::vector<types::Mesh> getMeshes(FileMeshes& from, types::Notices& notices) {
     std::vector<types::Mesh> meshes(from.parts.size());
     DroppedTriangles dropped;
     for (size_t i = 0; i < meshes.size(); ++i) {
@@ -170,7 +170,7 @@ types::GeometryPtr readApart(const std::filesystem::path& file, MeshAxes axes) {
     FileMeshes from = readMeshesApart(file, axes, limits);
     auto geometry = std::make_shared<types::Geometry>();
     for (const std::string& name : from.materials) geometry->materials.emplace_back().name = name;
-    geometry->meshes = meshesOf(from, geometry->notices);
+    geometry->meshes = getMeshes(from, geometry->notices);
     for (const FileMeshes::Placing& placing : from.placings)
         if (!geometry->meshes[placing.part].indices.empty())
             geometry->objects.push_back({placing.name, static_cast<int>(placing.part), placing.world_from_part});
@@ -211,7 +211,7 @@ FileMeshes readMeshesApart(const std::filesystem::path& file, MeshAxes axes, con
 }
 
 types::GeometryPtr readMeshFile(const std::filesystem::path& file, MeshAxes axes) {
-    const std::string extension = extensionOf(file);
+    const std::string extension = getExtension(file);
     if (isGltf(file)) return readGltfMesh(file, axes);
     if (extension == ".dae") return readApart(file, axes);
     if (extension == ".obj" || extension == ".stl" || extension == ".ply") return readApart(file, MeshAxes::AsStored);
@@ -222,7 +222,7 @@ types::GeometryPtr readMeshFile(const std::filesystem::path& file, MeshAxes axes
 
 std::string unitWarning(const std::filesystem::path& file, const glm::dvec3& size, const char* remedy) {
     constexpr double longest_ship = 500, flattest = 0.1;
-    const std::string extension = extensionOf(file);
+    const std::string extension = getExtension(file);
     const double most = std::max({size.x, size.y, size.z}), least = std::min({size.x, size.y, size.z});
     if ((extension != ".stl" && extension != ".obj" && extension != ".ply") || most < longest_ship ||
         least < flattest * most)
@@ -237,10 +237,10 @@ Scene readMeshScene(const std::filesystem::path& file) {
     const types::GeometryPtr read = readMeshFile(file, MeshAxes::ZUp);
     types::Geometry geometry = *read;
     Scene scene;
-    if (extensionOf(file) == ".dae")  // its turn is what both readings differ by
+    if (getExtension(file) == ".dae")  // its turn is what both readings differ by
         scene.z_up_from_file = geometry.objects.front().world_from_object *
                                glm::inverse(readMeshFile(file, MeshAxes::AsStored)->objects.front().world_from_object);
-    const glm::dvec3 size = types::extentOf(geometry).size();
+    const glm::dvec3 size = types::getExtent(geometry).size();
     if (const std::string warning = unitWarning(file, size, "set placement.scale: 0.001"); !warning.empty())
         geometry.notices.push_back(types::warning(warning));
     const std::string name = file.stem().string();

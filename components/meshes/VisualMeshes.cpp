@@ -94,7 +94,7 @@ int VisualMeshes::mergeMesh(const types::Geometry& from, int index, const Look& 
 types::Extent VisualMeshes::extent(const std::vector<Placing>& placings) const {
     types::Extent box;
     for (const Placing& placing : placings)
-        box.add(types::extentOf(geometry_.meshes[static_cast<size_t>(placing.mesh)], placing.visual_from_object));
+        box.add(types::getExtent(geometry_.meshes[static_cast<size_t>(placing.mesh)], placing.visual_from_object));
     return box;
 }
 

@@ -60,7 +60,7 @@ constexpr int max_picture_side = 32768;  ///< Max side of pictures, checked befo
 constexpr int max_corners = 2049;        ///< Max vertices along each side.
 
 /** Returns the pixels of one side that become vertices: evenly spaced, including both ends. */
-std::vector<int> cornersOf(int pixels) {
+std::vector<int> getCorners(int pixels) {
     const int count = std::min(pixels, max_corners);
     std::vector<int> corners;
     for (int i = 0; i < count; ++i) corners.push_back(static_cast<int>(int64_t{i} * (pixels - 1) / (count - 1)));
@@ -116,7 +116,7 @@ Surface readHeightmap(const std::filesystem::path& file, glm::dvec3 size) {
         stbi_load_16(file.c_str(), &width, &height, &channels, 1), stbi_image_free);
     if (!pixels) throw std::runtime_error(fmt::format("is damaged ({})", stbi_failure_reason()));
 
-    const std::vector<int> columns = cornersOf(width), rows = cornersOf(height);
+    const std::vector<int> columns = getCorners(width), rows = getCorners(height);
     Surface surface;
     for (const int row : rows)
         for (const int column : columns) {
@@ -168,7 +168,7 @@ std::string leftOutText(const std::vector<std::string>& visuals, const std::stri
 
 }  // namespace
 
-types::Diagnostic faultOf(const Shape& shape) {
+types::Diagnostic findFault(const Shape& shape) {
     const auto checked = [](const char* key, std::initializer_list<double> sizes) {
         for (const double size : sizes)
             if (!(size >= 0)) return types::Diagnostic{key, fmt::format("is {}; must not be negative", size)};
@@ -205,7 +205,7 @@ int WorldBuilder::addNode(const std::string& name, int parent, const glm::dmat4&
 
 void WorldBuilder::addVisual(const std::string& name, int node, const glm::dmat4& node_from_visual, const Shape& shape,
                              const Look& look, const Drawing& drawing) {
-    for (const Placing& placing : placingsOf(name, shape, look)) {
+    for (const Placing& placing : getPlacings(name, shape, look)) {
         const glm::dmat4 node_from_object = node_from_visual * placing.visual_from_object;
         const glm::dmat4 world_from_object = worldFromNode(node) * node_from_object;
         if (!isFinite(world_from_object) || glm::determinant(glm::dmat3(node_from_object)) == 0) {
@@ -237,7 +237,7 @@ Scene WorldBuilder::take() {
     return std::move(scene_);
 }
 
-std::vector<Placing> WorldBuilder::placingsOf(const std::string& name, const Shape& shape, const Look& look) {
+std::vector<Placing> WorldBuilder::getPlacings(const std::string& name, const Shape& shape, const Look& look) {
     using Placings = std::vector<Placing>;
     return std::visit(
         Overloaded{

@@ -106,7 +106,7 @@ public:
     scene::Scene take();
 
 private:
-    std::vector<Placing> placingsOf(const std::string& name, const Shape& shape, const Look& look);
+    std::vector<Placing> getPlacings(const std::string& name, const Shape& shape, const Look& look);
     std::vector<Placing> placingsOfMesh(const std::string& name, const MeshShape& mesh, const Look& look);
     std::vector<Placing> placingsOfHeightmap(const std::string& name, const HeightmapShape& map, const Look& look);
 
@@ -127,6 +127,6 @@ private:
 };
 
 /** Returns an invalid size of a shape: its key in SDF, and the reason. The message is empty if all sizes are valid. */
-types::Diagnostic faultOf(const Shape& shape);
+types::Diagnostic findFault(const Shape& shape);
 
 }  // namespace insonify::meshes

@@ -16,18 +16,18 @@ namespace {
 
 /** The random numbers of each beam: constants of the instrument, and errors that differ from ping to ping. */
 enum Channel : uint64_t { Scale, Bias, Velocity, Range, Dropout };
-uint64_t channelOf(Channel channel, size_t beam) { return 200 + beam_count * channel + beam; }
+uint64_t getChannel(Channel channel, size_t beam) { return 200 + beam_count * channel + beam; }
 
 }  // namespace
 
-const types::Mesh& Bottom::meshOf(size_t object) const {
+const types::Mesh& Bottom::getMesh(size_t object) const {
     const types::Geometry& geometry = *snapshot_->geometry;
     return geometry.meshes[static_cast<size_t>(geometry.objects[object].mesh)];
 }
 
 const types::Mesh& Bottom::posed(const types::DeformedObject& deformed) {
-    const auto found = posed_.try_emplace(deformed.object, meshOf(deformed.object)).first;
-    types::poseMesh(types::poseOf(*snapshot_, deformed, *found->second.deformation), found->second);
+    const auto found = posed_.try_emplace(deformed.object, getMesh(deformed.object)).first;
+    types::poseMesh(types::getPose(*snapshot_, deformed, *found->second.deformation), found->second);
     return found->second;
 }
 
@@ -50,14 +50,14 @@ void Bottom::take(types::SnapshotPtr snapshot) {
     const std::vector<types::Object>& objects = snapshot_->geometry->objects;
     if (is_other) {
         placed_.assign(objects.size(), {});
-        for (size_t i = 0; i < objects.size(); ++i) place(i, objects[i].world_from_object, meshOf(i));
+        for (size_t i = 0; i < objects.size(); ++i) place(i, objects[i].world_from_object, getMesh(i));
         changed_.clear();
         posed_.clear();
     }
-    for (const size_t object : changed_) place(object, objects[object].world_from_object, meshOf(object));
+    for (const size_t object : changed_) place(object, objects[object].world_from_object, getMesh(object));
     changed_.clear();
     for (const types::MovedObject& moved : snapshot_->moved) {
-        place(moved.object, moved.world_from_object, meshOf(moved.object));
+        place(moved.object, moved.world_from_object, getMesh(moved.object));
         changed_.push_back(moved.object);
     }
     for (const types::DeformedObject& deformed : snapshot_->deformed) {
@@ -131,19 +131,19 @@ Dvl::Dvl(const DvlConfig& config)
       beams_(janusBeams(config.slant_deg, config.beam_azimuth_deg)),
       cosine_(std::cos(types::radians(config.slant_deg))) {
     for (size_t i = 0; i < beam_count; ++i) {
-        scale_[i] = config.errors.scale_error * normal(config.sensor.randomSeed(), channelOf(Scale, i), {});
-        bias_[i] = config.errors.velocity_bias * normal(config.sensor.randomSeed(), channelOf(Bias, i), {});
+        scale_[i] = config.errors.scale_error * normal(config.sensor.randomSeed(), getChannel(Scale, i), {});
+        bias_[i] = config.errors.velocity_bias * normal(config.sensor.randomSeed(), getChannel(Bias, i), {});
     }
 }
 
 double Dvl::range(size_t beam, const Motion& motion, const Bottom& bottom) const {
-    if (config_.errors.dropout > uniform(config_.sensor.randomSeed(), channelOf(Dropout, beam), motion.time))
+    if (config_.errors.dropout > uniform(config_.sensor.randomSeed(), getChannel(Dropout, beam), motion.time))
         return types::Pose::unknown;
     const glm::dvec3 direction = motion.orientation * beams_[beam];
     const auto met = bottom.range(motion.position, direction, config_.max_altitude / cosine_);
     if (!met || *met * cosine_ < config_.min_altitude) return types::Pose::unknown;
     const double noise =
-        config_.errors.range_noise * normal(config_.sensor.randomSeed(), channelOf(Range, beam), motion.time);
+        config_.errors.range_noise * normal(config_.sensor.randomSeed(), getChannel(Range, beam), motion.time);
     return std::max(*met + noise, 0.0);
 }
 
@@ -166,7 +166,7 @@ void Dvl::measure(const Motion& motion, const Bottom& bottom, types::Dvl& report
         if (std::isnan(reported.beam_ranges[i])) continue;
         const double along = glm::dot(beams_[i], velocity);
         const double noise =
-            config_.errors.velocity_noise * normal(config_.sensor.randomSeed(), channelOf(Velocity, i), motion.time);
+            config_.errors.velocity_noise * normal(config_.sensor.randomSeed(), getChannel(Velocity, i), motion.time);
         reported.beam_velocities[i] = (1 + scale_[i]) * along + bias_[i] + noise;
         reported.beam_velocity_variances[i] = variance(along);
     }
@@ -188,7 +188,7 @@ void Dvl::solve(types::Dvl& reported) const {
     reported.cov_velocity = solution ? solution->covariance : types::Pose::unknownMatrix();
 }
 
-types::Pose velocityOf(const types::Dvl& dvl) {
+types::Pose getVelocity(const types::Dvl& dvl) {
     types::Pose pose;
     pose.time = dvl.time;
     pose.source_frame = pose.target_frame = "dvl";

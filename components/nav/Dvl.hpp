@@ -36,7 +36,7 @@ private:
         glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
     };
     void place(size_t object, const glm::dmat4& world_from_object, const types::Mesh& mesh);
-    const types::Mesh& meshOf(size_t object) const;
+    const types::Mesh& getMesh(size_t object) const;
     /** Returns the mesh of an object in the shape of the snapshot. */
     const types::Mesh& posed(const types::DeformedObject& deformed);
     std::optional<double> rangeOfScene(const glm::dvec3& from, const glm::dvec3& direction, double farthest) const;
@@ -145,6 +145,6 @@ private:
 
 /** Returns the velocity as Rock's DVL drivers report it: in the axes of the instrument, frame "dvl"; other fields are
  *  unknown. */
-types::Pose velocityOf(const types::Dvl& dvl);
+types::Pose getVelocity(const types::Dvl& dvl);
 
 }  // namespace insonify::nav

@@ -9,7 +9,7 @@
 namespace insonify::nav {
 namespace {
 
-uint64_t bitsOf(uint64_t seed, uint64_t channel, types::Time time) {
+uint64_t getBits(uint64_t seed, uint64_t channel, types::Time time) {
     return types::hashed(seed, channel, static_cast<uint64_t>(time.microseconds));
 }
 
@@ -21,13 +21,13 @@ double lastStep(const AxisErrors& errors) {
 }  // namespace
 
 double normal(uint64_t seed, uint64_t channel, types::Time time) {
-    const uint64_t bits = bitsOf(seed, channel, time);
+    const uint64_t bits = getBits(seed, channel, time);
     const double radius = std::sqrt(-2 * std::log(types::unit(bits >> 32)));
     return radius * std::cos(2 * std::numbers::pi * types::unit(bits & 0xffffffffu));
 }
 
 double uniform(uint64_t seed, uint64_t channel, types::Time time) {
-    return types::unit(bitsOf(seed, channel, time) >> 32);
+    return types::unit(getBits(seed, channel, time) >> 32);
 }
 
 double WanderingBias::at(types::Time time) {
@@ -53,7 +53,7 @@ double Axis::measure(double truth, double constant_bias, types::Time time, doubl
     return errors_.range ? std::clamp(reported, -lastStep(errors_), lastStep(errors_)) : reported;
 }
 
-double varianceOf(const AxisErrors& errors, double interval) {
+double computeVariance(const AxisErrors& errors, double interval) {
     const double noise = errors.noise_density > 0 ? errors.noise_density * errors.noise_density / interval : 0;
     return noise + errors.bias_deviation * errors.bias_deviation + errors.resolution * errors.resolution / 12;
 }

@@ -99,6 +99,6 @@ private:
 
 /** Returns the variance of an axis' readings, without the constant bias [unit^2]. The steps of the resolution
  *  contribute a twelfth of their square. */
-double varianceOf(const AxisErrors& errors, double interval);
+double computeVariance(const AxisErrors& errors, double interval);
 
 }  // namespace insonify::nav

@@ -18,7 +18,7 @@ std::array<std::array<double, 2>, 3> deviations(const FixErrors& errors) {
              {errors.vertical, errors.wander_vertical}}};
 }
 
-WanderingBias wanderOf(const FixConfig& config, size_t axis) {
+WanderingBias makeWander(const FixConfig& config, size_t axis) {
     return {deviations(config.errors)[axis][1], config.errors.wander_time, config.sensor.randomSeed(),
             wander_of_fix + axis};
 }
@@ -26,7 +26,7 @@ WanderingBias wanderOf(const FixConfig& config, size_t axis) {
 }  // namespace
 
 FixReceiver::FixReceiver(const FixConfig& config)
-    : config_(config), wander_{wanderOf(config, 0), wanderOf(config, 1), wanderOf(config, 2)} {}
+    : config_(config), wander_{makeWander(config, 0), makeWander(config, 1), makeWander(config, 2)} {}
 
 types::Pose FixReceiver::measure(const types::Pose& antenna) {
     types::Pose measured;
@@ -47,7 +47,7 @@ types::Pose FixReceiver::measure(const types::Pose& antenna) {
     return measured;
 }
 
-types::Fix fixOf(const types::Pose& measured, const types::Datum& datum) {
+types::Fix makeFix(const types::Pose& measured, const types::Datum& datum) {
     types::Fix fix;
     fix.time = measured.time;
     const types::Datum place = geodetic(datum, enu_axes.worldFromRock(measured.position));

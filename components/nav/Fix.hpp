@@ -56,6 +56,6 @@ private:
 };
 
 /** Returns a measured position on the earth; without a solution where the position is unknown. */
-types::Fix fixOf(const types::Pose& measured, const types::Datum& datum);
+types::Fix makeFix(const types::Pose& measured, const types::Datum& datum);
 
 }  // namespace insonify::nav

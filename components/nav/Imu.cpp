@@ -19,7 +19,7 @@ WanderingBias attitudeError(const ImuConfig& config, uint64_t axis) {
 }
 
 /** Returns the rotation of a rotation vector [rad]. */
-glm::dquat turnOf(const glm::dvec3& vector) {
+glm::dquat computeTurn(const glm::dvec3& vector) {
     const double angle = glm::length(vector);
     return angle > 0 ? glm::angleAxis(angle, vector / angle) : glm::dquat(1, 0, 0, 0);
 }
@@ -61,7 +61,7 @@ void Imu::writeAttitude(const Motion& motion, types::Imu& imu) {
         const double deviation = types::radians(i == 2 ? errors.heading_deviation_deg : errors.tilt_deviation_deg);
         variance[i] = deviation * deviation;
     }
-    imu.orientation = turnOf(error) * motion.orientation;
+    imu.orientation = computeTurn(error) * motion.orientation;
     const glm::dmat3 world_from_sensor = glm::mat3_cast(motion.orientation);
     const glm::dmat3 in_world{{variance.x, 0, 0}, {0, variance.y, 0}, {0, 0, variance.z}};
     imu.cov_orientation = glm::transpose(world_from_sensor) * in_world * world_from_sensor;
@@ -74,13 +74,13 @@ types::Imu Imu::measure(const Motion& motion) {
     imu.time = motion.time;
     imu.angular_velocity = measured(gyroscope_, truth.angular_rate, config_.gyroscope.bias, motion);
     imu.linear_acceleration = measured(accelerometer_, truth.specific_force, config_.accelerometer.bias, motion);
-    imu.cov_angular_velocity = glm::dmat3(varianceOf(config_.gyroscope, interval_));
-    imu.cov_linear_acceleration = glm::dmat3(varianceOf(config_.accelerometer, interval_));
+    imu.cov_angular_velocity = glm::dmat3(computeVariance(config_.gyroscope, interval_));
+    imu.cov_linear_acceleration = glm::dmat3(computeVariance(config_.accelerometer, interval_));
     writeAttitude(motion, imu);
     return imu;
 }
 
-types::ImuSensors sensorsOf(const types::Imu& imu) {
+types::ImuSensors getSensors(const types::Imu& imu) {
     types::ImuSensors sensors;
     sensors.time = imu.time;
     sensors.acc = imu.linear_acceleration;
@@ -88,7 +88,7 @@ types::ImuSensors sensorsOf(const types::Imu& imu) {
     return sensors;
 }
 
-types::Pose orientationOf(const types::Imu& imu) {
+types::Pose getOrientation(const types::Imu& imu) {
     types::Pose pose;
     pose.time = imu.time;
     pose.source_frame = "imu";

@@ -111,8 +111,8 @@ private:
 };
 
 /** Returns the measurement without the attitude, as Rock's type. */
-types::ImuSensors sensorsOf(const types::Imu& imu);
+types::ImuSensors getSensors(const types::Imu& imu);
 /** Returns attitude and angular rate as Rock's pose of frame "imu" in "world"; its position is unknown. */
-types::Pose orientationOf(const types::Imu& imu);
+types::Pose getOrientation(const types::Imu& imu);
 
 }  // namespace insonify::nav

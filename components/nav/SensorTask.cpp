@@ -36,7 +36,7 @@ void DvlTask::measure(const Motion& motion) {
     log_->measure(motion, bottom_, *reported);
     pool_.stock(*reported);
     dvl.write(reported);
-    velocity_samples.write(velocityOf(*reported));
+    velocity_samples.write(getVelocity(*reported));
 }
 
 bool PressureTask::configureHook() {
@@ -74,8 +74,8 @@ void ImuTask::updateHook() {
     if (!motion || !cadence_.isDue(motion->time)) return;
     const types::Imu measured = unit_->measure(*motion);
     imu.write(measured);
-    calibrated_sensors.write(sensorsOf(measured));
-    orientation_samples.write(orientationOf(measured));
+    calibrated_sensors.write(getSensors(measured));
+    orientation_samples.write(getOrientation(measured));
 }
 
 void FixTask::check(types::Diagnostics& diagnostics) const try {
@@ -106,7 +106,7 @@ void FixTask::updateHook() {
     if (!cadence_.isDue(body.time)) return;
     types::place(body, config->sensor.mount, antenna);
     const types::Pose measured = receiver_->measure(antenna);
-    fix.write(fixOf(measured, *config->datum));
+    fix.write(makeFix(measured, *config->datum));
     position_samples.write(measured);
 }
 

@@ -16,7 +16,7 @@
 namespace insonify::noise {
 namespace {
 
-double powerOf(double decibels) { return std::pow(10.0, decibels / 10); }
+double computePower(double decibels) { return std::pow(10.0, decibels / 10); }
 
 constexpr size_t blocks = 64;              ///< Philox blocks that are drawn at a time.
 constexpr size_t block_bins = 2 * blocks;  ///< Bins whose complex fields these blocks contain.
@@ -82,7 +82,7 @@ struct Shares {
 
 /** Returns y where shape (1 + y - exp(y)) = -tail. By Chernoff's bound less than exp(-tail) of the law is farther
  *  out. */
-double endOf(double shape, double inside, double outside) {
+double findEnd(double shape, double inside, double outside) {
     for (int i = 0; i < 200; ++i) {
         const double y = (inside + outside) / 2;
         (shape * (1 + y - std::exp(y)) > -tail ? inside : outside) = y;
@@ -91,9 +91,9 @@ double endOf(double shape, double inside, double outside) {
 }
 
 /** Integrates the density of y = ln x of a gamma variate x of unit mean, by Simpson's rule over each step. */
-Shares sharesOf(double shape) {
+Shares computeShares(double shape) {
     constexpr double minimum = -90;  // exp(-90) is as good as 0 in a float
-    const double low = endOf(shape, 0, minimum), high = endOf(shape, 0, 40);
+    const double low = findEnd(shape, 0, minimum), high = findEnd(shape, 0, 40);
     const double scale = shape * std::log(shape) - std::lgamma(shape);
     const auto density = [&](double y) { return std::exp(scale + shape * (y - std::exp(y))); };
     Shares shares{low, (high - low) / steps, std::vector<double>(steps + 1), std::vector<double>(steps + 1)};
@@ -198,10 +198,10 @@ void AmbientConfig::check(types::Diagnostics& diagnostics) const {
 }
 
 double ambientIntensity(const AmbientConfig& ambient) {
-    if (ambient.level_db) return powerOf(*ambient.level_db);
+    if (ambient.level_db) return computePower(*ambient.level_db);
     const double spectrum = acoustics::coatesSpectrumDb(ambient.frequency_khz, *ambient.wind_m_s, ambient.shipping);
-    return powerOf(spectrum + 10 * std::log10(1e3 * *ambient.bandwidth_khz) - ambient.directivity_index_db -
-                   *ambient.source_level_db);
+    return computePower(spectrum + 10 * std::log10(1e3 * *ambient.bandwidth_khz) - ambient.directivity_index_db -
+                        *ambient.source_level_db);
 }
 
 std::vector<float> gaussianFilter(double width) {
@@ -271,7 +271,7 @@ void FieldFilter::draw(const BeamKey& key, const BeamOrder& order, size_t bin_co
     const size_t beam_count = order.beams.size(), reach = across_.size() - 1;
     variates.assign(beam_count * bin_count, 0.0f);
     // White noise is numbered from `reach` before the first beam; in a ring, that of the beam itself.
-    const auto numberOf = [&](size_t slot) {
+    const auto getNumber = [&](size_t slot) {
         return order.is_ring ? (slot + reach * (beam_count - 1)) % beam_count + reach : slot;
     };
     const double power = order.is_ring ? powerInRing(beam_count) : 1;
@@ -284,9 +284,9 @@ void FieldFilter::draw(const BeamKey& key, const BeamOrder& order, size_t bin_co
                           key.ping_high};
         for (size_t chunk = 0; chunk * filtered_bins < bin_count; ++chunk) {
             const size_t first = chunk * filtered_bins, count = std::min(filtered_bins, bin_count - first);
-            for (size_t slot = 0; slot < 2 * reach; ++slot) fillBeam(own, chunk, numberOf(slot), slot);
+            for (size_t slot = 0; slot < 2 * reach; ++slot) fillBeam(own, chunk, getNumber(slot), slot);
             for (size_t place = 0; place < beam_count; ++place) {
-                fillBeam(own, chunk, numberOf(place + 2 * reach), place + 2 * reach);
+                fillBeam(own, chunk, getNumber(place + 2 * reach), place + 2 * reach);
                 addPower(place, scale, count, &variates[order.beams[place] * bin_count + first]);
             }
         }
@@ -294,7 +294,7 @@ void FieldFilter::draw(const BeamKey& key, const BeamOrder& order, size_t bin_co
 }
 
 GammaTable::GammaTable(double shape) {
-    const Shares shares = sharesOf(shape);
+    const Shares shares = computeShares(shape);
     constexpr float minimum = std::numeric_limits<float>::min();  // smaller numbers are slow, and as good as 0
     for (int32_t bits = first_bits; bits <= last_bits; bits += cell_size) {
         const double y = quantile(shares, static_cast<double>(std::bit_cast<float>(bits)));

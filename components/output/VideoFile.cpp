@@ -33,7 +33,7 @@ namespace {
     throw std::runtime_error("cannot write " + file.string() + ": " + reason);
 }
 
-cv::Mat pixelsOf(const types::Image& picture) {
+cv::Mat toPixels(const types::Image& picture) {
     return cv::Mat(picture.size.height, picture.size.width, CV_8UC(static_cast<int>(picture.pixel_size)),
                    const_cast<uint8_t*>(picture.image.data()), picture.row_size);
 }
@@ -41,7 +41,7 @@ cv::Mat pixelsOf(const types::Image& picture) {
 }  // namespace
 
 void VideoFile::write(const types::Image& picture) {
-    const cv::Mat pixels = pixelsOf(picture);
+    const cv::Mat pixels = toPixels(picture);
     if (first_.empty()) {
         first_ = pixels.clone();
         first_time_ = picture.time;

@@ -24,7 +24,7 @@ public:
     framework::Properties<Config> config{this};
 
     framework::OutputPortBase* makeOutput(const std::string& port) final {
-        if (!entryOf(port)) return nullptr;
+        if (!findEntry(port)) return nullptr;
         return &outputs_.template make<types::Pose>(port, "body in the world: x north, y west, z up").port;
     }
     void check(types::Diagnostics& diagnostics) const final {
@@ -45,7 +45,7 @@ public:
 
 protected:
     /** Returns the entry of a port; null when there is none. */
-    const auto* entryOf(const std::string& port) const {
+    const auto* findEntry(const std::string& port) const {
         const auto found = std::ranges::find_if(entries(), [&](const auto& entry) { return entry.port == port; });
         return found == entries().end() ? nullptr : &*found;
     }

@@ -27,7 +27,7 @@ std::vector<double> curvatures(const std::vector<double>& times, const std::vect
     return curvature;
 }
 
-std::vector<Trajectory::Stamp> stampsOf(const std::vector<Waypoint>& waypoints) {
+std::vector<Trajectory::Stamp> getStamps(const std::vector<Waypoint>& waypoints) {
     std::vector<Trajectory::Stamp> stamps;
     for (const Waypoint& waypoint : waypoints)
         stamps.push_back({waypoint.time, waypoint.position, waypoint.orientation()});
@@ -83,7 +83,7 @@ std::string_view firstLine(std::string_view text, bool comments) {
 
 /** Returns the form of a file: one without a header, or with comments, is of TUM where no commas separate its
  *  numbers. */
-Form formOf(std::string_view text) {
+Form getForm(std::string_view text) {
     const std::string_view first = firstLine(text, false), row = firstLine(text, true);
     const bool has_commas = row.find(',') != row.npos;
     if (first.starts_with('#'))
@@ -93,7 +93,7 @@ Form formOf(std::string_view text) {
     return is_number && !has_commas ? Form::Tum : Form::Csv;
 }
 
-types::TableForm tableOf(Form form) {
+types::TableForm makeTable(Form form) {
     using Header = types::TableForm::Header;
     if (form == Form::Tum) return {{{"time"}, {"x"}, {"y"}, {"z"}, {"qx"}, {"qy"}, {"qz"}, {"qw"}}, Header::None, ' '};
     if (form == Form::Euroc)
@@ -149,7 +149,7 @@ void TrajectoryTimes::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"start_s", "is given together with start: first_pose; give one of the two"});
 }
 
-TimeUnit TrajectoryTimes::unitOf(double first) const {
+TimeUnit TrajectoryTimes::findUnit(double first) const {
     if (time_unit) return *time_unit;
     constexpr double since_1973 = 1e8;  // [s] since 1970; in seconds the next units would be after the year 5000
     for (const auto& [unit, per_second] :
@@ -161,7 +161,7 @@ TimeUnit TrajectoryTimes::unitOf(double first) const {
 
 double TrajectoryTimes::inRun(double time, double first) const {
     constexpr double per_second[] = {1, 1e3, 1e6, 1e9};
-    const double scale = per_second[static_cast<size_t>(unitOf(first))];
+    const double scale = per_second[static_cast<size_t>(findUnit(first))];
     return (time - (start == TrajectoryStart::FirstPose ? first : start_s.value_or(0) * scale)) / scale;
 }
 
@@ -188,11 +188,11 @@ Trajectory::Trajectory(std::vector<Stamp> stamps, bool smooth) : stamps_(std::mo
 
 Trajectory::Trajectory(const std::vector<Stamp>& stamps, bool smooth, const TrajectoryTimes& times)
     : Trajectory(inRun(stamps, times), smooth) {
-    unit_ = times.unitOf(stamps.front().time);
+    unit_ = times.findUnit(stamps.front().time);
 }
 
 Trajectory::Trajectory(const std::vector<Waypoint>& waypoints, bool smooth, const TrajectoryTimes& times)
-    : Trajectory(stampsOf(waypoints), smooth, times) {}
+    : Trajectory(getStamps(waypoints), smooth, times) {}
 
 void Trajectory::placeOnSpline(size_t stamp, double time, types::Pose& pose) const {
     const auto [v, rate] = spline_->at(stamp, time);
@@ -237,7 +237,7 @@ Trajectory Trajectory::fromFile(const std::filesystem::path& file, bool smooth, 
                                 types::WorldFrame frame) {
     const types::Axes axes{frame};
     Form form = Form::Csv;
-    const auto recognise = [&](std::string_view text) { return tableOf(form = formOf(text)); };
+    const auto recognise = [&](std::string_view text) { return makeTable(form = getForm(text)); };
     std::vector<Stamp> stamps;
     size_t odd_lengths = 0;
     for (const std::vector<double>& row : types::readTable(file, recognise, 1, evaluate)) {

@@ -62,7 +62,7 @@ struct TrajectoryTimes {
     }
     void check(types::Diagnostics& diagnostics) const;
     /** Returns the unit of a trajectory whose first time is `first`. */
-    TimeUnit unitOf(double first) const;
+    TimeUnit findUnit(double first) const;
     /** Returns a time [unit] of a trajectory whose first time is `first` [unit] as a time of the run [s]. */
     double inRun(double time, double first) const;
 

@@ -22,7 +22,7 @@ std::string spoken(double seconds) {
     return fmt::format("{:.12g} s", seconds) + (years < 0.1 ? "" : fmt::format(" ({:.3g} years)", years));
 }
 
-std::string_view nameOf(TimeUnit unit) { return types::EnumNames<TimeUnit>::names[static_cast<size_t>(unit)]; }
+std::string_view getName(TimeUnit unit) { return types::EnumNames<TimeUnit>::names[static_cast<size_t>(unit)]; }
 
 /** Returns why the times of a trajectory cannot be those of a run, with the remedy; empty: they can. */
 std::string reasonAgainst(const Trajectory& trajectory, const TrajectoryTimes& times) {
@@ -30,7 +30,7 @@ std::string reasonAgainst(const Trajectory& trajectory, const TrajectoryTimes& t
     const double begin = stamps.front().time, end = stamps.back().time, start = times.start_s.value_or(0);
     const TimeUnit unit = trajectory.timeUnit();
     const std::string of_unit =
-        unit == TimeUnit::Seconds ? "" : fmt::format(" (its times are taken as {})", nameOf(unit));
+        unit == TimeUnit::Seconds ? "" : fmt::format(" (its times are taken as {})", getName(unit));
     if (stamps.size() == 1) return "";  // a fixed pose, at any time
     if (begin > max_wait)
         return fmt::format(
@@ -90,7 +90,7 @@ types::Notices TrajectoryTask::notices() const {
         notices.push_back(
             fmt::format("the times of the trajectory are taken as {}, as they are after 1973 in this unit "
                         "(time_unit)",
-                        nameOf(trajectory_->timeUnit())));
+                        getName(trajectory_->timeUnit())));
     if (const size_t odd = trajectory_ ? trajectory_->oddLengths() : 0; odd > 0)
         notices.push_back(types::warning(fmt::format(
             "{} of {} quaternions of {} have a length that is not 1, and are made 1: are their parts degrees, "

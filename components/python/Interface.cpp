@@ -130,7 +130,7 @@ auto guarded(std::invoke_result_t<Work> failed, Work&& work) {
 
 /** Returns the value of an enumerator's name. */
 template <class Enum>
-Enum valueOf(const std::string& name, const char* what) {
+Enum getValue(const std::string& name, const char* what) {
     const auto& names = types::EnumNames<Enum>::names;
     const auto found = std::ranges::find(names, name);
     if (found != std::end(names)) return static_cast<Enum>(found - std::begin(names));
@@ -144,15 +144,15 @@ std::optional<Number> unlessNull(const Number* number) {
     return number ? std::optional(*number) : std::nullopt;
 }
 
-types::Pose poseOf(const double* numbers) {
+types::Pose getPose(const double* numbers) {
     types::Pose pose;
     pose.position = {numbers[0], numbers[1], numbers[2]};
     pose.orientation = glm::dquat(numbers[3], numbers[4], numbers[5], numbers[6]);
     return pose;
 }
 
-deployer::SimulationOptions optionsOf(uint64_t seed, const char* const* overrides, size_t override_count, int truth,
-                                      const double* period) {
+deployer::SimulationOptions getOptions(uint64_t seed, const char* const* overrides, size_t override_count, int truth,
+                                       const double* period) {
     deployer::SimulationOptions options;
     options.seed = seed;
     options.overrides = {overrides, overrides + override_count};
@@ -165,7 +165,7 @@ class BatchHandle final : public Stepped {
 public:
     BatchHandle(const std::string& deployment, const deployer::SimulationOptions& options, size_t count)
         : batch(deployment, options, count) {
-        for (size_t i = 0; i < count; ++i) seeds_.push_back(deployer::SimulationBatch::seedOf(options.seed, i));
+        for (size_t i = 0; i < count; ++i) seeds_.push_back(deployer::SimulationBatch::computeSeed(options.seed, i));
         const deployer::Simulation& first = batch.front();
         if (first.poses().size() != 1 || first.pings().size() != 1)
             throw types::ConfigError(deployment, "",
@@ -181,7 +181,7 @@ public:
     }
     std::unique_ptr<Handle> step(const double* poses) {
         std::vector<std::map<std::string, types::Pose>> at(batch.size());
-        for (size_t i = 0; i < at.size(); ++i) at[i][batch.front().poses().front()] = poseOf(poses + 7 * i);
+        for (size_t i = 0; i < at.size(); ++i) at[i][batch.front().poses().front()] = getPose(poses + 7 * i);
         std::vector<types::SonarPtr> pings;
         std::vector<types::SonarTruthPtr> truths;
         for (const auto& made : batch.step(std::move(at))) {
@@ -226,14 +226,14 @@ size_t insonify_arrays(const Handle* handle, Array* arrays, size_t room) {
 Handle* insonify_simulation(const char* deployment, uint64_t seed, const char* const* overrides, size_t override_count,
                             int truth, const double* period) {
     return guarded(nullptr, [&]() -> Handle* {
-        return new SimulationHandle(deployment, optionsOf(seed, overrides, override_count, truth, period));
+        return new SimulationHandle(deployment, getOptions(seed, overrides, override_count, truth, period));
     });
 }
 
 Handle* insonify_batch(const char* deployment, uint64_t seed, const char* const* overrides, size_t override_count,
                        int truth, const double* period, size_t count) {
     return guarded(nullptr, [&]() -> Handle* {
-        return new BatchHandle(deployment, optionsOf(seed, overrides, override_count, truth, period), count);
+        return new BatchHandle(deployment, getOptions(seed, overrides, override_count, truth, period), count);
     });
 }
 
@@ -254,7 +254,7 @@ int insonify_step(Handle* simulation, const char* const* ports, const double* po
                   const double* time, Handle** pings) {
     return guarded(-1, [&] {
         std::map<std::string, types::Pose> at;
-        for (size_t i = 0; i < port_count; ++i) at[ports[i]] = poseOf(poses + 7 * i);
+        for (size_t i = 0; i < port_count; ++i) at[ports[i]] = getPose(poses + 7 * i);
         const auto made =
             Stepped::usable<SimulationHandle>(*simulation).simulation.step(std::move(at), unlessNull(time));
         for (const auto& each : made) *pings++ = each.ping ? pingHandle(each.ping, each.truth).release() : nullptr;
@@ -293,8 +293,8 @@ Handle* insonify_fan(const Handle* ping, uint32_t width, double dynamic_range_db
                      const char* colour_map, const char* scale, int code_bits) {
     return guarded(nullptr, [&]() -> Handle* {
         return fanHandle(*ping, {width, dynamic_range_db, unlessNull(reference_db),
-                                 valueOf<output::ColourMap>(colour_map, "colour_map"),
-                                 valueOf<output::BinScale>(scale, "scale"), code_bits})
+                                 getValue<output::ColourMap>(colour_map, "colour_map"),
+                                 getValue<output::BinScale>(scale, "scale"), code_bits})
             .release();
     });
 }

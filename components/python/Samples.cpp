@@ -20,15 +20,15 @@ namespace {
 using console::Json;
 
 template <class Number>
-constexpr const char* typeOf() {
+constexpr const char* getType() {
     if constexpr (std::is_floating_point_v<Number>) return sizeof(Number) == 8 ? "f8" : "f4";
     if constexpr (sizeof(Number) == 1) return "u1";
     return std::is_signed_v<Number> ? "i4" : "u4";
 }
 
-Array gridOf(const char* name, const auto& numbers, const auto& sample) {
+Array makeGrid(const char* name, const auto& numbers, const auto& sample) {
     using Number = typename std::remove_cvref_t<decltype(numbers)>::value_type;
-    return {name, typeOf<Number>(), numbers.data(), {sample.beam_count, sample.bin_count}, 2};
+    return {name, getType<Number>(), numbers.data(), {sample.beam_count, sample.bin_count}, 2};
 }
 
 Array list(const char* name, const void* numbers, uint64_t size) { return {name, "f8", numbers, {size}, 1}; }
@@ -68,7 +68,7 @@ public:
         return facts;
     }
     std::vector<Array> arrays() const override {
-        std::vector<Array> arrays{gridOf("bins", ping_->bins, *ping_),
+        std::vector<Array> arrays{makeGrid("bins", ping_->bins, *ping_),
                                   list("bearings", ping_->bearings.data(), ping_->bearings.size()),
                                   list("ranges", ranges_.data(), ranges_.size())};
         if (truth_) addTruth(arrays, *truth_);
@@ -76,7 +76,7 @@ public:
     }
     static void addTruth(std::vector<Array>& arrays, const types::SonarTruth& truth) {
         types::SonarTruth::forEachArray(truth, [&](const char* name, const auto& numbers, auto) {
-            arrays.push_back(gridOf(name, numbers, truth));
+            arrays.push_back(makeGrid(name, numbers, truth));
         });
     }
 
@@ -125,7 +125,7 @@ public:
         types::SonarTruth::forEachArray(shape, [&](const char* name, const auto& numbers, auto) {
             using Number = typename std::remove_cvref_t<decltype(numbers)>::value_type;
             if (const auto found = truth_.find(name); found != truth_.end())
-                arrays.push_back(cube(found->first.c_str(), typeOf<Number>(), found->second.data()));
+                arrays.push_back(cube(found->first.c_str(), getType<Number>(), found->second.data()));
         });
         return arrays;
     }
@@ -214,7 +214,7 @@ struct MakeHandle {
     template <class Sample>
     std::unique_ptr<Handle> operator()(const Sample* sample) const {
         if constexpr (types::Scalar<Sample>) {
-            const auto number = types::numberOf(*sample);
+            const auto number = types::getNumber(*sample);
             if constexpr (std::is_integral_v<decltype(number)>) return valueHandle("integer", number);
             auto handle = std::make_unique<NumberHandle>();
             handle->number = static_cast<double>(number);

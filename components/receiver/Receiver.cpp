@@ -62,7 +62,7 @@ void quantise(float* values, float per_unit, float zero, float maximum, size_t c
     }
 }
 
-double powerOf(double decibels) { return std::pow(10.0, decibels / 10); }
+double computePower(double decibels) { return std::pow(10.0, decibels / 10); }
 
 /** Returns the level of the echo of a cell of medium sand at normal incidence: 10 log10(mu w dR / r^3) [dB]. */
 double sandLevelDb(const types::Sonar& ping, double r) {
@@ -74,8 +74,8 @@ double sandLevelDb(const types::Sonar& ping, double r) {
 
 void followLevel(const AutomaticGainConfig& config, std::span<const double> means, size_t first, double target,
                  double bin_ms, std::span<double> gains_db) {
-    const auto keptOf = [&](double time_ms) { return time_ms > 0 ? std::exp(-bin_ms / time_ms) : 0.0; };
-    const double attack = keptOf(config.attack_ms), release = keptOf(config.release_ms);
+    const auto getKept = [&](double time_ms) { return time_ms > 0 ? std::exp(-bin_ms / time_ms) : 0.0; };
+    const double attack = getKept(config.attack_ms), release = getKept(config.release_ms);
     double level = -1;  // smoothed level of the bins so far; below 0 before the first
     for (size_t k = 0; k < means.size(); ++k) {
         const bool is_received = k >= first && means[k] >= 0;
@@ -155,7 +155,7 @@ void Receiver::makeTables(const types::Sonar& ping) {
     silent_ = 0;
     for (uint32_t k = 0; k < ping.bin_count; ++k) {
         const double gain = gainDb(ping, std::max(nearest, ping.binStart(k + 0.5)));
-        factor_[k] = std::min(powerOf(gain), 1e300);
+        factor_[k] = std::min(computePower(gain), 1e300);
         offset_db_[k] = static_cast<float>(gain);
         if (config_.blanking && ping.binStart(k) < config_.blanking->range_min * (1 - 1e-9)) silent_ = k + 1;
     }
@@ -168,7 +168,7 @@ double Receiver::scaleDb() const {
 
 double Receiver::saturation() const {
     constexpr double maximum = static_cast<double>(std::numeric_limits<float>::max());
-    return config_.saturation_db ? std::min(maximum, powerOf(*config_.saturation_db + scaleDb())) : maximum;
+    return config_.saturation_db ? std::min(maximum, computePower(*config_.saturation_db + scaleDb())) : maximum;
 }
 
 void Receiver::followLevel(const types::Sonar& ping) {
@@ -181,12 +181,12 @@ void Receiver::followLevel(const types::Sonar& ping) {
     for (size_t i = 0; i < ping.bins.size(); ++i)
         if (ping.bins[i] >= 0) means_[i % count] += static_cast<double>(ping.bins[i]);
     for (size_t k = 0; k < count; ++k)
-        means_[k] *= std::min(powerOf(fixed_db_[k]), 1e200) / std::max(1u, ping.beam_count);
+        means_[k] *= std::min(computePower(fixed_db_[k]), 1e200) / std::max(1u, ping.beam_count);
     receiver::followLevel(*config_.automatic_gain, means_, silent_, config_.automatic_gain->target_db + scaleDb(),
                           2e3 * ping.binSeconds(), automatic_db_);
     for (size_t k = 0; k < count; ++k) {
         const double gain = fixed_db_[k] + automatic_db_[k];
-        factor_[k] = std::min(powerOf(gain), 1e300);
+        factor_[k] = std::min(computePower(gain), 1e300);
         offset_db_[k] = static_cast<float>(gain);
     }
 }
@@ -223,7 +223,7 @@ void Receiver::receive(const types::Sonar& intensities, types::Sonar& received) 
         receiveBeam(intensities.bins.data() + beam * count, received.bins.data() + beam * count);
 }
 
-const char* Receiver::diagnosticOf(const types::Sonar& intensities) const {
+const char* Receiver::findDiagnostic(const types::Sonar& intensities) const {
     if (const char* why = intensities.notIntensities()) return why;
     const bool needs_width = config_.brightness && config_.brightness->model == Model::Physical;
     return needs_width && intensities.beam_width.isUnknown()
@@ -231,7 +231,7 @@ const char* Receiver::diagnosticOf(const types::Sonar& intensities) const {
                : nullptr;
 }
 
-Receiver::Flaws Receiver::flawsOf(const types::Sonar& intensities, const types::Sonar& received) const {
+Receiver::Flaws Receiver::getFlaws(const types::Sonar& intensities, const types::Sonar& received) const {
     Flaws flaws;
     const size_t count = axis_.bin_count, kept = count - silent_;
     flaws.blanked = count > 0 && kept == 0;

@@ -158,7 +158,7 @@ public:
     void receive(const types::Sonar& intensities, types::Sonar& received);
     /** Returns why it cannot receive a ping; null when it can. A brightness of the physical model needs beams of known
      *  width. */
-    const char* diagnosticOf(const types::Sonar& intensities) const;
+    const char* findDiagnostic(const types::Sonar& intensities) const;
     /** The reasons why a received ping shows nothing. */
     struct Flaws {
         bool blanked = false;   ///< Every bin is blanked.
@@ -168,7 +168,7 @@ public:
     };
     static constexpr double max_saturated = 0.1;  ///< Share of saturated bins above which a warning is due [1].
     /** Returns the flaws of the ping that was received last. */
-    Flaws flawsOf(const types::Sonar& intensities, const types::Sonar& received) const;
+    Flaws getFlaws(const types::Sonar& intensities, const types::Sonar& received) const;
     /** Returns the most important flaw as a message, with numbers and a remedy. */
     std::string text(const Flaws& flaws, const types::Sonar& intensities) const;
     /** Returns whether the receiver leaves every ping unchanged. */

@@ -25,7 +25,7 @@ void ReceiverTask::updateHook() {
     types::SonarPtr sample;
     if (!intensity.readNew(sample)) return;
     if (environment().rehearsing) return ping.write(sample);
-    if (const char* diagnostic = receiver_->diagnosticOf(*sample))
+    if (const char* diagnostic = receiver_->findDiagnostic(*sample))
         return error(std::string("intensity: ") + diagnostic + "; connect the noise, or a sonar's ping");
     if (state() == framework::TaskState::RunTimeError) recover();
     ping.write(received(sample));
@@ -41,7 +41,7 @@ types::SonarPtr ReceiverTask::received(const types::SonarPtr& sample) {
 }
 
 void ReceiverTask::evaluate(const types::Sonar& intensities, const types::Sonar& received) {
-    const Receiver::Flaws flaws = receiver_->flawsOf(intensities, received);
+    const Receiver::Flaws flaws = receiver_->getFlaws(intensities, received);
     if (flawed_.isDue(flaws.any())) warn(receiver_->text(flaws, intensities));
 }
 

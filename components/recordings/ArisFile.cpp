@@ -69,13 +69,13 @@ constexpr uint32_t max_samples = 65536, max_period_us = 1000, max_delay_us = 1'0
 double numberAt(std::span<const char> header, size_t at) { return static_cast<double>(field<float>(header, at)); }
 
 /** Returns the number of beams in a ping mode; 0 for an unknown mode. */
-uint32_t beamsOf(uint32_t ping_mode) {
+uint32_t getBeams(uint32_t ping_mode) {
     if (ping_mode == 0 || ping_mode > 12) return 0;
     return ping_mode <= 2 ? 48 : ping_mode <= 5 ? 96 : ping_mode <= 8 ? 64 : 128;
 }
 
 /** Returns the higher or the lower of a model's two frequencies, from the maker's data sheets. */
-double frequencyOf(ArisModel model, bool is_high) {
+double getFrequency(ArisModel model, bool is_high) {
     switch (model) {
         case ArisModel::Aris3000: return is_high ? 3000 : 1800;
         case ArisModel::Aris1800: return is_high ? 1800 : 1100;
@@ -108,20 +108,20 @@ ArisFile::ArisFile(const std::filesystem::path& path) : RecordingReader(path) {
     next_ = aris::header;
 }
 
-uint64_t ArisFile::sizeOf(std::span<const char> header) const {
+uint64_t ArisFile::getSize(std::span<const char> header) const {
     if (const auto mark = field<uint32_t>(header, aris::frame_mark); mark != (aris::mark | aris::version << 24))
         fail(at_ + aris::frame_mark, fmt::format("is 0x{:08X}; the header of a frame has 0x{:08X} here", mark,
                                                  aris::mark | aris::version << 24));
     const auto mode = field<uint32_t>(header, aris::ping_mode);
-    if (beamsOf(mode) == 0) fail(at_ + aris::ping_mode, fmt::format("the ping mode is {}; it may be 1 to 12", mode));
+    if (getBeams(mode) == 0) fail(at_ + aris::ping_mode, fmt::format("the ping mode is {}; it may be 1 to 12", mode));
     const auto samples = field<uint32_t>(header, aris::samples);
     if (samples == 0 || samples > aris::max_samples)
         fail(at_ + aris::samples,
              fmt::format("a beam has {} samples; it must have 1 to {}", samples, aris::max_samples));
-    return aris::header + uint64_t{samples} * beamsOf(mode);
+    return aris::header + uint64_t{samples} * getBeams(mode);
 }
 
-ArisFile::Shape ArisFile::shapeOf(std::span<const char> header) const {
+ArisFile::Shape ArisFile::getShape(std::span<const char> header) const {
     const auto number = [&](size_t at) { return field<uint32_t>(header, at); };
     if (number(aris::is_ordered) == 0)
         fail(at_ + aris::is_ordered, "the samples are not in the order of beams, which they are in every file");
@@ -130,7 +130,7 @@ ArisFile::Shape ArisFile::shapeOf(std::span<const char> header) const {
         fail(at_ + aris::model,
              fmt::format("the model is {}; it may be 0 (ARIS 1800), 1 (3000) or 2 (1200)", number(aris::model)));
     Shape shape;
-    const uint32_t beams = beamsOf(number(aris::ping_mode));
+    const uint32_t beams = getBeams(number(aris::ping_mode));
     shape.bearings = arisBearings(model, beams, number(aris::lens) != 0);
     if (shape.bearings.empty())
         fail(at_ + aris::lens, fmt::format("no bearings are published for {} beams of model {} with this lens", beams,
@@ -152,15 +152,15 @@ ArisFile::Shape ArisFile::shapeOf(std::span<const char> header) const {
     if (!(shape.speed >= 1000 && shape.speed <= 2000))
         fail(at_ + aris::sound_speed,
              fmt::format("the speed of sound is {:g} m/s; it may be 1000 to 2000, or 0 for unknown", shape.speed));
-    shape.frequency_khz = frequencyOf(model, number(aris::is_high) != 0);
+    shape.frequency_khz = getFrequency(model, number(aris::is_high) != 0);
     return shape;
 }
 
-types::Time ArisFile::timeOf(std::span<const char> header) const {
+types::Time ArisFile::getTime(std::span<const char> header) const {
     const auto by_pc = field<uint64_t>(header, aris::pc_time);
     const size_t at = by_pc != 0 ? aris::pc_time : aris::sonar_time;
     const auto time = field<uint64_t>(header, at);
-    if (const std::string wrong = diagnosticOf(static_cast<double>(time)); !wrong.empty()) fail(at_ + at, wrong);
+    if (const std::string wrong = findDiagnostic(static_cast<double>(time)); !wrong.empty()) fail(at_ + at, wrong);
     return {static_cast<int64_t>(time)};
 }
 
@@ -184,12 +184,12 @@ std::optional<RecordingReader::Stated> ArisFile::stated(std::span<const char> he
 
 std::optional<RecordedPing> ArisFile::read() {
     const std::vector<char> frame =
-        readPacket(aris::header, [&](std::span<const char> header) { return sizeOf(header); });
+        readPacket(aris::header, [&](std::span<const char> header) { return getSize(header); });
     if (frame.empty()) return std::nullopt;
     const std::span<const char> header = std::span(frame).first(aris::header);
-    const Shape shape = shapeOf(header);
+    const Shape shape = getShape(header);
     RecordedPing found;
-    found.ping.time = timeOf(header);
+    found.ping.time = getTime(header);
     setResolution(shape.period * shape.speed / 2, shape.speed, found);
     std::vector<double> bearings;
     for (const double bearing : shape.bearings) bearings.push_back(types::radians(bearing));

@@ -38,9 +38,9 @@ private:
     };
 
     std::optional<RecordedPing> read() override;
-    uint64_t sizeOf(std::span<const char> header) const;
-    Shape shapeOf(std::span<const char> header) const;
-    types::Time timeOf(std::span<const char> header) const;
+    uint64_t getSize(std::span<const char> header) const;
+    Shape getShape(std::span<const char> header) const;
+    types::Time getTime(std::span<const char> header) const;
     std::optional<Stated> stated(std::span<const char> header);
 
     std::optional<bool> has_place_;  ///< Whether the first frame has a position on the earth.

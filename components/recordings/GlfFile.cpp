@@ -220,7 +220,7 @@ bool GlfFile::endsHere(std::span<const char> head) {
     return true;
 }
 
-GlfFile::Image GlfFile::imageOf(std::span<const char> head) const {
+GlfFile::Image GlfFile::getImage(std::span<const char> head) const {
     const auto version = field<uint16_t>(head, glf::version);
     if (version > glf::max_version)
         failAt(glf::version,
@@ -257,7 +257,7 @@ GlfFile::Image GlfFile::imageOf(std::span<const char> head) const {
     return image;
 }
 
-std::vector<char> GlfFile::samplesOf(std::span<const char> record, const Image& image) const {
+std::vector<char> GlfFile::getSamples(std::span<const char> record, const Image& image) const {
     const std::span<const char> packed = record.subspan(image.packed, image.packed_size);
     std::vector<char> samples(packed.begin(), packed.end());
     if (image.compression == glf::zlib) {
@@ -279,7 +279,7 @@ std::vector<char> GlfFile::samplesOf(std::span<const char> record, const Image& 
     return samples;
 }
 
-std::vector<double> GlfFile::bearingsOf(std::span<const char> record, const Image& image) const {
+std::vector<double> GlfFile::readBearings(std::span<const char> record, const Image& image) const {
     std::vector<double> bearings;
     for (uint32_t beam = 0; beam < image.beams; ++beam) {
         const size_t at = image.bearings + beam * sizeof(double);
@@ -303,20 +303,20 @@ void GlfFile::setRanges(std::span<const char> tail, const Image& image, Recorded
     setResolution(speed / 2 / rate, speed, to);
 }
 
-std::optional<RecordedPing> GlfFile::frameOf(std::span<const char> record, const Image& image) {
+std::optional<RecordedPing> GlfFile::getFrame(std::span<const char> record, const Image& image) {
     if (image.compression == glf::h264) return ++videos_, std::nullopt;
     const std::span<const char> tail = record.subspan(image.tail);
     const double transmitted = field<double>(tail, glf::transmit_time);
     const bool has_time = transmitted != 0;
     const double time_us = std::round(((has_time ? transmitted : stamp_) + glf::epoch_s) * 1e6);
-    if (const std::string wrong = diagnosticOf(time_us); !wrong.empty())
+    if (const std::string wrong = findDiagnostic(time_us); !wrong.empty())
         failAt(has_time ? image.tail + glf::transmit_time : glf::stamp, wrong);
     RecordedPing found;
     found.ping.time = {static_cast<int64_t>(time_us)};
     setRanges(tail, image, found);
-    const std::vector<char> samples = samplesOf(record, image);
+    const std::vector<char> samples = getSamples(record, image);
     const bool has_all = samples.size() == image.allSamples();
-    setFan(bearingsOf(record, image), has_all ? 0 : image.start_range, samples, found);
+    setFan(readBearings(record, image), has_all ? 0 : image.start_range, samples, found);
     found.window_start = found.ping.binStart(image.start_range);
     found.frequency_khz = geminiFrequency(field<uint8_t>(tail, glf::platform), field<uint16_t>(tail, glf::ping_flags));
     found.sonar.position.x = types::Pose::unknown;
@@ -351,7 +351,7 @@ std::optional<RecordedPing> GlfFile::read() {
             continue;
         }
         const bool has_numbers = record.size() == glf::numbers + 2;
-        const Image image = has_numbers ? imageOf(record) : Image{};
+        const Image image = has_numbers ? getImage(record) : Image{};
         record = entry_.peek(image.size);
         if (!has_numbers || record.size() < image.size) {
             cut_off_record_ = entry_.at();
@@ -366,7 +366,7 @@ std::optional<RecordedPing> GlfFile::read() {
         if (!device_) device_ = device;
         std::optional<RecordedPing> found;
         if (device == *device_)
-            found = frameOf(record, image);
+            found = getFrame(record, image);
         else
             ++other_devices_[device];
         zooms_ += is_zoomed;

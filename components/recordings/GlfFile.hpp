@@ -64,10 +64,10 @@ private:
 
     std::optional<RecordedPing> read() override;
     bool endsHere(std::span<const char> head);
-    Image imageOf(std::span<const char> head) const;
-    std::optional<RecordedPing> frameOf(std::span<const char> record, const Image& image);
-    std::vector<char> samplesOf(std::span<const char> record, const Image& image) const;
-    std::vector<double> bearingsOf(std::span<const char> record, const Image& image) const;
+    Image getImage(std::span<const char> head) const;
+    std::optional<RecordedPing> getFrame(std::span<const char> record, const Image& image);
+    std::vector<char> getSamples(std::span<const char> record, const Image& image) const;
+    std::vector<double> readBearings(std::span<const char> record, const Image& image) const;
     void setRanges(std::span<const char> tail, const Image& image, RecordedPing& to);
     /** Skips a part of this record and everything up to the next record. */
     void skipToRecord(size_t size);

@@ -59,14 +59,14 @@ bool JsfFile::isWanted() {
 }
 
 std::optional<JsfFile::Side> JsfFile::nextSide() {
-    const auto sizeOf = [&](std::span<const char> head) -> uint64_t {
+    const auto getSize = [&](std::span<const char> head) -> uint64_t {
         if (const auto mark = field<uint16_t>(head, 0); mark != jsf::magic)
             fail(at_, fmt::format("is 0x{:04X}; a message begins with 0x{:04X}", mark, jsf::magic));
         const auto size = field<int32_t>(head, jsf::size);
         if (size < 0) fail(at_ + jsf::size, fmt::format("the message has {} bytes; it must have at least 0", size));
         return jsf::header + static_cast<uint64_t>(size);
     };
-    for (packet_ = readPacket(jsf::header, sizeOf); !packet_.empty(); packet_ = readPacket(jsf::header, sizeOf))
+    for (packet_ = readPacket(jsf::header, getSize); !packet_.empty(); packet_ = readPacket(jsf::header, getSize))
         if (isWanted()) {
             Side read = side();
             read.message = std::move(packet_);

@@ -124,7 +124,7 @@ std::vector<char> RecordingReader::take(uint64_t at, size_t size) {
     return bytes;
 }
 
-std::string RecordingReader::diagnosticOf(double time_us) const {
+std::string RecordingReader::findDiagnostic(double time_us) const {
     constexpr double year_2200 = 7.26e15;
     if (!(time_us > 0 && time_us < year_2200))
         return fmt::format("the time is {:.6g} s since 1970; it must be above 0 and before the year 2200",

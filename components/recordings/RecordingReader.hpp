@@ -153,16 +153,16 @@ protected:
     /** @param place "log.dat, byte 21" */
     [[noreturn]] void fail(const std::string& place, const std::string& why) const;
     /** Returns what is wrong with a time since the epoch [us], or with its order; empty if nothing is. */
-    std::string diagnosticOf(double time_us) const;
+    std::string findDiagnostic(double time_us) const;
     /** Returns at most `size` bytes of the file. */
     std::vector<char> take(uint64_t at, size_t size);
     /** Returns the packet at `next_`, which becomes `at_`; its header has `header` bytes. Empty at the end of the file.
-     *  @param sizeOf returns the packet's size from the header, or fails */
-    std::vector<char> readPacket(size_t header, auto&& sizeOf) {
+     *  @param getSize returns the packet's size from the header, or fails */
+    std::vector<char> readPacket(size_t header, auto&& getSize) {
         at_ = next_;
         if (at_ >= size_) return {};
         const std::vector<char> head = take(at_, header);
-        const uint64_t bytes = head.size() == header ? sizeOf(head) : std::numeric_limits<uint64_t>::max();
+        const uint64_t bytes = head.size() == header ? getSize(head) : std::numeric_limits<uint64_t>::max();
         if (bytes > size_ - at_) {
             cut_off_ = at_;
             next_ = size_;

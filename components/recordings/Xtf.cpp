@@ -38,7 +38,7 @@ private:
     size_t at_;
 };
 
-size_t sizeOf(XtfSamples samples) { return samples == XtfSamples::Uint16 ? sizeof(uint16_t) : sizeof(float); }
+size_t getSize(XtfSamples samples) { return samples == XtfSamples::Uint16 ? sizeof(uint16_t) : sizeof(float); }
 
 void putChannelInfo(Block& header, size_t channel, const XtfFormat& format, const types::Sonar& ping) {
     namespace info = xtf::channel_info;
@@ -47,7 +47,7 @@ void putChannelInfo(Block& header, size_t channel, const XtfFormat& format, cons
     header.put(at + info::type, channel == 0 ? info::port : info::starboard);
     header.put(at + info::correction, slant_range);
     header.put(at + info::unipolar, unipolar);
-    header.put(at + info::sample_bytes, static_cast<uint16_t>(sizeOf(format.samples)));
+    header.put(at + info::sample_bytes, static_cast<uint16_t>(getSize(format.samples)));
     header.put(at + info::sample_count, uint32_t{1024});  // expected by old programs
     header.putText(at + info::name, channel == 0 ? "Port" : "Starboard", 16);
     header.putFloat(at + info::frequency, format.frequency_khz);
@@ -56,7 +56,7 @@ void putChannelInfo(Block& header, size_t channel, const XtfFormat& format, cons
     header.put(at + info::sample_format, format.samples == XtfSamples::Uint16 ? info::int16 : info::float32);
 }
 
-std::tm dateOf(types::Time time) {
+std::tm toDate(types::Time time) {
     const auto seconds = static_cast<std::time_t>(time.microseconds / 1'000'000);
     std::tm date{};
     gmtime_r(&seconds, &date);
@@ -64,7 +64,7 @@ std::tm dateOf(types::Time time) {
 }
 
 void putTime(Block& header, types::Time time) {
-    const std::tm date = dateOf(time);
+    const std::tm date = toDate(time);
     const auto byte = [](int value) { return static_cast<uint8_t>(value); };
     header.put(xtf::ping_header::year, static_cast<uint16_t>(date.tm_year + 1900));
     header.put(xtf::ping_header::month, byte(date.tm_mon + 1));
@@ -78,7 +78,7 @@ void putTime(Block& header, types::Time time) {
 
 void putPose(Block& header, const types::Pose& sonar) {
     if (!types::isUsable(sonar)) return;
-    const auto [yaw, pitch, roll] = types::turnsOf(sonar.orientation);
+    const auto [yaw, pitch, roll] = types::toTurns(sonar.orientation);
     const double heading = std::fmod(360 - types::degrees(yaw), 360), north = sonar.position.x,
                  east = -sonar.position.y;
     for (const size_t at : {xtf::ping_header::ship, xtf::ping_header::sonar}) {
@@ -97,7 +97,7 @@ void putPose(Block& header, const types::Pose& sonar) {
     }
 }
 
-uint32_t beamOf(const types::Sonar& ping, int side) {
+uint32_t getBeam(const types::Sonar& ping, int side) {
     if (const auto beam = types::firstBeamOn(ping, side)) return *beam;
     throw std::invalid_argument("a ping has no beam to " + std::string(side > 0 ? "port" : "starboard") +
                                 "; lines of a side-scan have one to either side");
@@ -112,7 +112,7 @@ uint16_t wholeNumber(float bin) {
 }
 
 void putSamples(const float* bins, uint32_t count, bool far_first, XtfSamples samples, std::vector<char>& bytes) {
-    Block block(bytes, count * sizeOf(samples));
+    Block block(bytes, count * getSize(samples));
     for (uint32_t i = 0; i < count; ++i) {
         const float bin = bins[far_first ? count - 1 - i : i];
         if (samples == XtfSamples::Uint16)
@@ -124,7 +124,7 @@ void putSamples(const float* bins, uint32_t count, bool far_first, XtfSamples sa
 
 void putChannel(const XtfFormat& format, const types::Sonar& ping, const XtfPing& more, uint16_t channel,
                 std::vector<char>& bytes) {
-    const uint32_t beam = beamOf(ping, channel == 0 ? 1 : -1);
+    const uint32_t beam = getBeam(ping, channel == 0 ? 1 : -1);
     const double range = ping.binStart(ping.bin_count);
     namespace fields = xtf::channel_header;
     Block header(bytes, fields::size);
@@ -158,7 +158,7 @@ std::vector<char> xtfHeader(const XtfFormat& format, const types::Sonar& ping) {
 
 void appendXtfPing(const XtfFormat& format, const types::Sonar& ping, const XtfPing& more, std::vector<char>& bytes) {
     if (!ping.wellShaped()) throw std::invalid_argument("the lists of a ping do not match its counts");
-    const size_t lines = 2 * (xtf::channel_header::size + ping.bin_count * sizeOf(format.samples));
+    const size_t lines = 2 * (xtf::channel_header::size + ping.bin_count * getSize(format.samples));
     const size_t unit = xtf::packet::unit, size = (xtf::ping_header::size + lines + unit - 1) / unit * unit;
     const size_t begin = bytes.size();
     namespace fields = xtf::ping_header;

@@ -36,7 +36,7 @@ types::Angle angleAt(std::span<const char> bytes, size_t at) {
 }
 
 /** Returns "byte 1280: the channel is 7". */
-std::string textOf(const types::ConfigError& error) {
+std::string toText(const types::ConfigError& error) {
     const types::Diagnostic& found = error.diagnostics().front();
     return found.path + ": " + found.message;
 }
@@ -128,7 +128,7 @@ std::optional<RecordedPing> XtfFile::read() {
             if (auto read = line()) return read;
             ++without_side_;
         } catch (const types::ConfigError& error) {
-            omitted_.add(textOf(error));
+            omitted_.add(toText(error));
         }
     }
     return std::nullopt;
@@ -197,11 +197,11 @@ XtfFile::Sides XtfFile::sides() {
     }
     const bool has_side = found.port || found.starboard;
     if (failure && !has_side) throw *failure;
-    if (failure) cut_short_.add(textOf(*failure));
+    if (failure) cut_short_.add(toText(*failure));
     return found;
 }
 
-double XtfFile::rangeOf(const Side& side, double speed_of_sound) const {
+double XtfFile::computeRange(const Side& side, double speed_of_sound) const {
     namespace fields = xtf::channel_header;
     double range = floatAt(side.header, fields::slant_range);
     if (range == 0) range = floatAt(side.header, fields::duration) * speed_of_sound / 2;
@@ -312,7 +312,7 @@ std::optional<RecordedPing> XtfFile::line() {
     if (!found.port && !found.starboard) return std::nullopt;
     const double speed = speedOfSound();
     for (std::optional<Side>* side : {&found.port, &found.starboard})
-        if (*side) (*side)->range = rangeOf(**side, speed);
+        if (*side) (*side)->range = computeRange(**side, speed);
     RecordedPing read;
     read.ping.time = time();
     setBins(found, speed, read);

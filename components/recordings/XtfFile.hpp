@@ -72,7 +72,7 @@ private:
      *  @param by_header true: a channel that states no number of samples has the header's */
     std::vector<Side> channelsOfPing(bool by_header, Failure& failure) const;
     Side side(size_t offset, bool by_header) const;
-    double rangeOf(const Side& side, double speed_of_sound) const;
+    double computeRange(const Side& side, double speed_of_sound) const;
     double speedOfSound() const;
     types::Time time() const;
     std::optional<Stated> stated() const;

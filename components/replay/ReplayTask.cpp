@@ -122,7 +122,7 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
     } catch (const types::ConfigError& error) {
         throw framework::ReportedByCheck(error.diagnostics());
     }
-    const size_t index = log_->indexOf(stream);
+    const size_t index = log_->findIndex(stream);
     const log::Stream& recorded = log_->streams()[index];
     by_stream_[index] =
         outputs_.makeFirst(stream, "stream " + stream + " of the log", [&]<class T>(std::type_identity<T>) {
@@ -169,7 +169,7 @@ std::optional<types::Time> ReplayTask::nextTime() const {
 std::optional<types::Time> ReplayTask::nextStamp(const std::string& stream) const {
     if (!log_) return {};
     const auto& samples = log_->samples();
-    const size_t wanted = stream.empty() ? 0 : log_->indexOf(stream);
+    const size_t wanted = stream.empty() ? 0 : log_->findIndex(stream);
     for (size_t i = next_; i < samples.size(); ++i)
         if (stream.empty() || samples[i].stream == wanted) return samples[i].time;
     return {};
@@ -234,12 +234,12 @@ types::Time ReplayTask::logTime() const {
     return types::Time{first_us_} + types::Time::fromSeconds(pace * elapsed.seconds());
 }
 
-std::string ReplayTask::streamOf(const std::string& port) const {
+std::string ReplayTask::getStream(const std::string& port) const {
     const log::Stream* const recorded = log_ ? log_->find(port) : nullptr;
     return recorded ? recorded->name : port;
 }
 
-std::string ReplayTask::modelOf(const std::string& port) const {
+std::string ReplayTask::getModel(const std::string& port) const {
     const log::Stream* const recorded = log_ ? log_->find(port) : nullptr;
     return recorded ? recorded->metadatum("rock_task_model") : "";
 }

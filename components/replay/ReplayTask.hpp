@@ -96,8 +96,8 @@ public:
      *  instants. */
     std::optional<types::Time> nextStamp(const std::string& stream = "") const;
     std::function<types::Time()> clock(std::function<types::Time()> wall) override;
-    std::string streamOf(const std::string& port) const override;
-    std::string modelOf(const std::string& port) const override;
+    std::string getStream(const std::string& port) const override;
+    std::string getModel(const std::string& port) const override;
     /** Returns the position in the log of the last sample played, without steps of the logger's clock. */
     std::optional<types::Playback> playback() const override;
 

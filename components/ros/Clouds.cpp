@@ -19,7 +19,7 @@ namespace {
 
 constexpr double nothing_db = -3000;
 
-double levelOf(double bin, BinScale scale) {
+double computeLevel(double bin, BinScale scale) {
     if (scale == BinScale::Decibel) return std::isnan(bin) ? nothing_db : bin;
     return bin > 0 ? 10 * std::log10(bin) : nothing_db;
 }
@@ -49,8 +49,8 @@ public:
         if (scale_ == BinScale::Decibel) return;
         for (size_t level = 1; level < 256; ++level)
             minimum_[level] = binAt(reference_ + (static_cast<double>(level) - 255.5) / per_db_, scale_);
-        first_ = cellOf(minimum_[1]);
-        last_ = cellOf(minimum_[255]);
+        first_ = findCell(minimum_[1]);
+        last_ = findCell(minimum_[255]);
         uint8_t level = 0;
         for (uint32_t cell = first_; cell <= last_; ++cell)
             begin_[cell] = level = above(level, std::bit_cast<float>(cell << 16));
@@ -58,19 +58,19 @@ public:
 
     uint8_t operator()(float bin) const {
         if (scale_ == BinScale::Decibel) return ofDecibels(bin);
-        if (!(bin > 0) || cellOf(bin) < first_) return 0;
-        return above(begin_[std::min(cellOf(bin), last_)], bin);
+        if (!(bin > 0) || findCell(bin) < first_) return 0;
+        return above(begin_[std::min(findCell(bin), last_)], bin);
     }
 
 private:
-    static uint32_t cellOf(float bin) { return std::bit_cast<uint32_t>(bin) >> 16; }
+    static uint32_t findCell(float bin) { return std::bit_cast<uint32_t>(bin) >> 16; }
     /** Returns the level of a bin whose level is at least `level`. */
     uint8_t above(uint8_t level, float bin) const {
         while (level < 255 && bin >= minimum_[level + 1u]) ++level;
         return level;
     }
     uint8_t ofDecibels(float bin) const {
-        const double level = levelOf(static_cast<double>(bin), scale_);
+        const double level = computeLevel(static_cast<double>(bin), scale_);
         if (level <= nothing_db) return 0;
         return static_cast<uint8_t>(std::lround(std::clamp(255 + (level - reference_) * per_db_, 0.0, 255.0)));
     }
@@ -140,17 +140,17 @@ double referenceDb(const types::Sonar& ping, const SonarOptions& options) {
     if (options.reference_db) return *options.reference_db;
     float strongest = -std::numeric_limits<float>::infinity();
     for (const float bin : ping.bins) strongest = bin > strongest ? bin : strongest;  // false for NaN
-    return std::clamp(levelOf(static_cast<double>(strongest), options.scale), nothing_db, -nothing_db);
+    return std::clamp(computeLevel(static_cast<double>(strongest), options.scale), nothing_db, -nothing_db);
 }
 
-Vector3 directionOf(double bearing_rad, SensorFrame frame) {
+Vector3 computeDirection(double bearing_rad, SensorFrame frame) {
     const double ahead = std::cos(bearing_rad), port = std::sin(bearing_rad);
     return frame == SensorFrame::ZForward ? Vector3{0, -port, ahead} : Vector3{ahead, port, 0};
 }
 
 namespace {
 
-const types::ReturnLevels& levelsOf(const types::Sonar& ping, const SonarOptions& options) {
+const types::ReturnLevels& computeLevels(const types::Sonar& ping, const SonarOptions& options) {
     static thread_local types::ReturnLevels levels;  // reuses its memory
     types::ReturnRules rules = options.returns;
     rules.range_min = rangeMin(options);
@@ -164,7 +164,7 @@ double rangeMin(const SonarOptions& options) { return options.range_min.value_or
 
 DetectionThreshold::DetectionThreshold(const types::Sonar& ping, const SonarOptions& options)
     : ping_(ping),
-      levels_(levelsOf(ping, options)),
+      levels_(computeLevels(ping, options)),
       is_linear_(options.scale == BinScale::Linear),
       is_absolute_(options.reference_db.has_value()) {
     if (!is_linear_) {
@@ -179,7 +179,7 @@ DetectionThreshold::DetectionThreshold(const types::Sonar& ping, const SonarOpti
     minimum_ = std::max(reference * std::pow(10, options.threshold_db / 10), std::numeric_limits<double>::denorm_min());
 }
 
-std::optional<uint32_t> DetectionThreshold::firstOf(uint32_t beam) const {
+std::optional<uint32_t> DetectionThreshold::findFirst(uint32_t beam) const {
     const float* bins = ping_.bins.data() + size_t{beam} * ping_.bin_count;
     for (uint32_t k = 0; k < ping_.bin_count; ++k)
         if (isReturn(k, bins[k])) return k;
@@ -188,7 +188,7 @@ std::optional<uint32_t> DetectionThreshold::firstOf(uint32_t beam) const {
 
 bool DetectionThreshold::isTooNear(uint32_t beam) const {
     const float* bins = ping_.bins.data() + size_t{beam} * ping_.bin_count;
-    if (firstOf(beam)) return false;
+    if (findFirst(beam)) return false;
     for (size_t k = 0; k < levels_.first(); ++k)
         if (is_linear_ ? levels_.unblanked(k, static_cast<double>(bins[k])) >= minimum_
                        : bins[k] >= static_cast<float>(minimum_))

@@ -18,7 +18,7 @@ namespace insonify::ros {
 inline float binCentre(const types::Sonar& ping, uint32_t k) { return static_cast<float>(ping.binStart(k + 0.5)); }
 
 /** Returns the unit vector at a bearing (positive to port) in the plane of the fan. */
-Vector3 directionOf(double bearing_rad, SensorFrame frame);
+Vector3 computeDirection(double bearing_rad, SensorFrame frame);
 
 /** Returns the range from which on bins of a ping are returns [m]. */
 double rangeMin(const SonarOptions& options);
@@ -35,7 +35,7 @@ public:
         return k >= levels_.first() && bin >= static_cast<float>(minimum_);
     }
     /** Returns the first bin of a beam that is a return. */
-    std::optional<uint32_t> firstOf(uint32_t beam) const;
+    std::optional<uint32_t> findFirst(uint32_t beam) const;
     /** Whether a beam has no return, but a strong echo nearer than rangeMin(). */
     bool isTooNear(uint32_t beam) const;
 

@@ -35,7 +35,7 @@ void fillInfo(const auto& ping, const SonarOptions& options, PingInfo& info) {
 void fillDirections(const types::Sonar& ping, SensorFrame frame, std::vector<Vector3>& directions) {
     directions.resize(ping.beam_count);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
-        directions[beam] = directionOf(ping.bearings[beam].rad, frame);
+        directions[beam] = computeDirection(ping.bearings[beam].rad, frame);
 }
 
 /** Fills the delay of each beam after the ping's stamp; zeros if the beams have no stamps [s]. */
@@ -51,18 +51,18 @@ void fillReceiveAngles(const std::vector<types::Angle>& bearings, std::vector<fl
     for (size_t beam = 0; beam < bearings.size(); ++beam) angles[beam] = static_cast<float>(-bearings[beam].rad);
 }
 
-/** Fills flags, intensities and the places of the first return of each beam. @param placeOf returns that of a bin */
+/** Fills flags, intensities and the places of the first return of each beam. @param getPlace returns that of a bin */
 void fillFirstReturns(const types::Sonar& ping, const SonarOptions& options, auto& message, std::vector<float>& places,
-                      auto&& placeOf) {
+                      auto&& getPlace) {
     message.flags.assign(ping.beam_count, {DetectionFlag::bad_filter});
     message.intensities.assign(ping.beam_count, 0);
     places.assign(ping.beam_count, std::numeric_limits<float>::quiet_NaN());
     const DetectionThreshold rule(ping, options);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
-        if (const auto bin = rule.firstOf(beam)) {
+        if (const auto bin = rule.findFirst(beam)) {
             message.flags[beam].flag = DetectionFlag::ok;
             message.intensities[beam] = ping.bins[size_t{beam} * ping.bin_count + *bin];
-            places[beam] = placeOf(*bin);
+            places[beam] = getPlace(*bin);
         }
 }
 
@@ -76,7 +76,7 @@ double minStep(const types::BeamArc& arc) {
 }
 
 /** Returns the LaserScan's ray for the beam at `place`, if the preceding beam is ray `before`. */
-size_t rayOf(const types::BeamArc& arc, size_t place, double minimum, size_t before) {
+size_t findRay(const types::BeamArc& arc, size_t place, double minimum, size_t before) {
     constexpr double tolerance = 1e-3, max_rays = 16384;
     const double step = stepTo(arc, place), steps = std::round(step / minimum);
     if (!(std::abs(step - steps * minimum) < tolerance * steps * minimum) ||
@@ -150,7 +150,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2&
     const DetectionThreshold rule(ping, options);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
         if (ping.bearings[beam].isUnknown()) continue;
-        const Vector3 direction = directionOf(ping.bearings[beam].rad, SensorFrame::XForward);
+        const Vector3 direction = computeDirection(ping.bearings[beam].rad, SensorFrame::XForward);
         const float x = static_cast<float>(direction.x), y = static_cast<float>(direction.y),
                     z = static_cast<float>(direction.z);
         for (uint32_t bin = 0; bin < ping.bin_count; ++bin)
@@ -172,10 +172,10 @@ void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& m
     message.ranges.clear();
     message.intensities.clear();
     for (size_t place = 0, ray = 0; place < arc.beams.size(); ++place) {
-        if (place > 0) ray = rayOf(arc, place, minimum, ray);
+        if (place > 0) ray = findRay(arc, place, minimum, ray);
         message.ranges.resize(ray + 1, std::numeric_limits<float>::quiet_NaN());
         message.intensities.resize(ray + 1, 0);
-        const auto bin = rule.firstOf(arc.beams[place]);
+        const auto bin = rule.findFirst(arc.beams[place]);
         constexpr float nothing = std::numeric_limits<float>::infinity();
         // The bin that range_min divides has echoes of its farther part, and readers drop ranges below range_min.
         message.ranges[ray] = bin                                ? std::max(nearest, binCentre(ping, *bin))
@@ -196,7 +196,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument("sonar image: " + why); }
 
-size_t sizeOf(uint32_t dtype) {
+size_t getSize(uint32_t dtype) {
     switch (dtype) {
         case SonarImageData::uint8: return 1;
         case SonarImageData::uint16: return 2;
@@ -213,7 +213,7 @@ void checkShape(const ProjectedSonarImage& message) {
     if (message.beam_directions.size() != image.beam_count)
         refuse(std::to_string(message.beam_directions.size()) + " directions for " + std::to_string(image.beam_count) +
                " beams");
-    const size_t size = sizeOf(image.dtype);
+    const size_t size = getSize(image.dtype);
     if (image.is_bigendian && size > 1) refuse("big-endian numbers are not read");
     if (image.data.size() / size != message.ranges.size() * image.beam_count || image.data.size() % size != 0)
         refuse(std::to_string(image.data.size()) + " bytes of data for " + std::to_string(image.beam_count) +
@@ -244,7 +244,7 @@ void readRanges(const ProjectedSonarImage& message, types::Sonar& ping) {
     ping.setBins(width, speed);
 }
 
-double bearingOf(const Vector3& direction, SensorFrame frame) {
+double computeBearing(const Vector3& direction, SensorFrame frame) {
     return frame == SensorFrame::ZForward ? std::atan2(-direction.y, direction.z)
                                           : std::atan2(direction.y, direction.x);
 }
@@ -278,7 +278,7 @@ void readBins(const SonarImageData& image, ImageOrder order, types::Sonar& ping)
     }
 }
 
-types::Angle widthOf(const std::vector<float>& widths) {
+types::Angle computeWidth(const std::vector<float>& widths) {
     return widths.empty() ? types::Angle{} : types::Angle{static_cast<double>(widths.front())};
 }
 
@@ -298,8 +298,8 @@ void convert(const SonarDetections& message, types::SonarDetections& detections)
     detections.clear();
     detections.time = fromRos(message.header.stamp);
     detections.speed_of_sound = message.ping_info.sound_speed;
-    detections.beam_height = widthOf(message.ping_info.tx_beamwidths);
-    detections.beam_width = widthOf(message.ping_info.rx_beamwidths);
+    detections.beam_height = computeWidth(message.ping_info.tx_beamwidths);
+    detections.beam_width = computeWidth(message.ping_info.rx_beamwidths);
     for (const float angle : message.rx_angles) detections.bearings.push_back({-static_cast<double>(angle)});
     detections.elevations = message.tx_angles;
     detections.travel_times = message.two_way_travel_times;
@@ -316,13 +316,13 @@ void convert(const ProjectedSonarImage& message, const ImageLayout& layout, type
     ping.time = fromRos(message.header.stamp);
     ping.timestamps.clear();
     readRanges(message, ping);
-    ping.beam_height = widthOf(message.ping_info.tx_beamwidths);
-    ping.beam_width = widthOf(message.ping_info.rx_beamwidths);
+    ping.beam_height = computeWidth(message.ping_info.tx_beamwidths);
+    ping.beam_width = computeWidth(message.ping_info.rx_beamwidths);
     ping.beam_count = message.image.beam_count;
     ping.bin_count = static_cast<uint32_t>(message.ranges.size());
     ping.bearings.resize(ping.beam_count);
     for (size_t beam = 0; beam < ping.beam_count; ++beam)
-        ping.bearings[beam] = types::Angle::fromRad(bearingOf(message.beam_directions[beam], layout.frame));
+        ping.bearings[beam] = types::Angle::fromRad(computeBearing(message.beam_directions[beam], layout.frame));
     ping.bins.resize(size_t{ping.bin_count} * ping.beam_count);
     readBins(message.image, layout.order, ping);
 }

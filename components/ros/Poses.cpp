@@ -13,11 +13,11 @@ namespace {
 
 using Covariance3 = std::array<double, 9>;
 
-Vector3 vectorOf(glm::dvec3 v) { return {v.x, v.y, v.z}; }
+Vector3 toVector(glm::dvec3 v) { return {v.x, v.y, v.z}; }
 glm::dvec3 fromRos(const Vector3& v) { return {v.x, v.y, v.z}; }
 
 /** Returns the covariance by rows. The first element is -1 if the value itself is unknown. */
-Covariance3 rowsOf(const glm::dmat3& covariance, bool value_known, double unknown) {
+Covariance3 getRows(const glm::dmat3& covariance, bool value_known, double unknown) {
     Covariance3 rows;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
@@ -26,7 +26,7 @@ Covariance3 rowsOf(const glm::dmat3& covariance, bool value_known, double unknow
     return rows;
 }
 
-glm::dmat3 matrixOf(const Covariance3& rows, double unknown) {
+glm::dmat3 toMatrix(const Covariance3& rows, double unknown) {
     glm::dmat3 matrix{0};
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) matrix[column][row] = rows[static_cast<size_t>(3 * row + column)];
@@ -38,15 +38,15 @@ glm::dmat3 matrixOf(const Covariance3& rows, double unknown) {
 /** Writes a vector of the body, and its covariance. */
 void report(glm::dvec3 value, const glm::dmat3& covariance, WorldFrame frame, Vector3& reported, Covariance3& rows) {
     const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
-    reported = isUnknown(value) ? Vector3{} : vectorOf(body(value));
-    rows = rowsOf(both(covariance, body), !isUnknown(value), 0);
+    reported = isUnknown(value) ? Vector3{} : toVector(body(value));
+    rows = getRows(both(covariance, body), !isUnknown(value), 0);
 }
 
 void read(const Vector3& reported, const Covariance3& rows, WorldFrame frame, glm::dvec3& value,
           glm::dmat3& covariance) {
     const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
     value = rows[0] == -1 ? glm::dvec3(types::Pose::unknown) : body(fromRos(reported));
-    covariance = both(matrixOf(rows, 0), body);
+    covariance = both(toMatrix(rows, 0), body);
 }
 
 /** Converts from axes with z up to an instrument's axes, whose z is its look direction, and back. */
@@ -54,7 +54,7 @@ glm::dvec3 turnedOver(glm::dvec3 v) { return {v.x, -v.y, -v.z}; }
 
 void writeBeam(const types::Dvl& dvl, size_t beam, Dvl& message) {
     const double range = dvl.beam_ranges[beam], variance = dvl.beam_velocity_variances[beam];
-    message.beam_unit_vec[beam] = vectorOf(turnedOver(dvl.beam_directions[beam]));
+    message.beam_unit_vec[beam] = toVector(turnedOver(dvl.beam_directions[beam]));
     message.range[beam] = range;
     message.beam_quality[beam] = std::isfinite(range) ? 1.0f : 0.0f;
     message.beam_velocity[beam] = static_cast<float>(dvl.beam_velocities[beam]);
@@ -87,7 +87,7 @@ void setBlock(size_t block, bool value_known, const glm::dmat3& covariance, Cova
     if (!value_known) all[21 * block] = -1;
 }
 
-glm::dmat3 blockOf(size_t block, const Covariance& all) {
+glm::dmat3 getBlock(size_t block, const Covariance& all) {
     glm::dmat3 covariance{0};
     for (size_t row = 0; row < 3; ++row)
         for (size_t column = 0; column < 3; ++column)
@@ -96,7 +96,7 @@ glm::dmat3 blockOf(size_t block, const Covariance& all) {
     return covariance == glm::dmat3(0) || all[21 * block] == -1 ? types::Pose::unknownMatrix() : covariance;
 }
 
-glm::dvec3 valueOf(size_t block, const Vector3& v, const Covariance& all) {
+glm::dvec3 getValue(size_t block, const Vector3& v, const Covariance& all) {
     return all[21 * block] == -1 ? glm::dvec3(types::Pose::unknown) : glm::dvec3(v.x, v.y, v.z);
 }
 
@@ -118,8 +118,8 @@ void fillCovariance(const types::Pose& pose, Axes axes, Covariance& all) {
 
 void readCovariance(const Covariance& all, Axes axes, types::Pose& pose) {
     const glm::dquat body_from_rock = glm::inverse(glm::normalize(pose.orientation));
-    pose.cov_position = both(blockOf(0, all), [&](glm::dvec3 v) { return axes.rockFromWorld(v); });
-    pose.cov_orientation = both(blockOf(1, all), [&](glm::dvec3 v) { return body_from_rock * axes.rockFromWorld(v); });
+    pose.cov_position = both(getBlock(0, all), [&](glm::dvec3 v) { return axes.rockFromWorld(v); });
+    pose.cov_orientation = both(getBlock(1, all), [&](glm::dvec3 v) { return body_from_rock * axes.rockFromWorld(v); });
 }
 
 void readPose(const Header& header, const Pose& message, Axes axes, types::Pose& pose) {
@@ -139,7 +139,7 @@ void convert(const types::Imu& imu, WorldFrame frame, const std::string& frame_i
     const glm::dquat q = is_known ? types::Axes{frame}.orientationFromRock(imu.orientation) : glm::dquat(1, 0, 0, 0);
     message.orientation = {q.x, q.y, q.z, q.w};
     const auto to_world = [&](glm::dvec3 v) { return types::Axes{frame}.worldFromRock(imu.orientation * v); };
-    message.orientation_covariance = rowsOf(both(imu.cov_orientation, to_world), is_known, 0);
+    message.orientation_covariance = getRows(both(imu.cov_orientation, to_world), is_known, 0);
     report(imu.angular_velocity, imu.cov_angular_velocity, frame, message.angular_velocity,
            message.angular_velocity_covariance);
     report(imu.linear_acceleration, imu.cov_linear_acceleration, frame, message.linear_acceleration,
@@ -155,7 +155,7 @@ void convert(const Imu& message, WorldFrame frame, types::Imu& imu) {
     const auto from_world = [&](glm::dvec3 v) {
         return glm::inverse(imu.orientation) * types::Axes{frame}.rockFromWorld(v);
     };
-    imu.cov_orientation = both(matrixOf(message.orientation_covariance, 0), from_world);
+    imu.cov_orientation = both(toMatrix(message.orientation_covariance, 0), from_world);
     read(message.angular_velocity, message.angular_velocity_covariance, frame, imu.angular_velocity,
          imu.cov_angular_velocity);
     read(message.linear_acceleration, message.linear_acceleration_covariance, frame, imu.linear_acceleration,
@@ -185,8 +185,8 @@ void convert(const types::Dvl& dvl, const std::string& frame_id, Dvl& message) {
     message.header = {toRos(dvl.time), frame_id};
     message.velocity_mode = Dvl::bottom;
     message.dvl_type = Dvl::piston;
-    message.velocity = vectorOf(v);
-    message.velocity_covar = rowsOf(both(dvl.cov_velocity, turnedOver), true, -1);
+    message.velocity = toVector(v);
+    message.velocity_covar = getRows(both(dvl.cov_velocity, turnedOver), true, -1);
     message.altitude = dvl.altitude;
     message.course_gnd = std::atan2(v.y, v.x);
     message.speed_gnd = std::hypot(v.x, v.y);
@@ -202,7 +202,7 @@ void convert(const Dvl& message, types::Dvl& dvl) {
     dvl = {};
     dvl.time = fromRos(message.header.stamp);
     dvl.velocity = turnedOver(fromRos(message.velocity));
-    dvl.cov_velocity = both(matrixOf(message.velocity_covar, -1), turnedOver);
+    dvl.cov_velocity = both(toMatrix(message.velocity_covar, -1), turnedOver);
     dvl.altitude = message.altitude;
     dvl.speed_of_sound = static_cast<double>(message.sound_speed);
     for (size_t beam = 0; beam < Dvl::beams; ++beam) {
@@ -331,10 +331,10 @@ void convert(const Odometry& message, WorldFrame frame, types::Pose& pose) {
     const auto from_body = [&](glm::dvec3 v) { return rock_from_body * axes.body(v); };
     const Covariance& of_twist = message.twist.covariance;
     readCovariance(message.pose.covariance, axes, pose);
-    pose.velocity = from_body(valueOf(0, message.twist.twist.linear, of_twist));
-    pose.angular_velocity = body(valueOf(1, message.twist.twist.angular, of_twist));
-    pose.cov_velocity = both(blockOf(0, of_twist), from_body);
-    pose.cov_angular_velocity = both(blockOf(1, of_twist), body);
+    pose.velocity = from_body(getValue(0, message.twist.twist.linear, of_twist));
+    pose.angular_velocity = body(getValue(1, message.twist.twist.angular, of_twist));
+    pose.cov_velocity = both(getBlock(0, of_twist), from_body);
+    pose.cov_angular_velocity = both(getBlock(1, of_twist), body);
 }
 
 }  // namespace insonify::ros

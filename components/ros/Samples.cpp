@@ -25,7 +25,7 @@ const Encoding& encodingWhere(const std::string& what, auto&& is) {
     throw std::invalid_argument(what + " is not known: mono8, mono16, rgb8 and bgr8 are");
 }
 
-const Encoding& encodingOf(const types::Image& picture) {
+const Encoding& getEncoding(const types::Image& picture) {
     return encodingWhere(
         "a picture of mode " + std::to_string(static_cast<int>(picture.frame_mode)) + " with " +
             std::to_string(picture.pixel_size) + " bytes a pixel",
@@ -35,7 +35,7 @@ const Encoding& encodingOf(const types::Image& picture) {
 }  // namespace
 
 void convert(const types::Image& picture, const std::string& frame_id, Image& message) {
-    message.encoding = encodingOf(picture).name;
+    message.encoding = getEncoding(picture).name;
     if (!picture.holdsPixels()) throw std::invalid_argument("the picture does not hold the pixels that it announces");
     message.header.stamp = toRos(picture.time);
     message.header.frame_id = frame_id;

@@ -152,7 +152,7 @@ using LoggedMessage = std::tuple_element_t<0, typename MessagesOf<T>::type>;
 
 /** Calls `use(std::type_identity<Message>{})` for each message that a T can become. */
 template <class T, class Use>
-void forEachMessageOf(Use&& use) {
+void forEachMessageType(Use&& use) {
     [&]<class... Message>(std::type_identity<std::tuple<Message...>>) {
         (use(std::type_identity<Message>{}), ...);
     }(std::type_identity<typename MessagesOf<T>::type>{});

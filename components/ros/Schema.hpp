@@ -41,7 +41,7 @@ std::string fieldType() {
 
 /** Returns the lines of one message: its constants, then its fields. */
 template <Message T>
-std::string definitionOf() {
+std::string describeDefinition() {
     std::string text;
     if constexpr (requires { T::constants; }) text = T::constants;
     T value{};
@@ -52,7 +52,7 @@ std::string definitionOf() {
 
 /** Returns the text of a `.msg` file: the summary, and the fields with units and meanings. */
 template <Message T>
-std::string fileOf() {
+std::string getFile() {
     std::string text = "# " + std::string(T::summary) + "\n# Made by ros_messages from components/ros.\n";
     T value{};
     auto line = [&]<class F>(const types::Field& field, F&) {
@@ -68,7 +68,7 @@ std::string fileOf() {
 class Definitions {
 public:
     template <class T>
-    void addPartsOf() {
+    void addParts() {
         if constexpr (Sequence<T> || Array<T>)
             addIfMessage<typename T::value_type>();
         else if constexpr (Message<T>) {
@@ -84,9 +84,9 @@ private:
     template <class T>
     void addIfMessage() {
         if constexpr (!Message<T>)
-            addPartsOf<T>();
-        else if (add(T::type_name, definitionOf<T>()))
-            addPartsOf<T>();
+            addParts<T>();
+        else if (add(T::type_name, describeDefinition<T>()))
+            addParts<T>();
     }
     bool add(const std::string& type_name, const std::string& definition) {
         if (std::ranges::count(known_, type_name)) return false;
@@ -177,10 +177,10 @@ std::string typeHash() {
 
 /** Returns the whole schema of a message: its definition and those of all nested messages. */
 template <Message T>
-std::string schemaOf() {
+std::string describeSchema() {
     Definitions parts;
-    parts.addPartsOf<T>();
-    return definitionOf<T>() + parts.text();
+    parts.addParts<T>();
+    return describeDefinition<T>() + parts.text();
 }
 
 }  // namespace insonify::ros

@@ -12,9 +12,9 @@ namespace {
 constexpr size_t longest_name = 255;
 
 /** Strips a leading slash, as tf2 does: "/map" is "map". */
-std::string nameOf(const std::string& frame) { return frame.starts_with('/') ? frame.substr(1) : frame; }
+std::string getName(const std::string& frame) { return frame.starts_with('/') ? frame.substr(1) : frame; }
 
-types::Pose poseOf(const Transform& transform) {
+types::Pose getPose(const Transform& transform) {
     types::Pose pose;
     pose.position = {transform.translation.x, transform.translation.y, transform.translation.z};
     pose.orientation = {transform.rotation.w, transform.rotation.x, transform.rotation.y, transform.rotation.z};
@@ -23,13 +23,13 @@ types::Pose poseOf(const Transform& transform) {
 
 }  // namespace
 
-std::string TransformTree::diagnosticOf(const TransformStamped& transform, bool is_static, types::Time stamp,
-                                        types::Time now) const {
-    const std::string child = nameOf(transform.child_frame_id), parent = nameOf(transform.header.frame_id);
+std::string TransformTree::findDiagnostic(const TransformStamped& transform, bool is_static, types::Time stamp,
+                                          types::Time now) const {
+    const std::string child = getName(transform.child_frame_id), parent = getName(transform.header.frame_id);
     if (child.empty() || parent.empty()) return "a transform without the name of its frame or of its parent";
     if (std::max(child.size(), parent.size()) > longest_name) return "a name of more than 255 characters";
     if (child == parent) return child + " is its own parent";
-    if (!types::isUsable(poseOf(transform.transform)))
+    if (!types::isUsable(getPose(transform.transform)))
         return child + ": translation and rotation are not finite, or the rotation has no length";
     if (!is_static && stamp - now > max_ahead) return child + ": the stamp is more than ten seconds ahead of the clock";
     const auto found = links_.find(child);
@@ -43,9 +43,10 @@ std::string TransformTree::diagnosticOf(const TransformStamped& transform, bool 
 }
 
 std::string TransformTree::add(const TransformStamped& transform, bool is_static, types::Time stamp, types::Time now) {
-    if (std::string diagnostic = diagnosticOf(transform, is_static, stamp, now); !diagnostic.empty()) return diagnostic;
-    Link& link = links_[nameOf(transform.child_frame_id)];
-    const std::string parent = nameOf(transform.header.frame_id);
+    if (std::string diagnostic = findDiagnostic(transform, is_static, stamp, now); !diagnostic.empty())
+        return diagnostic;
+    Link& link = links_[getName(transform.child_frame_id)];
+    const std::string parent = getName(transform.header.frame_id);
     const bool begins_anew = link.is_static != is_static || link.parent != parent ||
                              (!link.samples.empty() && stamp < link.samples.back().time);
     if (is_static || begins_anew) link.samples.clear();
@@ -54,13 +55,13 @@ std::string TransformTree::add(const TransformStamped& transform, bool is_static
     link.is_static = is_static;
     link.came = now;
     if (!link.samples.empty() && link.samples.back().time == stamp) return "";  // a repeated transform
-    const types::Pose pose = poseOf(transform.transform);
+    const types::Pose pose = getPose(transform.transform);
     link.samples.push_back({stamp, pose.position, glm::normalize(pose.orientation)});
     while (link.samples.size() > max_kept || stamp - link.samples.front().time > memory) link.samples.pop_front();
     return "";
 }
 
-std::optional<TransformTree::Chain> TransformTree::chainOf(const std::string& frame, std::string& diagnostic) const {
+std::optional<TransformTree::Chain> TransformTree::findChain(const std::string& frame, std::string& diagnostic) const {
     Chain chain;
     for (auto link = links_.find(frame); link != links_.end(); link = links_.find(link->second.parent)) {
         chain.push_back(&*link);
@@ -92,7 +93,7 @@ std::optional<TransformTree::Sample> TransformTree::at(const Chain& chain, types
     return all;
 }
 
-const TransformTree::Links::value_type* TransformTree::oldestOf(const Chain& up, const Chain& down) {
+const TransformTree::Links::value_type* TransformTree::findOldest(const Chain& up, const Chain& down) {
     const Links::value_type* oldest = nullptr;
     const auto newestTime = [](const auto* link) { return link->second.samples.back().time; };
     for (const Chain* chain : {&up, &down})
@@ -103,16 +104,16 @@ const TransformTree::Links::value_type* TransformTree::oldestOf(const Chain& up,
 
 TransformTree::Found TransformTree::newest(const std::string& world, const std::string& frame, types::Time now) const {
     std::string diagnostic;
-    auto up = chainOf(nameOf(frame), diagnostic), down = chainOf(nameOf(world), diagnostic);
+    auto up = findChain(getName(frame), diagnostic), down = findChain(getName(world), diagnostic);
     if (!up || !down) return {{}, diagnostic};
-    const std::string root = up->empty() ? nameOf(frame) : up->back()->second.parent;
-    if (root != (down->empty() ? nameOf(world) : down->back()->second.parent))
+    const std::string root = up->empty() ? getName(frame) : up->back()->second.parent;
+    if (root != (down->empty() ? getName(world) : down->back()->second.parent))
         return {{}, "no transforms lead from " + frame + " to " + world + (up->empty() ? "" : ", only to " + root)};
     while (!up->empty() && !down->empty() && up->back() == down->back()) {
         up->pop_back();
         down->pop_back();
     }
-    const auto* oldest = oldestOf(*up, *down);
+    const auto* oldest = findOldest(*up, *down);
     if (oldest && types::elapsed(oldest->second.came, now) > max_silence)
         diagnostic = oldest->first + " in " + oldest->second.parent + " was not published for a second";
     const types::Time time = oldest ? oldest->second.samples.back().time : types::Time{};

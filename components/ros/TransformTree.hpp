@@ -61,12 +61,12 @@ private:
     using Links = std::map<std::string, Link>;
     using Chain = std::vector<const Links::value_type*>;  ///< Transforms from a frame upwards.
 
-    std::string diagnosticOf(const TransformStamped& transform, bool is_static, types::Time stamp,
-                             types::Time now) const;
+    std::string findDiagnostic(const TransformStamped& transform, bool is_static, types::Time stamp,
+                               types::Time now) const;
     /** Returns the chain from a frame to its root; none, with a `diagnostic`, for a circle. */
-    std::optional<Chain> chainOf(const std::string& frame, std::string& diagnostic) const;
+    std::optional<Chain> findChain(const std::string& frame, std::string& diagnostic) const;
     /** Returns the transform whose newest stamp is the oldest; null if all are static. */
-    static const Links::value_type* oldestOf(const Chain& up, const Chain& down);
+    static const Links::value_type* findOldest(const Chain& up, const Chain& down);
     static std::optional<Sample> at(const Chain& chain, types::Time time);
 
     Links links_;

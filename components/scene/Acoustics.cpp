@@ -60,16 +60,16 @@ constexpr Synonym synonyms[] = {
 };
 
 /** Returns the matter or else the sediment of that name: "rock" is matter, "sand" is the sediment. */
-std::string_view nameOf(std::string_view words) {
+std::string_view getName(std::string_view words) {
     const auto* synonym = std::ranges::find(synonyms, words, &Synonym::word);
     if (synonym != std::end(synonyms)) return synonym->name;
-    if (const auto matter = acoustics::matterNamed(words)) return acoustics::nameOf(*matter);
+    if (const auto matter = acoustics::matterNamed(words)) return acoustics::getName(*matter);
     const auto& sediments = types::EnumNames<Sediment>::names;
     const auto* sediment = std::ranges::find(sediments, words);
     return sediment != std::end(sediments) && words != "mackenzie" ? *sediment : std::string_view();
 }
 
-Acoustics acousticsOf(std::string_view name) {
+Acoustics getAcoustics(std::string_view name) {
     Acoustics acoustics;
     acoustics.material = acoustics::matterNamed(name);
     const auto& sediments = types::EnumNames<Sediment>::names;
@@ -87,7 +87,7 @@ std::string listed(const std::vector<std::string>& texts) {
                        shown < texts.size() ? fmt::format(" and {} more", texts.size() - shown) : "");
 }
 
-std::string noticeOf(const std::vector<std::string>& taken, const std::vector<std::string>& unclear) {
+std::string makeNotice(const std::vector<std::string>& taken, const std::vector<std::string>& unclear) {
     std::string text;
     if (!taken.empty()) text = "materials without acoustic values are taken by their names: " + listed(taken);
     if (!unclear.empty())
@@ -133,9 +133,9 @@ constexpr bool isInOrder(const Rows& rows, E std::remove_extent_t<Rows>::*key) {
 static_assert(isInOrder(seabeds, &SeabedRow::sediment));
 
 /** Returns the fluid of that name; none for water and air. */
-std::optional<acoustics::MatterProperties> fluidOf(Fill fill) {
-    if (fill == Fill::Sand) return acoustics::propertiesOf(Matter::Sand);
-    if (fill == Fill::Mud) return acoustics::propertiesOf(Matter::Mud);
+std::optional<acoustics::MatterProperties> getFluid(Fill fill) {
+    if (fill == Fill::Sand) return acoustics::getProperties(Matter::Sand);
+    if (fill == Fill::Mud) return acoustics::getProperties(Matter::Mud);
     if (fill != Fill::Oil) return {};
     // Light crude oil without gas at 15.6 deg C and atmospheric pressure: Batzle and Wang 1992, equation 20a, which has
     // no loss.
@@ -272,7 +272,7 @@ types::Diagnostic unknown(const Scene& scene, const std::string& name) {
 
 }  // namespace
 
-std::vector<std::string> wordsOf(const std::string& name) {
+std::vector<std::string> splitWords(const std::string& name) {
     std::vector<std::string> words(1);
     for (size_t i = 0; i < name.size(); ++i) {
         const bool begins = i > 0 && types::isUpperLetter(name[i]) && types::isLowerLetter(name[i - 1]);
@@ -284,7 +284,7 @@ std::vector<std::string> wordsOf(const std::string& name) {
 
 std::vector<std::string_view> matterIn(const std::string& name) {
     constexpr size_t max_words = 3;
-    const std::vector<std::string> words = wordsOf(name);
+    const std::vector<std::string> words = splitWords(name);
     std::vector<std::string_view> found;
     for (size_t i = 0; i < words.size();) {
         size_t taken = 1;
@@ -292,7 +292,7 @@ std::vector<std::string_view> matterIn(const std::string& name) {
             const auto first = words.begin() + static_cast<std::ptrdiff_t>(i);
             const std::string joined =
                 fmt::format("{}", fmt::join(first, first + static_cast<std::ptrdiff_t>(count), "_"));
-            const std::string_view matter = nameOf(joined);
+            const std::string_view matter = getName(joined);
             if (matter.empty()) continue;
             if (std::ranges::find(found, matter) == found.end()) found.push_back(matter);
             taken = count;
@@ -316,17 +316,17 @@ types::GeometryPtr applyMaterialNames(const types::GeometryPtr& geometry) {
         if (std::ranges::find(list, text) == list.end()) list.push_back(std::move(text));
         if (!named) named = std::make_shared<types::Geometry>(*geometry);
         if (found.size() > 1) continue;
-        acousticsOf(found.front()).applyTo(named->materials[i]);
+        getAcoustics(found.front()).applyTo(named->materials[i]);
         named->materials[i].is_named = true;
     }
     if (!named) return geometry;
-    named->notices.push_back(noticeOf(taken, unclear));
+    named->notices.push_back(makeNotice(taken, unclear));
     return named;
 }
 
 double lambertDb(Sediment sediment) { return seabeds[static_cast<size_t>(sediment)].lambert_db; }
 
-double reflection(Matter matter) { return acoustics::propertiesOf(matter).reflection; }
+double reflection(Matter matter) { return acoustics::getProperties(matter).reflection; }
 
 double lambertDb(Matter matter) { return convex_body_db + 20 * std::log10(std::abs(reflection(matter))); }
 
@@ -363,9 +363,9 @@ void applyNames(const Acoustics& given, types::Material& target) {
     if (given.material) {
         target.lambert_db = static_cast<float>(lambertDb(*given.material));
         target.reflection = static_cast<float>(scene::reflection(*given.material));
-        const bool has_law = acoustics::propertiesOf(*given.material).hasRoughness();
+        const bool has_law = acoustics::getProperties(*given.material).hasRoughness();
         if (has_law && !given.lambert_db && !given.reflection && !given.roughness_slope && !given.table)
-            target.matter = acoustics::nameOf(*given.material);
+            target.matter = acoustics::getName(*given.material);
     }
 }
 
@@ -389,19 +389,19 @@ void Acoustics::applyTo(types::Material& target) const {
 
 void ShellAcoustics::check(types::Diagnostics& diagnostics) const {
     if (!thickness_mm) diagnostics.push_back({"thickness_mm", "is missing"});
-    const bool is_wall = material && acoustics::propertiesOf(*material).is_wall;
+    const bool is_wall = material && acoustics::getProperties(*material).is_wall;
     if (material && !is_wall) {
         std::vector<std::string_view> names;
         for (size_t i = 0; i < acoustics::matterCount(); ++i)
-            if (const auto matter = static_cast<Matter>(i); acoustics::propertiesOf(matter).is_wall)
-                names.push_back(acoustics::nameOf(matter));
+            if (const auto matter = static_cast<Matter>(i); acoustics::getProperties(matter).is_wall)
+                names.push_back(acoustics::getName(matter));
         diagnostics.push_back({"material", fmt::format("is no matter of walls; give density and sound_speed, or one of "
                                                        "{}",
                                                        fmt::join(names, ", "))});
     }
     if (!material && !(density && sound_speed))
         diagnostics.push_back({"material", "is missing; or give density and sound_speed"});
-    const double speed = sound_speed.value_or(is_wall ? acoustics::propertiesOf(*material).sound_speed : INFINITY);
+    const double speed = sound_speed.value_or(is_wall ? acoustics::getProperties(*material).sound_speed : INFINITY);
     checkFill(diagnostics);
     if (shear_speed && !(*shear_speed < 0.87 * speed))  // or its compressibility is negative
         diagnostics.push_back(
@@ -414,7 +414,7 @@ void ShellAcoustics::checkFill(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"fill",
                                "is air, which no sound passes into; omit fill_density, fill_sound_speed and "
                                "fill_loss"});
-    else if (has_fluid && !(fill && fluidOf(*fill)) && !(fill_density && fill_sound_speed))
+    else if (has_fluid && !(fill && getFluid(*fill)) && !(fill_density && fill_sound_speed))
         diagnostics.push_back({"fill_density",
                                "needs a fill of oil, sand or mud, or both fill_density and "
                                "fill_sound_speed"});
@@ -422,9 +422,9 @@ void ShellAcoustics::checkFill(types::Diagnostics& diagnostics) const {
 
 types::Shell ShellAcoustics::shell() const {
     const acoustics::MatterProperties wall =
-        material ? acoustics::propertiesOf(*material) : acoustics::MatterProperties{};
+        material ? acoustics::getProperties(*material) : acoustics::MatterProperties{};
     const acoustics::MatterProperties fluid =
-        fluidOf(fill.value_or(Fill::Water)).value_or(acoustics::MatterProperties{});
+        getFluid(fill.value_or(Fill::Water)).value_or(acoustics::MatterProperties{});
     return {.thickness = thickness_mm.value_or(0) / 1000,
             .density = density.value_or(wall.density),
             .sound_speed = sound_speed.value_or(wall.sound_speed),
@@ -474,7 +474,7 @@ types::GeometryPtr overrideMaterials(const Scene& scene, const std::map<std::str
         const int node = findNode(scene, name);
         if (node < 0 && !used.contains(name)) diagnostics.push_back(unknown(scene, name));
         if (node >= 0)
-            for (const Part& part : partsOf(scene, node))
+            for (const Part& part : getParts(scene, node))
                 overrideObject(*geometry, geometry->objects[part.object], acoustics);
     }
     return geometry;

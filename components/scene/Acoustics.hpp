@@ -17,7 +17,7 @@ namespace insonify::scene {
 
 /** Splits the name of an object or material into lower-case words of letters: "seaSurface_2::Water" is sea, surface,
  *  water. At least one word is returned, which may be empty. */
-std::vector<std::string> wordsOf(const std::string& name);
+std::vector<std::string> splitWords(const std::string& name);
 
 /** Returns the names of matter and sediments in the name of a material, as modellers write it: "Steel.001",
  *  "M_Rusty-Steel", "Material_Aluminium" and "traceIron 2". Each name occurs once, in the order of the material's

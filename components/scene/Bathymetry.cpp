@@ -84,12 +84,12 @@ void checkMetres(const Survey& survey, const std::filesystem::path& file, bool h
 }
 
 void checkSameUnit(const Survey& mosaic, const std::filesystem::path& file, const Survey& survey) {
-    const auto unitOf = [](const Survey& map) { return map.isInDegrees() ? "degrees" : "metres"; };
+    const auto findUnit = [](const Survey& map) { return map.isInDegrees() ? "degrees" : "metres"; };
     if (mosaic.isInDegrees() != survey.isInDegrees())
         throw types::ConfigError(file.string(), "",
                                  fmt::format("is in {}, and the survey in {}; project it to the survey's map: gdalwarp "
                                              "-t_srs EPSG:32632 IN OUT, with the map of yours",
-                                             unitOf(mosaic), unitOf(survey)));
+                                             findUnit(mosaic), findUnit(survey)));
 }
 
 /** @param tile size of a tile of the survey [m]. */
@@ -209,7 +209,7 @@ void Bathymetry::addMaterials(Scene& scene, const BathymetryConfig& config) {
     geometry->materials.emplace_back().name = floor_name;
     if (config.map) {
         types::Diagnostics diagnostics;
-        materialsOf(config.map->meaning, "bathymetry.map.classes", *geometry, diagnostics);
+        getMaterials(config.map->meaning, "bathymetry.map.classes", *geometry, diagnostics);
         if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
         geometry->materials[floor].max_map_strength = config.map->meaning.maxStrength();
     }
@@ -269,7 +269,7 @@ PostWindow Bathymetry::wholeTiles(const PostWindow& posts) const {
             multipleDown(posts.row + posts.rows - 2, tile) + tile + 1 - row};
 }
 
-std::vector<Bathymetry::Tile> Bathymetry::tilesOf(const PostWindow& posts) const {
+std::vector<Bathymetry::Tile> Bathymetry::makeTiles(const PostWindow& posts) const {
     std::vector<Tile> tiles;
     if (posts.isEmpty()) return tiles;
     const auto below = [&](int value) { return multipleDown(value, config_.tile) / config_.tile; };
@@ -307,18 +307,18 @@ void Bathymetry::addMap(const PostWindow& posts, const std::vector<int>& materia
         }
 }
 
-glm::dvec3 Bathymetry::originOf(const Tile& tile, const SurveyPlaces& places) const {
+glm::dvec3 Bathymetry::getOrigin(const Tile& tile, const SurveyPlaces& places) const {
     const glm::dvec3 first = places.inWorld({tile.first * config_.tile, tile.second * config_.tile, 0});
     return types::isFarOut(first) ? first : glm::dvec3(0);
 }
 
-types::MeshPtr Bathymetry::meshOf(const Tile& tile, const std::vector<int>& materials) const {
+types::MeshPtr Bathymetry::getMesh(const Tile& tile, const std::vector<int>& materials) const {
     const PostWindow posts =
         clipped({tile.first * config_.tile, tile.second * config_.tile, config_.tile + 1, config_.tile + 1}, *survey_);
     if (posts.isEmpty()) return nullptr;
     std::vector<float> values = survey_->read(posts);
     Surface surface;
-    const glm::dvec3 origin = originOf(tile, worker_places_);
+    const glm::dvec3 origin = getOrigin(tile, worker_places_);
     std::vector<glm::dvec3> places;
     places.reserve(values.size());
     for (int row = 0; row < posts.rows; ++row)
@@ -363,7 +363,7 @@ void Bathymetry::work() {
         lock.unlock();
         Read read{true, nullptr, nullptr};
         try {
-            read.mesh = meshOf(tile, materials);
+            read.mesh = getMesh(tile, materials);
         } catch (...) {
             read.failure = std::current_exception();
         }
@@ -412,21 +412,21 @@ types::MeshPtr Bathymetry::wait(const Tile& tile) {
 types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::GeometryPtr& rest) {
     const PostWindow needed = postsAbout(place);
     if (rest != rest_) {
-        const auto indexOf = [&](const std::string& name) {
+        const auto findIndex = [&](const std::string& name) {
             const auto material = std::ranges::find(rest->materials, name, &types::Material::name);
             return static_cast<int>(material - rest->materials.begin());
         };
         keep({});
         const std::lock_guard alone(mutex_);
-        materials_ = {indexOf(floor_name)};
+        materials_ = {findIndex(floor_name)};
         for (const auto& [value, name] : config_.map ? config_.map->meaning.classes : MapValues().classes)
-            materials_.push_back(indexOf(name));
+            materials_.push_back(findIndex(name));
     }
     const bool is_there = window_ && rest == rest_ && window_->holds(clipped(needed, *survey_));
     const PostWindow window = is_there ? *window_ : clipped(wholeTiles(needed), *survey_);
     const int early = (config_.tile + 1) / 2;
-    std::vector<Tile> tiles = tilesOf(window);
-    around_ = tilesOf(clipped(
+    std::vector<Tile> tiles = makeTiles(window);
+    around_ = makeTiles(clipped(
         {needed.column - early, needed.row - early, needed.columns + 2 * early, needed.rows + 2 * early}, *survey_));
     std::erase_if(around_, [&](const Tile& tile) { return std::ranges::find(tiles, tile) != tiles.end(); });
     if (!is_there) ask(tiles, true);
@@ -436,7 +436,7 @@ types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::Geome
     for (const Tile& tile : tiles) {
         types::MeshPtr mesh = wait(tile);
         if (!mesh) continue;
-        const glm::dmat4 world_from_tile = glm::translate(glm::dmat4(1), originOf(tile, places_));
+        const glm::dmat4 world_from_tile = glm::translate(glm::dmat4(1), getOrigin(tile, places_));
         geometry->objects.push_back({floor_name, static_cast<int>(geometry->meshes.size()), world_from_tile, true});
         geometry->meshes.push_back(std::move(mesh));
     }

@@ -165,11 +165,11 @@ private:
     glm::dvec2 groundSpacing() const;
     PostWindow postsAbout(const glm::dvec3& place) const;
     PostWindow wholeTiles(const PostWindow& posts) const;
-    std::vector<Tile> tilesOf(const PostWindow& posts) const;
+    std::vector<Tile> makeTiles(const PostWindow& posts) const;
     /** Returns the origin of a tile's mesh in the world: its first post if that is far from the world's, else the
      * world's. */
-    glm::dvec3 originOf(const Tile& tile, const SurveyPlaces& places) const;
-    types::MeshPtr meshOf(const Tile& tile, const std::vector<int>& materials) const;
+    glm::dvec3 getOrigin(const Tile& tile, const SurveyPlaces& places) const;
+    types::MeshPtr getMesh(const Tile& tile, const std::vector<int>& materials) const;
     /** Maps the mosaic onto a tile, whose positions are those of posts. */
     void addMap(const PostWindow& posts, const std::vector<int>& materials, Surface& surface, types::Mesh& mesh) const;
     /** Queues the tiles that are neither read nor queued, before or after all others in the queue. */

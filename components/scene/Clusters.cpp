@@ -142,7 +142,7 @@ void orderVertices(types::Mesh& mesh, std::vector<uint32_t>* numbers) {
     if (numbers) remap(*numbers, new_place, used);
 }
 
-std::span<const uint32_t> trianglesOf(const types::Mesh& mesh, const types::ClusterNode& node) {
+std::span<const uint32_t> getTriangles(const types::Mesh& mesh, const types::ClusterNode& node) {
     const types::Cluster &first = mesh.clusters[node.first_cluster],
                          &last = mesh.clusters[node.first_cluster + node.cluster_count - 1];
     return std::span(mesh.indices).subspan(first.first_index, last.first_index + last.index_count - first.first_index);
@@ -203,7 +203,7 @@ bool isClosed(const types::Mesh& mesh) {
 void findCoarseMesh(types::Mesh& mesh) {
     mesh.coarse_indices.clear();
     for (size_t root = 0; root < mesh.cluster_nodes.size(); root = mesh.cluster_nodes[root].next) {
-        const std::span<const uint32_t> fine = trianglesOf(mesh, mesh.cluster_nodes[root]);
+        const std::span<const uint32_t> fine = getTriangles(mesh, mesh.cluster_nodes[root]);
         std::vector<uint32_t> coarse(fine.begin(), fine.end());
         if (fine.size() > 3 * max_coarse_triangles)  // meshoptimizer aborts if asked for more than there are
             coarse.resize(meshopt_simplifySloppy(coarse.data(), fine.data(), fine.size(), &mesh.positions[0].x,

@@ -21,7 +21,7 @@ constexpr double sheet = 0.1;         ///< Greatest thickness of a sheet [m].
 constexpr double near_surface = 0.1;  ///< Distance of a drawn surface from the water surface [m].
 constexpr double large = 10;          ///< Shorter side of a large object [m].
 
-bool isAnyOf(const std::string& word, const auto& words) { return std::ranges::find(words, word) != std::end(words); }
+bool isAmong(const std::string& word, const auto& words) { return std::ranges::find(words, word) != std::end(words); }
 
 constexpr std::array waters{"water", "sea", "ocean", "lake", "river", "pool"};
 
@@ -29,8 +29,8 @@ constexpr std::array waters{"water", "sea", "ocean", "lake", "river", "pool"};
 bool isPlain(const std::string& name) {
     static constexpr std::array plain{"visual", "v",    "vis",   "mesh",  "link", "geometry",
                                       "plane",  "body", "model", "shape", "box",  "surface"};
-    return std::ranges::all_of(wordsOf(name),
-                               [&](const std::string& word) { return word.empty() || isAnyOf(word, plain); });
+    return std::ranges::all_of(splitWords(name),
+                               [&](const std::string& word) { return word.empty() || isAmong(word, plain); });
 }
 
 /** Whether a name is one of water, or of the surface of a water. */
@@ -38,9 +38,9 @@ bool namesWater(const std::string& name) {
     static constexpr std::array water{"water", "waves", "watersurface", "seasurface", "oceansurface", "wasser", "agua"};
     static constexpr std::array others{"floor", "bed",    "bottom", "wall",  "ground",  "tank", "tower",
                                        "line",  "seabed", "pipe",   "craft", "terrain", "rock"};
-    const std::vector<std::string> words = wordsOf(name);
+    const std::vector<std::string> words = splitWords(name);
     const auto has = [&](const auto& list) {
-        return std::ranges::any_of(words, [&](const std::string& word) { return isAnyOf(word, list); });
+        return std::ranges::any_of(words, [&](const std::string& word) { return isAmong(word, list); });
     };
     if (has(others)) return false;
     return has(water) || (has(waters) && std::ranges::find(words, "surface") != words.end());
@@ -66,21 +66,21 @@ class Sorting {
 public:
     Sorting(const Scene& scene, const OmitRules& rules) : scene_(scene), rules_(rules), matched_(rules.names.size()) {
         std::vector<types::Extent> meshes;
-        for (const types::Mesh& mesh : scene.geometry->meshes) meshes.push_back(types::extentOf(mesh, glm::dmat4(1)));
+        for (const types::Mesh& mesh : scene.geometry->meshes) meshes.push_back(types::getExtent(mesh, glm::dmat4(1)));
         types::Extent all;
         for (const types::Object& object : objects()) {
             boxes_.push_back(placed(meshes[static_cast<size_t>(object.mesh)], object.world_from_object));
             all.add(boxes_.back());
         }
         area_ = all.size().x * all.size().y;
-        for (const Node& node : scene.nodes) node_patterns_.push_back(patternOf(node.name));
+        for (const Node& node : scene.nodes) node_patterns_.push_back(findPattern(node.name));
     }
 
     /** Returns why an object is omitted; empty: it is. */
     std::string reasonAgainst(size_t object) {
         for (int node = scene_.object_nodes[object]; node >= 0; node = scene_.nodes[static_cast<size_t>(node)].parent)
             if (const auto pattern = node_patterns_[static_cast<size_t>(node)]) return byPattern(*pattern);
-        if (const auto pattern = patternOf(objects()[object].name)) return byPattern(*pattern);
+        if (const auto pattern = findPattern(objects()[object].name)) return byPattern(*pattern);
         return rules_.drawings && !isSolid(object) ? drawnReason(object) : "";
     }
 
@@ -104,10 +104,10 @@ public:
 
 private:
     const std::vector<types::Object>& objects() const { return scene_.geometry->objects; }
-    const types::Mesh& meshOf(size_t object) const {
+    const types::Mesh& getMesh(size_t object) const {
         return scene_.geometry->meshes[static_cast<size_t>(objects()[object].mesh)];
     }
-    std::optional<size_t> patternOf(const std::string& name) {
+    std::optional<size_t> findPattern(const std::string& name) {
         std::optional<size_t> first;
         for (size_t i = 0; i < rules_.names.size(); ++i) {
             const std::string& pattern = rules_.names[i];
@@ -124,31 +124,31 @@ private:
     bool isSolid(size_t object) const {
         for (int node = scene_.object_nodes[object]; node >= 0; node = scene_.nodes[static_cast<size_t>(node)].parent)
             if (rules_.solid.contains(scene_.nodes[static_cast<size_t>(node)].name)) return true;
-        return std::ranges::any_of(meshOf(object).clusters, [&](const types::Cluster& cluster) {
+        return std::ranges::any_of(getMesh(object).clusters, [&](const types::Cluster& cluster) {
             const types::Material& material = scene_.geometry->materials[static_cast<size_t>(cluster.material)];
             return material.has_acoustics || rules_.solid.contains(material.name);
         });
     }
-    Drawing drawingOf(size_t object) const {
+    Drawing getDrawing(size_t object) const {
         return object < scene_.drawings.size() ? scene_.drawings[object] : Drawing{};
     }
     bool isNamedMatter(size_t object) const {
-        return std::ranges::any_of(meshOf(object).clusters, [&](const types::Cluster& cluster) {
+        return std::ranges::any_of(getMesh(object).clusters, [&](const types::Cluster& cluster) {
             return !matterIn(scene_.geometry->materials[static_cast<size_t>(cluster.material)].name).empty();
         });
     }
     bool isNamedWater(size_t object) const {
         const std::string& name = objects()[object].name;
         if (namesWater(lastPart(name)) || (isPlain(lastPart(name)) && namesWater(name))) return true;
-        return std::ranges::any_of(meshOf(object).clusters, [&](const types::Cluster& cluster) {
+        return std::ranges::any_of(getMesh(object).clusters, [&](const types::Cluster& cluster) {
             return namesWater(scene_.geometry->materials[static_cast<size_t>(cluster.material)].name);
         });
     }
     /** Whether a visual and its model are named as a sea, and as nothing else. */
     bool isOfSea(size_t object) const {
         const std::string& name = objects()[object].name;
-        const auto is_water = [](const std::string& word) { return isAnyOf(word, waters); };
-        const std::vector<std::string> own = wordsOf(lastPart(name)), all = wordsOf(name);
+        const auto is_water = [](const std::string& word) { return isAmong(word, waters); };
+        const std::vector<std::string> own = splitWords(lastPart(name)), all = splitWords(name);
         return std::ranges::all_of(own, [&](const std::string& word) { return isPlain(word) || is_water(word); }) &&
                std::ranges::any_of(all, is_water);
     }
@@ -162,7 +162,7 @@ private:
     }
 
     std::string drawnReason(size_t object) const {
-        const Drawing drawing = drawingOf(object);
+        const Drawing drawing = getDrawing(object);
         if (drawing.transparency >= 1) return "its drawing is wholly transparent";
         if (drawing.is_for_none) return "no camera sees its drawing (visibility_flags)";
         if (isNamedMatter(object)) return "";

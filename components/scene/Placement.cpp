@@ -36,7 +36,7 @@ glm::dmat4 worldFromZUp(const Placement& placement) {
 }
 
 /** Returns "x" or "-z", or the numbers of a direction that is along no axis. */
-std::string nameOf(const glm::dvec3& direction) {
+std::string getName(const glm::dvec3& direction) {
     constexpr double near = 1 - 1e-9;
     for (int axis = 0; axis < 3; ++axis)
         if (glm::abs(direction[axis]) > near)
@@ -115,9 +115,9 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
     return result;
 }
 
-std::string layOf(const Scene& scene, const Placement& placement, types::WorldFrame poses) {
+std::string describeLay(const Scene& scene, const Placement& placement, types::WorldFrame poses) {
     const glm::dmat3 file_from_world(glm::inverse(worldFromZUp(placement) * zUpFromFile(scene, placement)));
-    const auto name = [&](const glm::dvec3& world) { return nameOf(file_from_world * world); };
+    const auto name = [&](const glm::dvec3& world) { return getName(file_from_world * world); };
     std::string text = fmt::format("the file's {} is north, its {} west, its {} up", name({1, 0, 0}), name({0, 1, 0}),
                                    name({0, 0, 1}));
     if (poses == types::WorldFrame::AsIs) return text;
@@ -142,7 +142,7 @@ std::string sideWarning(const types::Geometry& geometry) {
                       (0.5 * static_cast<double>(step));
     }
     const double all = facing.x + facing.y + facing.z;
-    const glm::dvec3 size = types::extentOf(geometry).size();
+    const glm::dvec3 size = types::getExtent(geometry).size();
     if (facing.y <= suspicious * all || size.z <= 2 * size.y) return "";
     return fmt::format(
         "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and {:.3g} m "

@@ -50,7 +50,7 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
 
 /** Describes a scene's orientation: "the file's x is north, its -z west, its y up". `poses`: the axes of the poses as
  *  they are sent; the direction of their x is added if these axes are not the world's. */
-std::string layOf(const Scene& scene, const Placement& placement, types::WorldFrame poses);
+std::string describeLay(const Scene& scene, const Placement& placement, types::WorldFrame poses);
 
 /** Returns a warning if most of the surface of a scene of glTF faces along y and it is higher than it is wide in y: a
  *  file written with z up, of which y was taken as up, has its sea floor as a wall. Empty: it does not. */

@@ -28,7 +28,7 @@ namespace {
 double largest(const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); }
 
 /** Returns by how much the normal of a triangle turns if its corners move by one step [rad]. */
-double tiltOf(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, double step, double& area) {
+double computeTilt(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, double step, double& area) {
     area = glm::length(glm::cross(b - a, c - a)) / 2;
     const double base = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
     return std::atan2(step * base, 2 * area);
@@ -110,7 +110,7 @@ auto* libraryReader(std::string_view library, const std::filesystem::path& file)
 
 /** Reads a file that exists by the reader of its extension. */
 Scene readByExtension(const std::filesystem::path& file) {
-    const std::string extension = extensionOf(file);
+    const std::string extension = getExtension(file);
     if (const SceneReader read = addedReader(extension)) return read(file);
     const SceneFormat* const format = findSceneFormat(file);
     if (!format)
@@ -124,7 +124,7 @@ Scene readByExtension(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::optional<VertexRounding> roundingOf(const types::Mesh& mesh) {
+std::optional<VertexRounding> findRounding(const types::Mesh& mesh) {
     glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
     for (const types::Cluster& cluster : mesh.clusters) {
         low = glm::min(low, cluster.centre - cluster.half);
@@ -138,8 +138,8 @@ std::optional<VertexRounding> roundingOf(const types::Mesh& mesh) {
     double all = 0, off = 0;
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         double area = 0;
-        const double tilt = tiltOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
-                                   mesh.positions[mesh.indices[i + 2]], rounding.step, area);
+        const double tilt = computeTilt(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
+                                        mesh.positions[mesh.indices[i + 2]], rounding.step, area);
         all += area;
         if (tilt < VertexRounding::max_tilt) continue;
         off += area;
@@ -156,7 +156,7 @@ namespace {
 std::optional<types::Notice> roundingNotice(const types::Geometry& geometry) {
     constexpr size_t shown = 5;
     std::vector<std::optional<VertexRounding>> known(geometry.meshes.size());
-    for (size_t i = 0; i < known.size(); ++i) known[i] = roundingOf(geometry.meshes[i]);
+    for (size_t i = 0; i < known.size(); ++i) known[i] = findRounding(geometry.meshes[i]);
     std::vector<std::string> names;
     VertexRounding worst;
     for (const types::Object& object : geometry.objects) {
@@ -212,7 +212,7 @@ bool isGltf(const std::filesystem::path& file) {
     return format && format->read == readGltf;
 }
 
-std::string extensionOf(const std::filesystem::path& file) { return types::lowered(file.extension().string()); }
+std::string getExtension(const std::filesystem::path& file) { return types::lowered(file.extension().string()); }
 
 Scene readScene(const std::filesystem::path& file) {
     refuseMissing(file);
@@ -257,7 +257,7 @@ glm::dmat4 bodyFromNode(const Scene& scene, int node) {
            glm::dmat4(withoutRotation(world_from_node, scene.nodes[static_cast<size_t>(node)].scale));
 }
 
-std::vector<Part> partsOf(const Scene& scene, int node) {
+std::vector<Part> getParts(const Scene& scene, int node) {
     // body_from_node of the nodes at and below; children come after their parents
     std::vector<glm::dmat4> body_from_node(scene.nodes.size());
     std::vector<bool> moves(scene.nodes.size());
@@ -277,7 +277,7 @@ std::vector<Part> partsOf(const Scene& scene, int node) {
     return parts;
 }
 
-glm::dvec3 placeOf(const Scene& scene, int node, int body, const glm::dvec3& point) {
+glm::dvec3 getPlace(const Scene& scene, int node, int body, const glm::dvec3& point) {
     if (node == body) return point;
     glm::dmat4 body_from_node = aboveFromNode(scene, body, node);
     if (body >= 0) body_from_node = bodyFromNode(scene, body) * body_from_node;

@@ -25,7 +25,7 @@ struct VertexRounding {
 };
 
 /** Returns the rounding of a mesh that would be more exact about its own middle; none where its normals are good. */
-std::optional<VertexRounding> roundingOf(const types::Mesh& mesh);
+std::optional<VertexRounding> findRounding(const types::Mesh& mesh);
 
 /** Adds a notice that names the objects whose vertices are too far from their origin, if there are any. */
 void noteRounding(types::GeometryPtr& geometry);
@@ -94,7 +94,7 @@ void addFormat(const std::string& extension, SceneReader reader);
 std::shared_ptr<const Scene> sharedScene(const std::filesystem::path& file);
 
 /** Returns the extension in lower case: ".glb" for "Harbour.GLB". */
-std::string extensionOf(const std::filesystem::path& file);
+std::string getExtension(const std::filesystem::path& file);
 
 /** Whether the name of a file is one of glTF. */
 bool isGltf(const std::filesystem::path& file);
@@ -113,12 +113,12 @@ glm::dmat4 bodyFromNode(const Scene& scene, int node);
 
 /** Returns the objects at and below a node. With a pose of the body, world_from_object = world_from_body *
  *  body_from_object. */
-std::vector<Part> partsOf(const Scene& scene, int node);
+std::vector<Part> getParts(const Scene& scene, int node);
 
 /** Returns a point of a node in the axes of a body. `body` is the index of a node at or above `node`, or -1 for the
  *  world. The point is given in the node's axes, without scale [m]; they are the body's axes where neither is turned.
  *  The result is not finite if the node is scaled to zero and the point is not its origin. */
-glm::dvec3 placeOf(const Scene& scene, int node, int body, const glm::dvec3& point);
+glm::dvec3 getPlace(const Scene& scene, int node, int body, const glm::dvec3& point);
 /** The same of a node that is where a matrix has it. */
 glm::dvec3 placeIn(const Scene& scene, int node, const glm::dmat4& body_from_node, const glm::dvec3& point);
 

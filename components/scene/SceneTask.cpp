@@ -43,11 +43,12 @@ std::string attach(const Scene& scene, const TargetConfig& config, const std::ve
     const int node = findNode(scene, config.attached_to);
     if (node < 0) return unknown(scene, config.attached_to);
     const glm::dvec3 offset = config.position.value_or(glm::dvec3(0));
-    target.in_world = placeOf(scene, node, -1, offset);
+    target.in_world = getPlace(scene, node, -1, offset);
     target.node = node;
     target.offset = offset;
     for (int body = node; body >= 0; body = scene.nodes[static_cast<size_t>(body)].parent)
-        if (std::ranges::count(moving, body) > 0) target.carriers.push_back({body, placeOf(scene, node, body, offset)});
+        if (std::ranges::count(moving, body) > 0)
+            target.carriers.push_back({body, getPlace(scene, node, body, offset)});
     const bool placed = isFinite(target.in_world) &&
                         std::ranges::all_of(target.carriers, [](const auto& one) { return isFinite(one.place); });
     return placed ? ""
@@ -83,8 +84,8 @@ void moveAlong(const types::Pose& body, const Mount& mount, types::Pose& sonar) 
 
 /** How fast a node's place changes: by the velocities of its pose, else by the pose before; 0 where neither is known.
  */
-glm::dmat4 rateOf(const types::Pose& pose, const glm::dmat4& place, const std::optional<glm::dmat4>& before,
-                  types::Time time_before) {
+glm::dmat4 computeRate(const types::Pose& pose, const glm::dmat4& place, const std::optional<glm::dmat4>& before,
+                       types::Time time_before) {
     glm::dmat4 rate(0);
     if (std::isfinite(glm::length(pose.velocity)) && std::isfinite(glm::length(pose.angular_velocity))) {
         const glm::dvec3 turn = pose.orientation * pose.angular_velocity;
@@ -296,7 +297,7 @@ std::string SceneTask::layText(const Scene& scene) const {
     auto frame = types::WorldFrame::AsIs;
     for (size_t i = 0; name && i < std::size(types::EnumNames<types::WorldFrame>::names); ++i)
         if (types::EnumNames<types::WorldFrame>::names[i] == *name) frame = static_cast<types::WorldFrame>(i);
-    return layOf(scene, config->placement.value_or(Placement{}), frame);
+    return describeLay(scene, config->placement.value_or(Placement{}), frame);
 }
 
 std::shared_ptr<const Scene> SceneTask::loadToRun() try {
@@ -315,7 +316,7 @@ bool SceneTask::configureHook() {
     bathymetry_ = openSurvey();
     for (Movable& movable : movables_) {
         movable.node = findNode(*scene, movable.node_name);
-        movable.parts = partsOf(*scene, movable.node);
+        movable.parts = getParts(*scene, movable.node);
     }
     placeTargets(*scene, diagnostics);
     part_count_ = 0;
@@ -326,7 +327,7 @@ bool SceneTask::configureHook() {
     lay_ = layText(*scene);
     side_ = isGltf(config->file) ? sideWarning(*scene->geometry) : "";
     std::ranges::sort(movables_, {}, &Movable::node);
-    movable_objects_ = objectsOf(movables_);
+    movable_objects_ = getObjects(movables_);
     mover_.assign(geometry_->objects.size(), nullptr);
     return true;
 }
@@ -460,7 +461,7 @@ bool SceneTask::readMovables() {
         if (isUsable(sample)) {
             sample.orientation = glm::normalize(sample.orientation);
             const glm::dmat4 place = sample.worldFromBody();
-            if (animator_) movable.rate = rateOf(sample, place, movable.world_from_body, movable.newest);
+            if (animator_) movable.rate = computeRate(sample, place, movable.world_from_body, movable.newest);
             movable.newest = sample.time, movable.arrived = now();
             movable.world_from_body = place;
         } else {
@@ -502,7 +503,7 @@ void SceneTask::animate(types::Time time) {
     animator_->take((environment().elapsed() + (time - now())).seconds(), driven_);
 }
 
-std::shared_ptr<const std::vector<uint32_t>> SceneTask::objectsOf(const std::vector<Movable>& movables) {
+std::shared_ptr<const std::vector<uint32_t>> SceneTask::getObjects(const std::vector<Movable>& movables) {
     std::set<uint32_t> objects;
     for (const Movable& movable : movables)
         for (const Part& part : movable.parts) objects.insert(static_cast<uint32_t>(part.object));
@@ -524,7 +525,7 @@ void SceneTask::addMoved(std::vector<types::MovedObject>& moved) {
                     moved.push_back({part.object, *movable.world_from_body * part.body_from_object});
 }
 
-const SceneTask::Movable* SceneTask::movableOf(int node) const {
+const SceneTask::Movable* SceneTask::findMovable(int node) const {
     const auto found = std::ranges::find(movables_, node, &Movable::node);
     return found == movables_.end() ? nullptr : &*found;
 }
@@ -536,11 +537,11 @@ void SceneTask::addTargets(std::vector<types::PointTarget>& targets) const {
     for (const PlacedTarget& placed : targets_) {
         types::PointTarget& target = targets.emplace_back(placed.in_world, placed.strength_db);
         if (animator_ && placed.node >= 0 && animator_->isAnimated(placed.node)) {
-            target.position = animator_->placeOf(placed.node, placed.offset);
+            target.position = animator_->getPlace(placed.node, placed.offset);
             continue;
         }
         for (const PlacedTarget::Carrier& carrier : placed.carriers)
-            if (const auto& body = movableOf(carrier.node)->world_from_body) {
+            if (const auto& body = findMovable(carrier.node)->world_from_body) {
                 target.position = glm::dvec3(*body * glm::dvec4(carrier.place, 1));
                 break;
             }

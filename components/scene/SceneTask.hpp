@@ -129,9 +129,9 @@ private:
     void placeTargets(const Scene& scene, types::Diagnostics& diagnostics);
     void addMoved(std::vector<types::MovedObject>& moved);
     /** Returns the objects that movables move, ascending; null: there are none. */
-    static std::shared_ptr<const std::vector<uint32_t>> objectsOf(const std::vector<Movable>& movables);
+    static std::shared_ptr<const std::vector<uint32_t>> getObjects(const std::vector<Movable>& movables);
     void addTargets(std::vector<types::PointTarget>& targets) const;
-    const Movable* movableOf(int node) const;
+    const Movable* findMovable(int node) const;
     framework::InputPortBase* makeTimeInput(const std::string& port);
     void makeAnimator(const std::shared_ptr<const Scene>& scene, types::Diagnostics& diagnostics);
     void animate(types::Time time);

@@ -14,7 +14,7 @@ namespace insonify::scene {
 namespace {
 
 /** Returns the class of a text; none if it is not a whole number from 0 to 254. */
-std::optional<uint8_t> valueOf(const std::string& text) {
+std::optional<uint8_t> getValue(const std::string& text) {
     int value = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 254 ||
@@ -47,7 +47,7 @@ void MapValues::check(types::Diagnostics& diagnostics) const {
     if (classes.size() > max_classes)
         diagnostics.push_back({"classes", fmt::format("are {}; at most {}", classes.size(), max_classes)});
     for (const auto& [value, name] : classes)
-        if (!valueOf(value))
+        if (!getValue(value))
             diagnostics.push_back({"classes", fmt::format("has {}; a class is a whole number from 0 to 254", value)});
 }
 
@@ -73,7 +73,7 @@ types::SurfaceMap surfaceMap(std::span<const float> values, int width, int heigh
     std::map<float, uint8_t> numbers;
     for (const auto& [value, name] : meaning.classes) {
         const auto number = static_cast<uint8_t>(numbers.size());
-        numbers[valueOf(value).value_or(0)] = number;
+        numbers[getValue(value).value_or(0)] = number;
     }
     map.materials = std::move(materials);
     map.classes.reserve(values.size());
@@ -84,8 +84,8 @@ types::SurfaceMap surfaceMap(std::span<const float> values, int width, int heigh
     return map;
 }
 
-std::vector<int> materialsOf(const MapValues& meaning, const std::string& path, types::Geometry& geometry,
-                             types::Diagnostics& diagnostics) {
+std::vector<int> getMaterials(const MapValues& meaning, const std::string& path, types::Geometry& geometry,
+                              types::Diagnostics& diagnostics) {
     std::vector<int> materials;
     for (const auto& [value, name] : meaning.classes) {
         const auto known = std::ranges::find(geometry.materials, name, &types::Material::name);

@@ -55,7 +55,7 @@ types::SurfaceMap surfaceMap(std::span<const float> values, int width, int heigh
 
 /** Returns the index of each class's material. A name refers to a material of the geometry, or else to a sediment or
  *  matter, for which a material is added. Any other name is a diagnostic at `path` and the class. */
-std::vector<int> materialsOf(const MapValues& meaning, const std::string& path, types::Geometry& geometry,
-                             types::Diagnostics& diagnostics);
+std::vector<int> getMaterials(const MapValues& meaning, const std::string& path, types::Geometry& geometry,
+                              types::Diagnostics& diagnostics);
 
 }  // namespace insonify::scene

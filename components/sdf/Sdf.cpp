@@ -51,7 +51,7 @@ bool usesXacro(const XMLElement& element) {
     return false;
 }
 
-std::string nameOf(const XMLElement* element) {
+std::string getName(const XMLElement* element) {
     const char* const name = element ? element->Attribute("name") : nullptr;
     return name ? name : "";
 }
@@ -70,7 +70,7 @@ void addInertia(XMLElement& link) {
 void keepFixedJoints(XMLElement& robot) {
     std::vector<std::string> fixed;
     for (const XMLElement* joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint"))
-        if (joint->Attribute("type", "fixed")) fixed.push_back(nameOf(joint));
+        if (joint->Attribute("type", "fixed")) fixed.push_back(getName(joint));
     for (const std::string& name : fixed) {
         XMLElement* const settings = robot.InsertNewChildElement("gazebo");
         settings->SetAttribute("reference", name.c_str());
@@ -80,7 +80,7 @@ void keepFixedJoints(XMLElement& robot) {
 
 }  // namespace
 
-bool isUrdf(const std::filesystem::path& file) { return scene::extensionOf(file) == ".urdf"; }
+bool isUrdf(const std::filesystem::path& file) { return scene::getExtension(file) == ".urdf"; }
 
 Urdf readUrdf(const std::filesystem::path& file, const std::string& text) {
     const auto refuse = [&](const std::string& why, int line) {
@@ -96,10 +96,10 @@ Urdf readUrdf(const std::filesystem::path& file, const std::string& text) {
     Urdf urdf;
     for (XMLElement* link = robot->FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
         addInertia(*link);
-        std::vector<std::string>& materials = urdf.materials[nameOf(link)];
+        std::vector<std::string>& materials = urdf.materials[getName(link)];
         for (const XMLElement* visual = link->FirstChildElement("visual"); visual;
              visual = visual->NextSiblingElement("visual"))
-            materials.push_back(nameOf(visual->FirstChildElement("material")));
+            materials.push_back(getName(visual->FirstChildElement("material")));
     }
     keepFixedJoints(*robot);
     if (urdf.materials.empty()) refuse("is a robot without links", robot->GetLineNum());
@@ -112,15 +112,15 @@ Urdf readUrdf(const std::filesystem::path& file, const std::string& text) {
 using namespace scene;
 namespace {
 
-glm::dvec3 vectorOf(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
+glm::dvec3 toVector(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
 
-glm::dmat4 matrixOf(const ignition::math::Pose3d& pose) {
+glm::dmat4 toMatrix(const ignition::math::Pose3d& pose) {
     const ignition::math::Quaterniond& q = pose.Rot();
-    return glm::translate(glm::dmat4(1), vectorOf(pose.Pos())) *
+    return glm::translate(glm::dmat4(1), toVector(pose.Pos())) *
            glm::mat4_cast(glm::normalize(glm::dquat(q.W(), q.X(), q.Y(), q.Z())));
 }
 
-AcousticValue valueOf(const std::string& text) {
+AcousticValue getValue(const std::string& text) {
     double number;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc() && end == text.data() + text.size()) return number;
@@ -129,7 +129,7 @@ AcousticValue valueOf(const std::string& text) {
 }
 
 /** Returns the link or nested model of `model` that contains the entity `name`; empty if there is none. */
-std::string partOf(const ::sdf::Model& model, const std::string& name) {
+std::string getPart(const ::sdf::Model& model, const std::string& name) {
     for (uint64_t i = 0; i < model.LinkCount(); ++i)
         if (model.LinkByIndex(i)->Name() == name) return name;  // names of old worlds may hold "::"
     const std::string first = name.substr(0, name.find("::"));
@@ -139,42 +139,42 @@ std::string partOf(const ::sdf::Model& model, const std::string& name) {
 }
 
 /** Returns, for links and nested models that a joint moves, the name in `model` of the link that carries them. */
-std::map<std::string, std::string> carriersOf(const ::sdf::Model& model) {
+std::map<std::string, std::string> findCarriers(const ::sdf::Model& model) {
     std::map<std::string, std::string> carriers;
     for (uint64_t i = 0; i < model.JointCount(); ++i) {
         const ::sdf::Joint& joint = *model.JointByIndex(i);
         std::string child, parent;
         if (!joint.ResolveChildLink(child).empty()) child = joint.ChildLinkName();
         if (!joint.ResolveParentLink(parent).empty()) parent = joint.ParentLinkName();
-        const std::string part = partOf(model, child);
-        if (!part.empty() && partOf(model, parent) != part) carriers.try_emplace(part, parent);
+        const std::string part = getPart(model, child);
+        if (!part.empty() && getPart(model, parent) != part) carriers.try_emplace(part, parent);
     }
     return carriers;
 }
 
-meshes::Shape shapeOf(const ::sdf::Geometry& geometry) {
+meshes::Shape getShape(const ::sdf::Geometry& geometry) {
     switch (geometry.Type()) {
-        case ::sdf::GeometryType::BOX: return meshes::BoxShape{vectorOf(geometry.BoxShape()->Size())};
+        case ::sdf::GeometryType::BOX: return meshes::BoxShape{toVector(geometry.BoxShape()->Size())};
         case ::sdf::GeometryType::SPHERE:
             return meshes::EllipsoidShape{glm::dvec3(geometry.SphereShape()->Radius()), true};
         case ::sdf::GeometryType::ELLIPSOID:
-            return meshes::EllipsoidShape{vectorOf(geometry.EllipsoidShape()->Radii())};
+            return meshes::EllipsoidShape{toVector(geometry.EllipsoidShape()->Radii())};
         case ::sdf::GeometryType::CYLINDER:
             return meshes::CylinderShape{geometry.CylinderShape()->Radius(), geometry.CylinderShape()->Length()};
         case ::sdf::GeometryType::CAPSULE:
             return meshes::CapsuleShape{geometry.CapsuleShape()->Radius(), geometry.CapsuleShape()->Length()};
         case ::sdf::GeometryType::PLANE: {
             const ::sdf::Plane& plane = *geometry.PlaneShape();
-            return meshes::PlaneShape{vectorOf(plane.Normal()), {plane.Size().X(), plane.Size().Y()}};
+            return meshes::PlaneShape{toVector(plane.Normal()), {plane.Size().X(), plane.Size().Y()}};
         }
         case ::sdf::GeometryType::MESH: {
             const ::sdf::Mesh& mesh = *geometry.MeshShape();
-            return meshes::MeshShape{mesh.Uri(), mesh.Submesh(), mesh.CenterSubmesh(), vectorOf(mesh.Scale()),
+            return meshes::MeshShape{mesh.Uri(), mesh.Submesh(), mesh.CenterSubmesh(), toVector(mesh.Scale()),
                                      mesh.FilePath()};
         }
         case ::sdf::GeometryType::HEIGHTMAP: {
             const ::sdf::Heightmap& map = *geometry.HeightmapShape();
-            return meshes::HeightmapShape{map.Uri(), vectorOf(map.Size()), vectorOf(map.Position()), map.FilePath()};
+            return meshes::HeightmapShape{map.Uri(), toVector(map.Size()), toVector(map.Position()), map.FilePath()};
         }
         default: break;
     }
@@ -186,7 +186,7 @@ meshes::Shape shapeOf(const ::sdf::Geometry& geometry) {
 }
 
 /** @param is_urdf whether the alpha of the colour is the visual's transparency, which SDF gives apart */
-Drawing drawingOf(const ::sdf::Visual& visual, bool is_urdf) {
+Drawing getDrawing(const ::sdf::Visual& visual, bool is_urdf) {
     constexpr uint32_t for_all = 0xffffffff;  // every camera's mask
     const double alpha = is_urdf && visual.Material() ? static_cast<double>(visual.Material()->Diffuse().A()) : 1;
     return {std::max<double>(visual.Transparency(), 1 - alpha), visual.CastShadows(),
@@ -196,15 +196,15 @@ Drawing drawingOf(const ::sdf::Visual& visual, bool is_urdf) {
 /** Returns the places of a population's models as Gazebo classic has them (Population.cc): copies lie in a box of
  * `size` whose lowest corner is at `pose`, or in a cylinder about it. Random and even places are drawn, the same each
  * time, which `drawn` says. */
-std::vector<glm::dvec3> placesOf(::sdf::Element& population, std::string& drawn) {
+std::vector<glm::dvec3> getPlaces(::sdf::Element& population, std::string& drawn) {
     const auto vector = [](const ::sdf::ElementPtr& of, const char* key) {
-        return of ? vectorOf(of->Get<ignition::math::Vector3d>(key, {}).first) : glm::dvec3(0);
+        return of ? toVector(of->Get<ignition::math::Vector3d>(key, {}).first) : glm::dvec3(0);
     };
     constexpr int most = 10'000;
     const ::sdf::ElementPtr rule = population.FindElement("distribution"), box = population.FindElement("box"),
                             cylinder = population.FindElement("cylinder");
     const std::string type = rule ? rule->Get<std::string>("type", "random").first : "random";
-    const glm::dmat4 world_from_region = matrixOf(population.Get<ignition::math::Pose3d>("pose", {}).first);
+    const glm::dmat4 world_from_region = toMatrix(population.Get<ignition::math::Pose3d>("pose", {}).first);
     const glm::dvec3 size = vector(box, "size"), step = vector(rule, "step");
     const int columns = std::clamp(rule ? rule->Get<int>("cols", 1).first : 1, 0, most);
     const int rows = std::clamp(rule ? rule->Get<int>("rows", 1).first : 1, 0, most);
@@ -239,7 +239,7 @@ public:
 
     Scene read() {
         CerrCapture console;
-        if (isUrdf(file_) && std::filesystem::is_regular_file(file_)) urdf_ = readUrdf(file_, textOf(file_));
+        if (isUrdf(file_) && std::filesystem::is_regular_file(file_)) urdf_ = readUrdf(file_, toText(file_));
         const ::sdf::Root root = readSdfFile(file_, builder_, console, urdf_.text);
         if (const ::sdf::World* world = root.WorldByIndex(0))
             addWorld(*world);
@@ -258,13 +258,13 @@ private:
         for (uint64_t i = 0; i < world.ModelCount(); ++i) addModel(*world.ModelByIndex(i), "", -1, glm::dmat4(1));
         addPopulations(*world.Element());
         addCount(world.ActorCount(), "actors omitted", builder_.notices());
-        addCount(childrenOf(*world.Element(), "road").size(), "roads omitted: drawn strips on the ground",
+        addCount(getChildren(*world.Element(), "road").size(), "roads omitted: drawn strips on the ground",
                  builder_.notices());
         if (world.Element()->HasElement("state"))
             builder_.notice("the poses of <state> are not used, the poses of the models are");
     }
 
-    static std::vector<::sdf::ElementPtr> childrenOf(::sdf::Element& element, const std::string& name) {
+    static std::vector<::sdf::ElementPtr> getChildren(::sdf::Element& element, const std::string& name) {
         std::vector<::sdf::ElementPtr> children;
         if (!element.HasElement(name)) return children;
         for (::sdf::ElementPtr child = element.FindElement(name); child; child = child->GetNextElement(name))
@@ -274,7 +274,7 @@ private:
 
     /** Adds the copies of a model that Gazebo would place, as `<model>_clone_<i>`. */
     void addPopulations(::sdf::Element& world) {
-        for (const ::sdf::ElementPtr& population : childrenOf(world, "population")) {
+        for (const ::sdf::ElementPtr& population : getChildren(world, "population")) {
             const std::string name = population->Get<std::string>("name");
             ::sdf::Model model;
             const ::sdf::ElementPtr element = population->FindElement("model");
@@ -283,7 +283,7 @@ private:
                 continue;
             }
             std::string drawn;
-            const std::vector<glm::dvec3> places = placesOf(*population, drawn);
+            const std::vector<glm::dvec3> places = getPlaces(*population, drawn);
             for (size_t i = 0; i < places.size(); ++i)
                 addModelAt(model, fmt::format("{}_clone_{}", model.Name(), i), -1,
                            glm::translate(glm::dmat4(1), places[i]));
@@ -294,21 +294,21 @@ private:
     /** Adds a model. `scope` is the name of its container, followed by "::". */
     void addModel(const ::sdf::Model& model, const std::string& scope, int parent, const glm::dmat4& world_from_scope) {
         const std::string name = scope + model.Name();
-        addModelAt(model, name, parent, world_from_scope * poseOf(model, name));
+        addModelAt(model, name, parent, world_from_scope * getPose(model, name));
     }
 
     void addModelAt(const ::sdf::Model& model, const std::string& name, int parent,
                     const glm::dmat4& world_from_model) {
         const std::string outer_matter = matter_;
-        if (const std::string own = matterOf(*model.Element()); !own.empty()) matter_ = own;
+        if (const std::string own = getMatter(*model.Element()); !own.empty()) matter_ = own;
         const int node = addNode(name, parent, world_from_model);
-        const std::map<std::string, std::string> carriers = carriersOf(model);
+        const std::map<std::string, std::string> carriers = findCarriers(model);
         std::set<std::string> begun;
         const std::function<void(const std::string&)> addPart = [&](const std::string& part) {
             if (part.empty() || !begun.insert(part).second) return;
             int below = node;
             if (const auto carrier = carriers.find(part); carrier != carriers.end()) {
-                addPart(partOf(model, carrier->second));
+                addPart(getPart(model, carrier->second));
                 const auto known = nodes_.find(name + "::" + carrier->second);
                 if (known != nodes_.end()) below = known->second;  // else the attachment is circular
             }
@@ -323,7 +323,7 @@ private:
     }
 
     /** Returns the material of a model's surface by DAVE's `surface_props`; empty: it has none. */
-    std::string matterOf(const ::sdf::Element& model) {
+    std::string getMatter(const ::sdf::Element& model) {
         for (const char* unused :
              {"surface_props:biofouling_rating", "surface_props:roughness", "surface_props:distort_extent"})
             if (model.HasElement(unused)) unused_.insert(unused);
@@ -333,16 +333,16 @@ private:
 
     void addLink(const ::sdf::Link& link, const std::string& scope, int parent, const glm::dmat4& world_from_model) {
         const std::string name = scope + link.Name();
-        const int node = addNode(name, parent, world_from_model * poseOf(link, name));
+        const int node = addNode(name, parent, world_from_model * getPose(link, name));
         for (uint64_t i = 0; i < link.VisualCount(); ++i) {
             const ::sdf::Visual& visual = *link.VisualByIndex(i);
             const std::string visual_name = name + "::" + visual.Name();
-            const glm::dmat4 link_from_visual = poseOf(visual, visual_name);
-            meshes::Look look = lookOf(visual, visual_name);
+            const glm::dmat4 link_from_visual = getPose(visual, visual_name);
+            meshes::Look look = getLook(visual, visual_name);
             if (const auto named = urdf_.materials.find(link.Name());
                 named != urdf_.materials.end() && i < named->second.size())
                 look.name = named->second[i];
-            meshes::Shape shape = shapeOf(*visual.Geom());
+            meshes::Shape shape = getShape(*visual.Geom());
             if (auto* const mesh = std::get_if<meshes::MeshShape>(&shape); mesh && !urdf_.text.empty()) {
                 mesh->named_in = file_;
                 // libsdformat gives the packages of ROS as models.
@@ -351,30 +351,30 @@ private:
                     mesh->uri.starts_with("model://") && urdf_.text.find(as_written) != std::string::npos)
                     mesh->uri = as_written;
             }
-            if (const types::Diagnostic fault = meshes::faultOf(shape); !fault.message.empty())
+            if (const types::Diagnostic fault = meshes::findFault(shape); !fault.message.empty())
                 fail(*visual.Element(), fmt::format("{}.{}", visual_name, fault.path), fault.message);
             builder_.addVisual(visual_name, node, link_from_visual, shape, look,
-                               drawingOf(visual, !urdf_.text.empty()));
+                               getDrawing(visual, !urdf_.text.empty()));
         }
     }
 
     /** Returns the pose of a part in the frame of its container. */
-    glm::dmat4 poseOf(const auto& part, const std::string& name) {
+    glm::dmat4 getPose(const auto& part, const std::string& name) {
         ignition::math::Pose3d pose;
         const ::sdf::Errors errors = part.SemanticPose().Resolve(pose);
-        if (errors.empty()) return matrixOf(pose);
+        if (errors.empty()) return toMatrix(pose);
         if (!part.PoseRelativeTo().empty())
             fail(*part.Element(), name + ".pose",
                  fmt::format("relative to \"{}\" cannot be resolved: {}", part.PoseRelativeTo(),
                              errors.front().Message()));
-        return matrixOf(part.RawPose());
+        return toMatrix(part.RawPose());
     }
 
     int addNode(const std::string& name, int parent, const glm::dmat4& world_from_node) {
         return nodes_[name] = builder_.addNode(name, parent, world_from_node);
     }
 
-    meshes::Look lookOf(const ::sdf::Visual& visual, const std::string& name) {
+    meshes::Look getLook(const ::sdf::Visual& visual, const std::string& name) {
         meshes::Look look;
         if (const ::sdf::Material* material = visual.Material()) look.name = material->ScriptName();
         if (!matter_.empty()) look.name = matter_;
@@ -383,11 +383,11 @@ private:
         if (!tag) return look;
         for (const ::sdf::ParamPtr& attribute : tag->GetAttributes())
             if (!attribute->GetKey().starts_with("xmlns"))  // names a prefix, no property
-                look.acoustics[attribute->GetKey()] = valueOf(attribute->GetAsString());
+                look.acoustics[attribute->GetKey()] = getValue(attribute->GetAsString());
         for (::sdf::ElementPtr key = tag->GetFirstElement(); key; key = key->GetNextElement()) {
-            if (!key->GetFirstElement()) look.acoustics[key->GetName()] = valueOf(key->Get<std::string>());
+            if (!key->GetFirstElement()) look.acoustics[key->GetName()] = getValue(key->Get<std::string>());
             for (::sdf::ElementPtr of = key->GetFirstElement(); of; of = of->GetNextElement())
-                look.acoustics[key->GetName() + "." + of->GetName()] = valueOf(of->Get<std::string>());
+                look.acoustics[key->GetName() + "." + of->GetName()] = getValue(of->Get<std::string>());
         }
         types::Diagnostics diagnostics;
         const auto folder = std::filesystem::path(visual.Element()->FilePath()).parent_path();

@@ -62,14 +62,14 @@ public:
     explicit Includes(const meshes::ModelPaths& paths) : paths_(paths) {}
 
     /** Returns the work for a file and all its includes. */
-    size_t workOf(const std::filesystem::path& file) {
+    size_t measureWork(const std::filesystem::path& file) {
         if (const auto known = work_.find(file); known != work_.end()) return known->second;
         if (open_.size() == max_sdf_depth)
             throw types::ConfigError(
                 file.string(), "include",
                 fmt::format("models include each other {} deep; may be up to {}", max_sdf_depth + 1, max_sdf_depth));
         open_.push_back(file);
-        const Work own(textOf(file));
+        const Work own(toText(file));
         size_t amount = own.amount;
         for (const std::string& uri : own.included)
             if (amount <= max_sdf_work) amount += workOfInclude(uri, file);
@@ -81,17 +81,17 @@ private:
     size_t workOfInclude(const std::string& uri, const std::filesystem::path& from) {
         const auto found = paths_.find(uri, from);
         size_t maximum = 0;  // only one of a model's versions is read
-        for (const std::filesystem::path& included : found ? filesOf(*found) : std::vector<std::filesystem::path>()) {
+        for (const std::filesystem::path& included : found ? getFiles(*found) : std::vector<std::filesystem::path>()) {
             if (std::ranges::count(open_, included) > 0)
                 throw types::ConfigError(
                     from.string(), "include",
                     fmt::format("{} comes back to {}; a model may not include itself", uri, included.string()));
-            maximum = std::max(maximum, workOf(included));
+            maximum = std::max(maximum, measureWork(included));
         }
         return maximum;
     }
 
-    static std::vector<std::filesystem::path> filesOf(const std::filesystem::path& found) {
+    static std::vector<std::filesystem::path> getFiles(const std::filesystem::path& found) {
         if (std::filesystem::is_regular_file(found)) return {std::filesystem::canonical(found)};
         std::vector<std::filesystem::path> files;
         if (std::filesystem::is_directory(found))
@@ -108,7 +108,7 @@ private:
 /** Follows the includes of an SDF file. Throws types::ConfigError where libsdformat would overflow its stack or run for
  *  minutes: at a model that includes itself, and beyond the max work. */
 void checkIncludes(const std::filesystem::path& file, const meshes::ModelPaths& paths) {
-    if (Includes(paths).workOf(std::filesystem::canonical(file)) <= max_sdf_work) return;
+    if (Includes(paths).measureWork(std::filesystem::canonical(file)) <= max_sdf_work) return;
     throw types::ConfigError(file.string(), "",
                              "would take minutes to read: with what it includes it may hold up to 100000 elements, or "
                              "14000 in one; divide it, or make one mesh of many shapes");
@@ -128,7 +128,7 @@ public:
     /** Mends a file once. Returns whether it was mended. */
     bool mend(const std::filesystem::path& file) {
         if (folders_.contains(file) || !std::filesystem::is_regular_file(file)) return false;
-        const std::string text = mended(textOf(file), file.parent_path());
+        const std::string text = mended(toText(file), file.parent_path());
         if (text.empty()) return false;
         if (folder_.empty()) {
             std::string name = (std::filesystem::temp_directory_path() / "insonify_sdf_XXXXXX").string();
@@ -144,7 +144,7 @@ public:
         return true;
     }
     /** Returns the mended form of a model's folder or file; the same where it was not mended. */
-    std::filesystem::path inPlaceOf(const std::filesystem::path& found) const {
+    std::filesystem::path putInPlace(const std::filesystem::path& found) const {
         for (const auto& [file, own] : folders_)
             if (file.parent_path() == found)
                 return own;
@@ -245,7 +245,7 @@ public:
                 return file == *found || file.parent_path() == *found;
             };
             if (!found || std::ranges::any_of(unreadable, isIt)) return "";
-            return mended.inPlaceOf(*found).string();
+            return mended.putInPlace(*found).string();
         });
     }
     ~SearchConfig() { global() = before_; }
@@ -275,7 +275,7 @@ std::string load(::sdf::Root& root, const std::filesystem::path& file, const std
     } catch (const ::sdf::Exception& failure) {
         return joined(failure.GetErrorStr());
     } catch (const std::exception& failure) {
-        return types::reasonOf(failure);
+        return types::getReason(failure);
     } catch (...) {
         return "no reason is given";
     }
@@ -452,7 +452,7 @@ struct Reading {
     void mend(const types::Diagnostics& diagnostics) {
         if (form_ == AsGiven) {
             first_ = diagnostics;
-            if (given_.empty()) given_ = textOf(file_);
+            if (given_.empty()) given_ = toText(file_);
         }
         const auto folder = std::filesystem::absolute(file_).parent_path();
         for (text.clear(); text.empty();) {
@@ -507,7 +507,7 @@ void noteDiagnostics(const types::Diagnostics& diagnostics, meshes::WorldBuilder
 
 }  // namespace
 
-std::string textOf(const std::filesystem::path& file) {
+std::string toText(const std::filesystem::path& file) {
     std::error_code error;
     if (std::filesystem::file_size(file, error) > max_sdf_bytes && !error)
         throw types::ConfigError(file.string(), "",

@@ -30,7 +30,7 @@ private:
 };
 
 /** Returns the bytes of a file. Throws types::ConfigError for a file that is too large. */
-std::string textOf(const std::filesystem::path& file);
+std::string toText(const std::filesystem::path& file);
 
 /** Loads an SDF file with its includes, or `text` instead of the file unless `text` is empty. Diagnostics of
  *  libsdformat are notices of `builder` if there is still a world or a model, otherwise they are thrown as

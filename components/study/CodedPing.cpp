@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using recordings::RecordingReader;
 
 /** Returns the named files, and the files of the named folders. */
-std::vector<fs::path> filesOf(const std::vector<std::string>& names) {
+std::vector<fs::path> getFiles(const std::vector<std::string>& names) {
     std::vector<fs::path> files;
     for (const fs::path name : names) {
         if (!fs::is_directory(name)) {
@@ -71,7 +71,7 @@ std::vector<CodedPing> pingsOfLines(RecordingReader& reader, const receiver::Cod
         altitudes.push_back(line->altitude);
         lines.push_back(std::move(line->ping));
     }
-    std::vector<CodedPing> sides = codedLines(lines, withBits(law, lines), "recorded", placesOf(sonars, altitudes));
+    std::vector<CodedPing> sides = codedLines(lines, withBits(law, lines), "recorded", getPlaces(sonars, altitudes));
     for (CodedPing& side : sides) side.law_known = false, side.frequency_khz = frequency_khz;
     return sides;
 }
@@ -85,7 +85,7 @@ std::vector<CodedPing> pingsOfLog(const LoggedPings& log, const receiver::CodeCo
     const receiver::CodeConfig code = log.law_known ? log.code : withBits(law, log.pings);
     std::vector<CodedPing> pings;
     if (isLineOfSideScan(log.pings.front()))
-        pings = codedLines(log.pings, code, "recorded", placesOf(log.sonars, log.altitudes));
+        pings = codedLines(log.pings, code, "recorded", getPlaces(log.sonars, log.altitudes));
     else
         for (const types::Sonar& ping : log.pings)
             pings.push_back(codedPing(ping, code, fmt::format("recorded_{}", pings.size())));
@@ -126,7 +126,7 @@ std::vector<double> spread(const Known& known) {
 
 /** Returns the distance along the track since the first line; beyond the known places it is extrapolated by the
  *  mean. */
-std::vector<double> alongOf(const std::vector<types::Pose>& sonars) {
+std::vector<double> computeAlong(const std::vector<types::Pose>& sonars) {
     Known known(sonars.size());
     std::optional<glm::dvec3> before;
     double along = 0;
@@ -153,15 +153,15 @@ std::vector<double> alongOf(const std::vector<types::Pose>& sonars) {
 
 }  // namespace
 
-std::vector<LinePlace> placesOf(const std::vector<types::Pose>& sonars, const std::vector<double>& altitudes) {
+std::vector<LinePlace> getPlaces(const std::vector<types::Pose>& sonars, const std::vector<double>& altitudes) {
     Known heights, pitches;
     for (const double altitude : altitudes)
         heights.push_back(altitude > 0 ? std::optional<double>(altitude) : std::nullopt);
     for (const types::Pose& pose : sonars)
         pitches.push_back(types::isUsable(pose)
-                              ? std::optional<double>(types::turnsOf(glm::normalize(pose.orientation)).pitch)
+                              ? std::optional<double>(types::toTurns(glm::normalize(pose.orientation)).pitch)
                               : std::nullopt);
-    const std::vector<double> height = spread(heights), pitch = spread(pitches), along = alongOf(sonars);
+    const std::vector<double> height = spread(heights), pitch = spread(pitches), along = computeAlong(sonars);
     if (height.empty() && pitch.empty()) return {};
     std::vector<LinePlace> places(std::max(height.size(), pitch.size()));
     for (size_t i = 0; i < height.size(); ++i) places[i].altitude = height[i];
@@ -231,7 +231,7 @@ std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, cons
                                      const ReadLog& readLog) {
     const receiver::CodeConfig assumed = law ? *law : receiver::CodeConfig{.law = receiver::CodeLaw::Sqrt};
     std::vector<CodedPing> pings;
-    for (const fs::path& file : filesOf(names)) {
+    for (const fs::path& file : getFiles(names)) {
         const std::optional<LoggedPings> logged = readLog ? readLog(file) : std::nullopt;
         for (CodedPing& coded : logged ? pingsOfLog(*logged, assumed) : pingsOfRecording(file, assumed)) {
             coded.file = file.string();

@@ -22,7 +22,7 @@ struct LinePlace {
 /** Returns the places of lines from the poses of the sonar and its altitudes; empty if both are unknown. Repeated
  *  values are from a slower sensor: track, altitude and pitch are interpolated over the lines between two different
  *  values. @param altitudes [m]; 0: unknown */
-std::vector<LinePlace> placesOf(const std::vector<types::Pose>& sonars, const std::vector<double>& altitudes);
+std::vector<LinePlace> getPlaces(const std::vector<types::Pose>& sonars, const std::vector<double>& altitudes);
 
 /** A ping as output by an instrument, recorded or simulated. */
 struct CodedPing {

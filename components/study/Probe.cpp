@@ -42,7 +42,7 @@ double strengthSpan(const types::Geometry& geometry) {
     return sum > 0 ? 10 * std::log10(loudest * static_cast<double>(geometry.materials.size()) / sum) : 0;
 }
 
-Conditions conditionsOf(const sonar::SonarConfig& config, const types::Snapshot& snapshot, const types::Sonar& ping) {
+Conditions getConditions(const sonar::SonarConfig& config, const types::Snapshot& snapshot, const types::Sonar& ping) {
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const double nearest = std::max(grid.range_min, 0.5 * grid.bin_width);
     const auto occupied = static_cast<double>(std::ranges::count_if(ping.bins, [](float bin) { return bin != 0; }));
@@ -82,7 +82,7 @@ Probe probe(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
     renderer.render(snapshot, received.ping);
     received.plan = renderer.plan();
     received.device = renderer.device();
-    received.conditions = conditionsOf(config, snapshot, received.ping);
+    received.conditions = getConditions(config, snapshot, received.ping);
     return received;
 }
 
@@ -110,7 +110,7 @@ types::Snapshot lookingAt(types::GeometryPtr geometry, glm::dvec3 position, doub
     return snapshot;
 }
 
-std::shared_ptr<types::Geometry> copyOf(const types::GeometryPtr& geometry) {
+std::shared_ptr<types::Geometry> makeCopy(const types::GeometryPtr& geometry) {
     return std::make_shared<types::Geometry>(*geometry);
 }
 

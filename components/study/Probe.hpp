@@ -34,7 +34,7 @@ void setSamples(sonar::SonarConfig& config, int rows, int columns_per_beam = 2);
 /** Returns a snapshot of a sonar that looks ahead along x, turned by yaw and then pitched down [rad]. */
 types::Snapshot lookingAt(types::GeometryPtr geometry, glm::dvec3 position = {}, double yaw = 0, double pitch = 0);
 /** Returns a copy of a scene to change. */
-std::shared_ptr<types::Geometry> copyOf(const types::GeometryPtr& geometry);
+std::shared_ptr<types::Geometry> makeCopy(const types::GeometryPtr& geometry);
 
 types::Mesh levelGround(float z, float width = 1000);     ///< [m]
 types::Mesh facingWall(float x, float half_width = 200);  ///< Perpendicular to the x axis [m].

@@ -12,7 +12,7 @@
 namespace insonify::study {
 
 /** Returns a mesh of triangles as one cluster; positions are used unchanged. */
-inline types::Mesh meshOf(std::vector<glm::vec3> positions, std::vector<uint32_t> indices) {
+inline types::Mesh getMesh(std::vector<glm::vec3> positions, std::vector<uint32_t> indices) {
     types::Mesh mesh;
     mesh.positions = std::move(positions);
     mesh.indices = std::move(indices);
@@ -28,7 +28,7 @@ inline types::Mesh meshOf(std::vector<glm::vec3> positions, std::vector<uint32_t
 
 /** Returns a parallelogram from a corner and two edges [m]. */
 inline types::Mesh quad(glm::vec3 corner, glm::vec3 a, glm::vec3 b) {
-    return meshOf({corner, corner + a, corner + a + b, corner + b}, {0, 1, 2, 0, 2, 3});
+    return getMesh({corner, corner + a, corner + a + b, corner + b}, {0, 1, 2, 0, 2, 3});
 }
 
 /** Returns a closed sphere about the origin, of `rings` times 2 `rings` quads with their corners on it [m]. */
@@ -49,7 +49,7 @@ inline types::Mesh sphere(double radius, int rings = 128) {
             if (i > 0) indices.insert(indices.end(), {at(i, j), at(i + 1, j), at(i, j + 1)});
             if (i + 1 < rings) indices.insert(indices.end(), {at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
         }
-    return meshOf(std::move(positions), std::move(indices));
+    return getMesh(std::move(positions), std::move(indices));
 }
 
 /** Returns a disc perpendicular to the x axis about (distance, 0, 0), of `segments` triangles [m]. */
@@ -61,12 +61,12 @@ inline types::Mesh disc(double distance, double radius, uint32_t segments = 256)
         positions.push_back({distance, radius * std::cos(angle), radius * std::sin(angle)});
         indices.insert(indices.end(), {0, 1 + i, 1 + (i + 1) % segments});
     }
-    return meshOf(positions, indices);
+    return getMesh(positions, indices);
 }
 
 /** Returns a scene of one object per mesh, at `positions` or else the origin, of one material with 10^(lambert_db/10) =
  *  1. Large meshes are split into clusters. */
-inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, std::vector<glm::dvec3> positions = {}) {
+inline types::GeometryPtr makeScene(std::vector<types::Mesh> meshes, std::vector<glm::dvec3> positions = {}) {
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.emplace_back().lambert_db = 0;
     positions.resize(meshes.size(), glm::dvec3(0));

@@ -20,7 +20,7 @@ struct Intensities {
     std::vector<bool> clipped = {};
 };
 
-Intensities intensitiesOf(const CodedPing& ping) {
+Intensities getIntensities(const CodedPing& ping) {
     Intensities all{.beam_count = ping.beam_count, .bin_count = ping.bin_count};
     const double step = 1 / (std::pow(2, ping.bits) - 1);
     for (size_t i = 0; i < ping.codes.size(); ++i) {
@@ -35,7 +35,7 @@ Intensities intensitiesOf(const CodedPing& ping) {
     return all;
 }
 
-Intensities intensitiesOf(const types::Sonar& ping) {
+Intensities getIntensities(const types::Sonar& ping) {
     Intensities all{.beam_count = ping.beam_count, .bin_count = ping.bin_count};
     for (const float bin : ping.bins) all.values.push_back(static_cast<double>(bin));
     for (const float bin : ping.bins) all.clipped.push_back(!(bin > 0));
@@ -120,7 +120,7 @@ struct Sums {
     double contrast() const { return std::sqrt(intensity * count / (amplitude * amplitude) - 1); }
 };
 
-std::vector<Sums> blocksOf(const SpeckleField& field) {
+std::vector<Sums> makeBlocks(const SpeckleField& field) {
     const size_t rows = (field.beam_count + patch - 1) / patch, columns = (field.bin_count + patch - 1) / patch;
     std::vector<Sums> blocks(rows * columns);
     for (size_t beam = 0; beam < field.beam_count; ++beam)
@@ -197,21 +197,21 @@ SpeckleField overMeans(const types::Sonar& ping, const types::Sonar& means) {
     return field;
 }
 
-SpeckleField overPatches(const CodedPing& ping, double alike) { return overPatches(intensitiesOf(ping), alike); }
-SpeckleField overPatches(const types::Sonar& intensities) { return overPatches(intensitiesOf(intensities), 0.25); }
+SpeckleField overPatches(const CodedPing& ping, double alike) { return overPatches(getIntensities(ping), alike); }
+SpeckleField overPatches(const types::Sonar& intensities) { return overPatches(getIntensities(intensities), 0.25); }
 
-SpeckleField sliceOf(const SpeckleField& field, size_t slice) {
+SpeckleField getSlice(const SpeckleField& field, size_t slice) {
     SpeckleField part = field;
     for (size_t i = 0; i < part.relative.size(); ++i)
         if (sliceAt(i % part.bin_count, part.bin_count) != slice) part.relative[i] = NAN;
     return part;
 }
 
-size_t loudestSlice(const CodedPing& ping) { return loudestSlice(intensitiesOf(ping)); }
-size_t loudestSlice(const types::Sonar& intensities) { return loudestSlice(intensitiesOf(intensities)); }
+size_t loudestSlice(const CodedPing& ping) { return loudestSlice(getIntensities(ping)); }
+size_t loudestSlice(const types::Sonar& intensities) { return loudestSlice(getIntensities(intensities)); }
 
-SpeckleFigures figuresOf(const SpeckleField& field) {
-    const std::vector<Sums> blocks = blocksOf(field);
+SpeckleFigures computeFigures(const SpeckleField& field) {
+    const std::vector<Sums> blocks = makeBlocks(field);
     Sums total;
     for (const Sums& block : blocks) total = total.plus(block, 1);
     SpeckleFigures figures;

@@ -29,7 +29,7 @@ SpeckleField overPatches(const types::Sonar& intensities);
 /** Echoes and noise have different shares at different ranges, so a field is described by eighths of the range. */
 constexpr size_t speckle_slices = 8;
 /** Returns the same field, NaN except in one eighth of its bins. */
-SpeckleField sliceOf(const SpeckleField& field, size_t slice);
+SpeckleField getSlice(const SpeckleField& field, size_t slice);
 /** Returns the eighth with the max mean intensity, in which the share of noise is smallest. */
 size_t loudestSlice(const CodedPing& ping);
 size_t loudestSlice(const types::Sonar& intensities);
@@ -58,7 +58,7 @@ struct SpeckleFigures {
 };
 
 /** @throws std::invalid_argument if fewer than four blocks of a field have bins */
-SpeckleFigures figuresOf(const SpeckleField& field);
+SpeckleFigures computeFigures(const SpeckleField& field);
 
 /** The correlation of amplitudes, and of intensities, of the same bins of two pings. */
 struct Likewise {

@@ -102,7 +102,7 @@ void addStillness(Bottom& bottom, std::vector<Claim>& claims) {
 }
 
 void addLaws(Bottom& bottom, std::vector<Claim>& claims) {
-    const SpeckleFigures figures = figuresOf(bottom.received({}));
+    const SpeckleFigures figures = computeFigures(bottom.received({}));
     claims.push_back({"coherent, many scatterers: distance of the exponential law, times root n",
                       figures.rayleigh_distance, rayleigh_distance_limit, true});
     claims.push_back({"coherent, many scatterers: scintillation index off 1 [errors]",
@@ -146,8 +146,8 @@ void addShapes(std::vector<Claim>& claims) {
     constexpr int places = 6;
     for (int i = 0; i < places; ++i) {
         const glm::dvec3 place(0, 20.0 * i, 0);
-        near += figuresOf(bottom.received(place, 5, 6)).texture.value / places;
-        far += figuresOf(bottom.received(place, 10, 12)).texture.value / places;
+        near += computeFigures(bottom.received(place, 5, 6)).texture.value / places;
+        far += computeFigures(bottom.received(place, 10, 12)).texture.value / places;
     }
     claims.push_back({"coherent, few scatterers: 1 / shape of K", near, 0.1, false});
     claims.push_back(
@@ -166,12 +166,12 @@ double reported(const SpeckleField& field) {
     return static_cast<double>(std::ranges::count_if(field.relative, [](double x) { return !std::isnan(x); }));
 }
 
-SpeckleRow rowOf(const std::string& name, size_t loudest, const SpeckleField& field, const SpeckleField* next) {
+SpeckleRow getRow(const std::string& name, size_t loudest, const SpeckleField& field, const SpeckleField* next) {
     SpeckleRow row{.name = name, .loudest = loudest, .slices = {}};
     for (size_t slice = 0; slice < speckle_slices; ++slice) {
-        const SpeckleField part = sliceOf(field, slice);
+        const SpeckleField part = getSlice(field, slice);
         if (reported(part) < fewest_bins) continue;
-        row.slices.push_back({slice, figuresOf(part), {}});
+        row.slices.push_back({slice, computeFigures(part), {}});
         if (next) row.slices.back().next = likewise(part, *next);
     }
     return row;
@@ -215,7 +215,7 @@ std::vector<Claim> coherentClaims() {
     return claims;
 }
 
-std::vector<SpeckleFigure> figuresOf(const SpeckleSlice& slice) {
+std::vector<SpeckleFigure> computeFigures(const SpeckleSlice& slice) {
     const SpeckleFigures& figures = slice.figures;
     const Likewise next = slice.next.value_or(Likewise{NAN, NAN});
     return {{"bins", figures.bins},
@@ -234,11 +234,12 @@ std::vector<SpeckleFigure> figuresOf(const SpeckleSlice& slice) {
 
 std::string csv(const std::vector<SpeckleRow>& rows) {
     std::string text = "ping,slice,loudest";
-    for (const SpeckleFigure& figure : figuresOf(SpeckleSlice{})) text += std::string(",") + figure.name;
+    for (const SpeckleFigure& figure : computeFigures(SpeckleSlice{})) text += std::string(",") + figure.name;
     for (const SpeckleRow& row : rows)
         for (const SpeckleSlice& slice : row.slices) {
             fmt::format_to(Out(text), "\n{},{},{}", row.name, slice.slice, slice.slice == row.loudest ? 1 : 0);
-            for (const SpeckleFigure& figure : figuresOf(slice)) fmt::format_to(Out(text), ",{:.6g}", figure.value);
+            for (const SpeckleFigure& figure : computeFigures(slice))
+                fmt::format_to(Out(text), ",{:.6g}", figure.value);
         }
     return text + "\n";
 }
@@ -266,14 +267,14 @@ const SpeckleSlice* SpeckleRow::loudestSlice() const {
 
 SpeckleRow speckleRow(const CodedPing& ping, const CodedPing* next) {
     const SpeckleField field = overPatches(ping);
-    if (!next) return rowOf(ping.name, loudestSlice(ping), field, nullptr);
+    if (!next) return getRow(ping.name, loudestSlice(ping), field, nullptr);
     const SpeckleField after = overPatches(*next);
-    return rowOf(ping.name, loudestSlice(ping), field, &after);
+    return getRow(ping.name, loudestSlice(ping), field, &after);
 }
 
 SpeckleRow speckleRow(const std::string& name, const types::Sonar& ping, const types::Sonar& next) {
     const SpeckleField field = overPatches(ping), after = overPatches(next);
-    return rowOf(name, loudestSlice(ping), field, &after);
+    return getRow(name, loudestSlice(ping), field, &after);
 }
 
 std::vector<SpeckleRow> simulatedRows(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
@@ -295,11 +296,11 @@ std::vector<SpeckleRow> simulatedRows(const sonar::SonarConfig& config, const ty
 std::vector<Claim> lawClaims() {
     constexpr double shape = 3, looks = 4;
     const types::Sonar clean = items();
-    const auto fieldOf = [&](const noise::SpeckleConfig& law) { return overMeans(withSpeckle(clean, law), clean); };
-    const SpeckleField rayleigh = fieldOf({}), next = overMeans(withSpeckle(later(clean), {}), clean);
-    const SpeckleFigures figures = figuresOf(rayleigh);
-    const SpeckleFigures k = figuresOf(fieldOf({.law = noise::SpeckleLaw::K, .shape = shape}));
-    const SpeckleFigures gamma = figuresOf(fieldOf({.law = noise::SpeckleLaw::Gamma, .looks = looks}));
+    const auto getField = [&](const noise::SpeckleConfig& law) { return overMeans(withSpeckle(clean, law), clean); };
+    const SpeckleField rayleigh = getField({}), next = overMeans(withSpeckle(later(clean), {}), clean);
+    const SpeckleFigures figures = computeFigures(rayleigh);
+    const SpeckleFigures k = computeFigures(getField({.law = noise::SpeckleLaw::K, .shape = shape}));
+    const SpeckleFigures gamma = computeFigures(getField({.law = noise::SpeckleLaw::Gamma, .looks = looks}));
     return {{"law rayleigh: distance of the exponential law, times root n", figures.rayleigh_distance,
              rayleigh_distance_limit, true},
             {"law rayleigh: scintillation index off 1 [errors]", errorsOff(figures.scintillation, 1), 3, true},

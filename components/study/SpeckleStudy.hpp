@@ -51,7 +51,7 @@ struct SpeckleFigure {
     const char* name;
     double value;
 };
-std::vector<SpeckleFigure> figuresOf(const SpeckleSlice& slice);
+std::vector<SpeckleFigure> computeFigures(const SpeckleSlice& slice);
 
 std::string csv(const std::vector<SpeckleRow>& rows);      ///< Returns a line for each row and slice.
 std::string lagsCsv(const std::vector<SpeckleRow>& rows);  ///< Returns both correlation curves of the loudest slices.

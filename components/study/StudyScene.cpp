@@ -48,8 +48,8 @@ Complex gaussian(uint64_t seed, uint64_t a, uint64_t b) {
                       2 * std::numbers::pi * types::unit(word & 0xffffffffu));
 }
 
-types::Mesh patchOf(const FractalFloor& floor, const std::vector<double>& heights, int from_x, int to_x, int from_y,
-                    int to_y) {
+types::Mesh makePatch(const FractalFloor& floor, const std::vector<double>& heights, int from_x, int to_x, int from_y,
+                      int to_y) {
     const double step = floor.side / (floor.points - 1);
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -63,12 +63,12 @@ types::Mesh patchOf(const FractalFloor& floor, const std::vector<double>& height
             const uint32_t a = i * across + j, b = a + across;
             indices.insert(indices.end(), {a, b, b + 1, a, b + 1, a + 1});
         }
-    return meshOf(std::move(positions), std::move(indices));
+    return getMesh(std::move(positions), std::move(indices));
 }
 
 using types::radians;
 
-types::Snapshot snapshotOf(types::GeometryPtr geometry, double pitch = 0, double roll = 0) {
+types::Snapshot makeSnapshot(types::GeometryPtr geometry, double pitch = 0, double roll = 0) {
     types::Snapshot snapshot;
     snapshot.geometry = std::move(geometry);
     snapshot.sonar.orientation = glm::angleAxis(pitch, glm::dvec3(0, 1, 0)) * glm::angleAxis(roll, glm::dvec3(1, 0, 0));
@@ -76,14 +76,14 @@ types::Snapshot snapshotOf(types::GeometryPtr geometry, double pitch = 0, double
 }
 
 /** Returns down, in the axes of a sonar that is pitched down and then rolled to starboard. */
-glm::dvec3 downOf(const types::Snapshot& snapshot) {
+glm::dvec3 computeDown(const types::Snapshot& snapshot) {
     return glm::conjugate(snapshot.sonar.orientation) * glm::dvec3(0, 0, -1);
 }
 
 StudyScene flatBottom(const std::string& name, const std::string& doc, double range_from, double pitch, double roll) {
-    StudyScene scene{name, doc,       fan(130, 40, 64, 50), snapshotOf(sceneOf({levelGround(-5)}), pitch, roll),
+    StudyScene scene{name, doc,       fan(130, 40, 64, 50), makeSnapshot(makeScene({levelGround(-5)}), pitch, roll),
                      {},   range_from};
-    scene.truth = planeTruth(downOf(scene.snapshot), 5);
+    scene.truth = planeTruth(computeDown(scene.snapshot), 5);
     return scene;
 }
 
@@ -94,7 +94,7 @@ StudyScene patternedBottom() {
                      "a flat bottom 5 m below, the sonar pitched down by 20 deg, with a Gaussian beam of 20 deg in "
                      "elevation, two-way",
                      fan(60, 2 * reach_deg, 32, 50),
-                     snapshotOf(sceneOf({levelGround(-5)}), radians(20)),
+                     makeSnapshot(makeScene({levelGround(-5)}), radians(20)),
                      {}};
     acoustics::BeamLaw law;
     law.weighting = acoustics::Weighting::Gaussian;
@@ -102,48 +102,48 @@ StudyScene patternedBottom() {
     sonar::BeamPatternConfig& pattern = scene.config.beam_pattern.emplace();
     pattern.transmit.elevation = pattern.receive.elevation = law;
     const acoustics::BeamPattern beam(law);
-    scene.truth = planeTruth(downOf(scene.snapshot), 5, {},
+    scene.truth = planeTruth(computeDown(scene.snapshot), 5, {},
                              [beam](double elevation) { return std::pow(beam.power(elevation), 2); });
     return scene;
 }
 
 StudyScene wallAhead() {
-    return {"wall", "a wall 10 m ahead, 60 x 40 deg", fan(60, 40, 32, 15), snapshotOf(sceneOf({facingWall(10)})),
+    return {"wall", "a wall 10 m ahead, 60 x 40 deg", fan(60, 40, 32, 15), makeSnapshot(makeScene({facingWall(10)})),
             planeTruth({1, 0, 0}, 10)};
 }
 
 StudyScene facingDisc() {
     return {"facing_disc", "a disc of 2.9 m radius, 10 m ahead, in one beam", fan(40, 40, 1, 12),
-            snapshotOf(sceneOf({disc(10, 2.9, 2048)})), discTruth(10, 2.9)};
+            makeSnapshot(makeScene({disc(10, 2.9, 2048)})), discTruth(10, 2.9)};
 }
 
 StudyScene oneSphere() {
     return {"sphere", "a sphere of 1 m radius, 10 m ahead, in one beam", fan(16, 16, 1, 12),
-            snapshotOf(sceneOf({sphere(1, 256)}, {{10, 0, 0}})), sphereTruth(1, 10)};
+            makeSnapshot(makeScene({sphere(1, 256)}, {{10, 0, 0}})), sphereTruth(1, 10)};
 }
 
 StudyScene twoSpheres() {
     const double up = radians(10), x = 10 * std::cos(up), z = 10 * std::sin(up);
     return {"two_spheres", "two spheres of 1 m radius at 10 m, one above the other, in one beam", fan(16, 36, 1, 12),
-            snapshotOf(sceneOf({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
+            makeSnapshot(makeScene({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
             sum({sphereTruth(1, 10), sphereTruth(1, 10)})};
 }
 
 StudyScene shinySphere() {
     const double slope = 0.3;
-    const auto geometry = copyOf(sceneOf({sphere(1, 256)}, {{10, 0, 0}}));
+    const auto geometry = makeCopy(makeScene({sphere(1, 256)}, {{10, 0, 0}}));
     geometry->materials[0].lambert_db = -9.23f;
     geometry->materials[0].reflection = 1;
     geometry->materials[0].roughness_slope = static_cast<float>(slope);
     const auto section = [=](double cosine) { return acoustics::objectSection(-9.23, 1, slope * slope, cosine); };
-    return {"sphere_lobe", "the sphere with a specular lobe of 0.3 rms slope", fan(16, 16, 1, 12), snapshotOf(geometry),
-            sphereTruth(1, 10, section)};
+    return {"sphere_lobe", "the sphere with a specular lobe of 0.3 rms slope", fan(16, 16, 1, 12),
+            makeSnapshot(geometry), sphereTruth(1, 10, section)};
 }
 
 /** Loud water, so that it dominates at long range. */
 StudyScene waterOverBottom() {
     StudyScene scene = flatBottom("volume_over_bottom", "the flat bottom in water of -45 dB re 1/m", 15, 0, 0);
-    const auto geometry = copyOf(scene.snapshot.geometry);
+    const auto geometry = makeCopy(scene.snapshot.geometry);
     geometry->materials[0].lambert_db = -30;
     scene.snapshot.geometry = geometry;
     scene.config.volume.push_back({{}, {}, -45});
@@ -161,9 +161,9 @@ StudyScene shadowScreen() {
     const Window screen = [=](double azimuth) { return Elevations{elevation(azimuth, 0), elevation(azimuth, top)}; };
     const Window before = [=](double azimuth) { return Elevations{-std::numbers::pi / 2, elevation(azimuth, 0)}; };
     const Window behind = [=](double azimuth) { return Elevations{elevation(azimuth, top), std::numbers::pi / 2}; };
-    const auto geometry = sceneOf({levelGround(-5), quad({15, -200, -5}, {0, 400, 0}, {0, 0, 2})});
+    const auto geometry = makeScene({levelGround(-5), quad({15, -200, -5}, {0, 400, 0}, {0, 0, 2})});
     return {"shadow_screen", "a screen 2 m high on a flat bottom 5 m below, 15 m ahead: echo and shadow",
-            fan(60, 60, 32, 50), snapshotOf(geometry),
+            fan(60, 60, 32, 50), makeSnapshot(geometry),
             sum({planeTruth({0, 0, -1}, height, before), planeTruth({1, 0, 0}, ahead, screen),
                  planeTruth({0, 0, -1}, height, behind)})};
 }
@@ -186,7 +186,7 @@ types::Mesh rollingFloor(int cells) {
     for (uint32_t a = 0; a + across < positions.size(); ++a)
         if (a % across + 1 < across)
             indices.insert(indices.end(), {a, a + across, a + across + 1, a, a + across + 1, a + 1});
-    return meshOf(std::move(positions), std::move(indices));
+    return getMesh(std::move(positions), std::move(indices));
 }
 
 /** Returns a closed prism of `sides` between two heights, about the z axis [m]. */
@@ -203,12 +203,12 @@ types::Mesh prism(double radius, double low, double high, uint32_t sides, double
         indices.insert(indices.end(), {a, b, b + 1, a, b + 1, a + 1});
         if (i > 0 && i + 1 < sides) indices.insert(indices.end(), {0, b, a, 1, a + 1, b + 1});
     }
-    return meshOf(std::move(positions), std::move(indices));
+    return getMesh(std::move(positions), std::move(indices));
 }
 
 }  // namespace
 
-std::vector<double> heightsOf(const FractalFloor& floor) {
+std::vector<double> computeHeights(const FractalFloor& floor) {
     const auto n = static_cast<size_t>(floor.points);
     std::vector<Complex> amplitudes(n * n);
     const auto wavenumber = [n](size_t i) { return static_cast<double>(i <= n / 2 ? i : n - i); };
@@ -230,17 +230,17 @@ std::vector<double> heightsOf(const FractalFloor& floor) {
     return heights;
 }
 
-types::Mesh meshOf(const FractalFloor& floor) {
-    return patchOf(floor, heightsOf(floor), 0, floor.points - 1, 0, floor.points - 1);
+types::Mesh getMesh(const FractalFloor& floor) {
+    return makePatch(floor, computeHeights(floor), 0, floor.points - 1, 0, floor.points - 1);
 }
 
-std::vector<types::Mesh> tilesOf(const FractalFloor& floor, int tiles) {
-    const std::vector<double> heights = heightsOf(floor);
+std::vector<types::Mesh> makeTiles(const FractalFloor& floor, int tiles) {
+    const std::vector<double> heights = computeHeights(floor);
     const auto edge = [&](int tile) { return (floor.points - 1) * tile / tiles; };
     std::vector<types::Mesh> meshes;
     for (int i = 0; i < tiles; ++i)
         for (int j = 0; j < tiles; ++j)
-            meshes.push_back(patchOf(floor, heights, edge(i), edge(i + 1), edge(j), edge(j + 1)));
+            meshes.push_back(makePatch(floor, heights, edge(i), edge(i + 1), edge(j), edge(j + 1)));
     return meshes;
 }
 
@@ -290,11 +290,11 @@ std::vector<double> trueEnergies(const StudyScene& scene) {
 StudyScene roughFloor(int points) {
     FractalFloor floor;
     floor.points = points;
-    const types::Mesh mesh = meshOf(floor);
+    const types::Mesh mesh = getMesh(floor);
     return {"rough_floor",
             "a fractal floor 3 m below, the power spectrum of its profiles as wavenumber^-2.7, 0.35 m rms",
             fan(90, 20, 128, 40),
-            lookingAt(sceneOf({mesh}), {}, 0, radians(8)),
+            lookingAt(makeScene({mesh}), {}, 0, radians(8)),
             {}};
 }
 
@@ -310,7 +310,7 @@ StudyScene benchFloor(int cells) {
         positions.push_back({x, y, rollingHeight(x, y) + 0.3});
     }
     for (size_t i = 1; i < meshes.size(); ++i) meshes[i].clusters[0].material = 1;
-    const auto geometry = copyOf(sceneOf(std::move(meshes), std::move(positions)));
+    const auto geometry = makeCopy(makeScene(std::move(meshes), std::move(positions)));
     geometry->materials.resize(2);
     geometry->materials[0].lambert_db = static_cast<float>(scene::lambertDb(scene::Sediment::MediumSand));
     geometry->materials[1].lambert_db = static_cast<float>(scene::lambertDb(scene::Matter::CarbonSteel));

@@ -23,13 +23,13 @@ struct FractalFloor {
 
 /** Returns the heights about their mean, [x][y] [m]: complex Gaussian amplitudes, scaled by the root of the spectrum
  *  and Fourier-transformed; they are periodic at the edges. */
-std::vector<double> heightsOf(const FractalFloor& floor);
+std::vector<double> computeHeights(const FractalFloor& floor);
 
 /** Returns the floor as one mesh, with two triangles between four points. */
-types::Mesh meshOf(const FractalFloor& floor);
+types::Mesh getMesh(const FractalFloor& floor);
 
 /** Returns the same triangles as tiles x tiles meshes. */
-std::vector<types::Mesh> tilesOf(const FractalFloor& floor, int tiles);
+std::vector<types::Mesh> makeTiles(const FractalFloor& floor, int tiles);
 
 /** A scene, the sonar that looks at it, and its expected echoes. */
 struct StudyScene {

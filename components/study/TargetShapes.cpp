@@ -18,7 +18,7 @@ double decibels(double section) { return 10 * std::log10(section); }
 
 /** Returns a rigid body without a Lambertian part. */
 types::GeometryPtr shiny(types::Mesh mesh, const glm::dmat4& place) {
-    const auto scene = copyOf(sceneOf({std::move(mesh)}));
+    const auto scene = makeCopy(makeScene({std::move(mesh)}));
     scene->objects[0].world_from_object = place;
     scene->materials[0].lambert_db = -200;
     scene->materials[0].reflection = 1;
@@ -60,7 +60,7 @@ types::Mesh revolved(const std::vector<glm::dvec2>& profile, int around, double 
             if (profile[i].x > 0) indices.insert(indices.end(), {at(i, j), at(i, j + 1), at(i + 1, j)});
             if (profile[i + 1].x > 0) indices.insert(indices.end(), {at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
         }
-    return meshOf(std::move(positions), std::move(indices));
+    return getMesh(std::move(positions), std::move(indices));
 }
 
 Target ellipsoidTarget(const Encounter& met, double ahead, double aside, double up) {

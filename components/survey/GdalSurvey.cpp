@@ -44,7 +44,7 @@ std::string reason() {
 }
 
 /** Returns the metres per unit of the map. A file without a map is assumed to be in metres; degrees count as such. */
-double metresOf(const OGRSpatialReference* map) { return map && !map->IsGeographic() ? map->GetLinearUnits() : 1; }
+double getMetres(const OGRSpatialReference* map) { return map && !map->IsGeographic() ? map->GetLinearUnits() : 1; }
 
 /** Checks the size of raw binary files. GDAL reads missing values of a truncated file as 0, and would interpret a short
  *  .flt as bytes. */
@@ -56,7 +56,7 @@ void checkSize(GDALDataset& dataset, const std::filesystem::path& file) {
     for (int band = 1; band <= dataset.GetRasterCount(); ++band) {
         const GDALDataType type = dataset.GetRasterBand(band)->GetRasterDataType();
         expected += uint64_t(dataset.GetRasterXSize()) * uint64_t(dataset.GetRasterYSize()) *
-                    uint64_t(GDALGetDataTypeSizeBytes(scene::extensionOf(file) == ".flt" ? GDT_Float32 : type));
+                    uint64_t(GDALGetDataTypeSizeBytes(scene::getExtension(file) == ".flt" ? GDT_Float32 : type));
     }
     const uint64_t size = std::filesystem::file_size(file);
     if (size < expected) refuse(file, fmt::format("ends too early: has {} of {} bytes", size, expected));
@@ -117,7 +117,7 @@ GdalSurvey::GdalSurvey(const std::filesystem::path& file, int band) : file_(file
     unit_ = dataset_->GetRasterBand(band)->GetUnitType();
     const OGRSpatialReference* const named = dataset_->GetSpatialRef();
     is_in_degrees_ = named && named->IsGeographic();
-    const double metres = metresOf(named);
+    const double metres = getMetres(named);
     spacing_ = metres * glm::dvec2(map[1], map[5]);
     first_ = metres * glm::dvec2(map[0], map[3]) + 0.5 * spacing_;
     if (!(std::abs(spacing_.x) > 0 && std::abs(spacing_.y) > 0 && std::isfinite(first_.x + first_.y)))
@@ -142,7 +142,7 @@ scene::Survey::Conversion GdalSurvey::conversion(bool to_map) const {
         OGRCoordinateTransformation::DestroyCT);
     if (!made)
         refuse(file_, std::string("is on the map ") + map.GetName() + ", which has no place on the earth; " + reason());
-    const double metres = metresOf(named), middle = place((columns_ - 1) / 2.0, 0).x;
+    const double metres = getMetres(named), middle = place((columns_ - 1) / 2.0, 0).x;
     return [made, to_map, metres, middle, in_degrees = is_in_degrees_](std::vector<glm::dvec2>& places) {
         const CPLErrorHandlerPusher silent(CPLQuietErrorHandler);
         std::vector<double> x, y;

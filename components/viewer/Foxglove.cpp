@@ -66,7 +66,7 @@ std::string timeMessage(uint64_t nanoseconds) {
 
 namespace {
 
-ParameterRequest::Kind kindOf(const Json& said) {
+ParameterRequest::Kind getKind(const Json& said) {
     using enum ParameterRequest::Kind;
     const Json op = said.is_object() ? said.value("op", Json()) : Json();
     return op == "getParameters"                 ? Get
@@ -95,7 +95,7 @@ std::pair<std::string, std::string> setting(const Json& one) {
 ParameterRequest readParameterRequest(std::string_view text) {
     const Json said = console::readJson<Json>(text);
     ParameterRequest request;
-    request.kind = kindOf(said);
+    request.kind = getKind(said);
     if (request.kind == ParameterRequest::Kind::Other) return request;
     if (const Json id = said.value("id", Json()); id.is_string()) request.id = id.get<std::string>();
     if (request.kind == ParameterRequest::Kind::Set) {

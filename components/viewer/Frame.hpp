@@ -9,7 +9,7 @@ namespace insonify::viewer {
 /** Bytes sent to several clients, encoded once. */
 using Bytes = std::shared_ptr<const std::string>;
 
-inline Bytes bytesOf(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+inline Bytes toBytes(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 /** One WebSocket message. */
 struct Frame {

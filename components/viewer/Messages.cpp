@@ -111,7 +111,7 @@ void FanPicture::draw(const types::Sonar& ping, const ros::SonarOptions& options
             message.data[i] = std::max(message.data[i], image.data[table_[i].first + k]);
 }
 
-std::string topicOf(const std::string& source) {
+std::string getTopic(const std::string& source) {
     std::string topic = "/" + source;
     std::ranges::replace(topic, '.', '/');
     return topic;
@@ -128,8 +128,8 @@ foxglove::FrameTransforms transform(const types::Pose& pose, const std::string& 
     return {{{placed.header.stamp, placed.header.frame_id, child, {position.x, position.y, position.z}, orientation}}};
 }
 
-const types::Sonar& pingOf(const types::Sonar& ping) { return ping; }
-types::Sonar pingOf(const auto& beams) { return types::toSonar(beams); }
+const types::Sonar& makePing(const types::Sonar& ping) { return ping; }
+types::Sonar makePing(const auto& beams) { return types::toSonar(beams); }
 
 }  // namespace
 
@@ -144,7 +144,7 @@ void Messages::append(const T& sample, Form form, std::vector<char>& bytes) {
     if constexpr (is_ping<T>) {
         if (form == Form::Picture) {
             ros::Image picture;
-            picture_.draw(pingOf(sample), options_, picture);
+            picture_.draw(makePing(sample), options_, picture);
             return ros::encode(picture, bytes);
         }
         if (form == Form::Points) {
@@ -169,10 +169,10 @@ void Messages::append(const T& sample, Form form, std::vector<char>& bytes) {
 Bytes Messages::encode(const AnySample& sample, Form form) {
     std::vector<char> bytes;
     std::visit([&](const auto& held) { append(*types::carriedSample(held), form, bytes); }, sample);
-    return bytesOf({bytes.begin(), bytes.end()});
+    return toBytes({bytes.begin(), bytes.end()});
 }
 
-types::Time stampOf(const AnySample& sample, types::Time otherwise) {
+types::Time getStamp(const AnySample& sample, types::Time otherwise) {
     return std::visit(
         [&](const auto& held) {
             const auto* const shown = types::carriedSample(held);

@@ -91,11 +91,11 @@ struct FoxgloveForm {
 };
 
 /** Returns "/noise/noisy" for "noise.noisy". */
-std::string topicOf(const std::string& source);
+std::string getTopic(const std::string& source);
 
 template <class Message>
-FoxgloveChannel channelOf(const std::string& topic) {
-    return {topic, ros::shortName(Message::type_name), ros::schemaOf<Message>()};
+FoxgloveChannel getChannel(const std::string& topic) {
+    return {topic, ros::shortName(Message::type_name), ros::describeSchema<Message>()};
 }
 
 /** Whether T is a type of pings. */
@@ -105,17 +105,17 @@ inline constexpr bool is_ping =
 
 /** Returns the forms of a source of T: its message first, then those that built-in panels draw. */
 template <class T>
-std::vector<FoxgloveForm> formsOf(const std::string& source) {
-    const std::string topic = topicOf(source);
-    std::vector<FoxgloveForm> forms{{Form::Message, channelOf<typename ShownMessage<T>::type>(topic)}};
+std::vector<FoxgloveForm> getForms(const std::string& source) {
+    const std::string topic = getTopic(source);
+    std::vector<FoxgloveForm> forms{{Form::Message, getChannel<typename ShownMessage<T>::type>(topic)}};
     if constexpr (is_ping<T>) {
-        forms.push_back({Form::Picture, channelOf<ros::Image>(topic + "/image")});
-        forms.push_back({Form::Points, channelOf<ros::PointCloud2>(topic + "/points")});
+        forms.push_back({Form::Picture, getChannel<ros::Image>(topic + "/image")});
+        forms.push_back({Form::Points, getChannel<ros::PointCloud2>(topic + "/points")});
     }
     if constexpr (std::is_same_v<T, types::Pose> || std::is_same_v<T, types::Snapshot>)
-        forms.push_back({Form::Transforms, channelOf<foxglove::FrameTransforms>(topic + "/transforms")});
+        forms.push_back({Form::Transforms, getChannel<foxglove::FrameTransforms>(topic + "/transforms")});
     if constexpr (std::is_same_v<T, types::Snapshot>)
-        forms.push_back({Form::Scene, channelOf<foxglove::SceneUpdate>(topic + "/scene")});
+        forms.push_back({Form::Scene, getChannel<foxglove::SceneUpdate>(topic + "/scene")});
     return forms;
 }
 
@@ -137,6 +137,6 @@ private:
 };
 
 /** Returns the sample's stamp; `otherwise` if it has none. */
-types::Time stampOf(const AnySample& sample, types::Time otherwise);
+types::Time getStamp(const AnySample& sample, types::Time otherwise);
 
 }  // namespace insonify::viewer

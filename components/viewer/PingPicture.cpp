@@ -13,7 +13,7 @@ namespace {
 
 constexpr float nothing_db = -10000;
 
-nlohmann::json edgesOf(const types::BeamArc& arc) {
+nlohmann::json findEdges(const types::BeamArc& arc) {
     nlohmann::json edges = nlohmann::json::array();
     for (const auto& [right, left] : arc.sectors()) edges.insert(edges.end(), {right, left});
     return edges;
@@ -23,7 +23,7 @@ nlohmann::json edgesOf(const types::BeamArc& arc) {
 double orZero(double value) { return std::isfinite(value) ? value : 0; }
 
 /** Returns the middle of the floats that begin with these bits. */
-float levelOf(uint32_t bits) {
+float computeLevel(uint32_t bits) {
     const float value = std::bit_cast<float>(bits << 16 | 0x8000);
     return value > 0 && std::isfinite(value) ? 10 * std::log10(value) : nothing_db;
 }
@@ -39,7 +39,7 @@ std::string pageMessage(uint32_t kind, std::string json, const std::string& data
 }
 
 PingPicture::PingPicture(ros::BinScale scale) : scale_(scale), levels_(std::make_unique<std::array<float, 65536>>()) {
-    for (uint32_t bits = 0; bits < levels_->size(); ++bits) (*levels_)[bits] = levelOf(bits);
+    for (uint32_t bits = 0; bits < levels_->size(); ++bits) (*levels_)[bits] = computeLevel(bits);
 }
 
 float PingPicture::decibels(float bin) const {
@@ -76,7 +76,7 @@ std::string PingPicture::encode(const types::Sonar& ping, const PictureNote& not
                                  {"beam_width", orZero(ping.beam_width.rad)},
                                  {"beam_height", orZero(ping.beam_height.rad)},
                                  {"bearings", arc.bearings},
-                                 {"edges", edgesOf(arc)}};
+                                 {"edges", findEdges(arc)}};
     return pageMessage(ping_kind, json.dump(), data);
 }
 

@@ -25,7 +25,7 @@ std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::erro
 
 Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json valueOf(const types::PropertyValue& value) {
+Json getValue(const types::PropertyValue& value) {
     return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
@@ -33,10 +33,10 @@ Json valueOf(const types::PropertyValue& value) {
 Json shown(const std::string& name, const types::PropertyValue& value) {
     const auto* text = std::get_if<std::string>(&value);
     const bool is_secret = name == "token" || name.ends_with(".token");
-    return is_secret && text && !text->empty() ? Json("...") : valueOf(value);
+    return is_secret && text && !text->empty() ? Json("...") : getValue(value);
 }
 
-Json planOf(const types::Plan& plan) {
+Json makePlan(const types::Plan& plan) {
     Json omitted = Json::array();
     for (const types::Omission& omission : plan.omitted)
         omitted.push_back({{"name", omission.name}, {"reason", omission.reason}});
@@ -47,7 +47,7 @@ Json planOf(const types::Plan& plan) {
             {"device", plan.device}};
 }
 
-Json taskOf(const types::TaskStatus& task) {
+Json getTask(const types::TaskStatus& task) {
     Json properties = Json::object(), outputs = Json::array();
     for (const auto& [name, value] : task.record.properties) properties[name] = shown(name, value);
     for (const types::PortStatus& port : task.outputs)
@@ -60,7 +60,7 @@ Json taskOf(const types::TaskStatus& task) {
     if (const auto& recording = task.recording)
         json["recording"] = {
             {"file", recording->file}, {"bytes", recording->bytes}, {"free_bytes", recording->free_bytes}};
-    if (task.plan) json["plan"] = planOf(*task.plan);
+    if (task.plan) json["plan"] = makePlan(*task.plan);
     return json;
 }
 
@@ -73,7 +73,7 @@ std::string sessionName() {
     return std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count());
 }
 
-ServerOptions optionsOf(const ViewerConfig& config, const std::vector<Source>& sources) {
+ServerOptions getOptions(const ViewerConfig& config, const std::vector<Source>& sources) {
     ServerOptions options{config.address,      static_cast<uint16_t>(config.port),
                           config.token,        static_cast<size_t>(config.clients),
                           config.idle_timeout, {},
@@ -93,7 +93,7 @@ std::vector<uint32_t> firstChannels(const std::vector<Source>& sources) {
     return first;
 }
 
-std::vector<Messages> messagesOf(const ViewerConfig& config, size_t sources) {
+std::vector<Messages> getMessages(const ViewerConfig& config, size_t sources) {
     return std::vector<Messages>(
         sources, Messages(config.messages, config.world_frame, static_cast<size_t>(config.max_triangles)));
 }
@@ -107,7 +107,7 @@ uint64_t nanoseconds(types::Time stamp) {
 
 std::string statusText(const types::DeploymentStatus& status, const ServerCounts& counts) {
     Json tasks = Json::array(), connections = Json::array();
-    for (const types::TaskStatus& task : status.tasks) tasks.push_back(taskOf(task));
+    for (const types::TaskStatus& task : status.tasks) tasks.push_back(getTask(task));
     for (const types::ConnectionStatus& one : status.connections)
         connections.push_back({{"from", one.from},
                                {"to", one.to},
@@ -126,7 +126,7 @@ std::string statusText(const types::DeploymentStatus& status, const ServerCounts
                  {"dropped", counts.dropped}});
 }
 
-Parameters parametersOf(const types::DeploymentStatus& status) {
+Parameters listParameters(const types::DeploymentStatus& status) {
     Parameters parameters;
     for (const types::TaskStatus& task : status.tasks)
         for (const auto& [name, value] : task.record.properties)
@@ -210,12 +210,12 @@ Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Ho
       sources_(std::move(sources)),
       host_(std::move(host)),
       picture_(config.messages.scale),
-      messages_(messagesOf(config, sources_.size())),
+      messages_(getMessages(config, sources_.size())),
       first_channel_(firstChannels(sources_)),
       slots_(sources_.size()),
       tasks_(host_.deployment ? host_.deployment->interfaces() : std::vector<types::TaskInterface>{}),
-      interfaces_(bytesOf(interfacesText(tasks_, config.control))),
-      server_(optionsOf(config_, sources_), *this),
+      interfaces_(toBytes(interfacesText(tasks_, config.control))),
+      server_(getOptions(config_, sources_), *this),
       publishing_(types::startThread("the samples of the live view", [this] { publishAll(); })) {}
 
 Publisher::~Publisher() {
@@ -229,7 +229,7 @@ Publisher::~Publisher() {
 }
 
 void Publisher::offer(size_t source, AnySample sample, types::Time now) {
-    const types::Time stamp = stampOf(sample, now);
+    const types::Time stamp = getStamp(sample, now);
     {
         std::lock_guard lock(mutex_);
         Slot& slot = slots_[source];
@@ -368,14 +368,14 @@ void Publisher::showOnPages(size_t source, const Slot& slot) {
     const uint32_t stream = first_source_stream + static_cast<uint32_t>(source);
     const std::string& name = sources_[source].name;
     if (const auto* ping = std::get_if<types::SonarPtr>(&slot.sample))
-        server_.toPages(stream, {"", bytesOf(picture_.encode(**ping, {name, slot.latency_s, slot.count})), false});
+        server_.toPages(stream, {"", toBytes(picture_.encode(**ping, {name, slot.latency_s, slot.count})), false});
     else if (const auto* pose = std::get_if<types::Pose>(&slot.sample))
-        server_.toPages(stream, {"", bytesOf(poseText(*pose, name)), true});
+        server_.toPages(stream, {"", toBytes(poseText(*pose, name)), true});
     else if (const auto* snapshot = std::get_if<types::SnapshotPtr>(&slot.sample)) {
         showScene(source, (*snapshot)->geometry);
         const auto maximum = static_cast<size_t>(config_.max_triangles);
         server_.toPages(stream,
-                        {"", bytesOf(snapshotMessage(**snapshot, maximum, name)), (*snapshot)->deformed.empty()});
+                        {"", toBytes(snapshotMessage(**snapshot, maximum, name)), (*snapshot)->deformed.empty()});
     }
 }
 
@@ -383,7 +383,7 @@ void Publisher::showScene(size_t source, const types::GeometryPtr& geometry) {
     if (!geometry || geometry == geometries_[source]) return;
     geometries_[source] = geometry;
     const auto maximum = static_cast<size_t>(config_.max_triangles);
-    const Bytes scene = bytesOf(sceneMessage(*geometry, maximum, sources_[source].name));
+    const Bytes scene = toBytes(sceneMessage(*geometry, maximum, sources_[source].name));
     {
         std::lock_guard lock(mutex_);
         scenes_[source] = scene;  // first, so that a new client receives it twice rather than never
@@ -395,7 +395,7 @@ void Publisher::showStatus() try {
     const bool to_pages = server_.pages() > 0, to_foxglove = server_.foxglove() > 0;
     if (!to_pages && !to_foxglove) return;
     const auto status = host_.deployment ? host_.deployment->status() : types::DeploymentStatus{};
-    if (to_pages) server_.toPages(status_stream, {"", bytesOf(statusText(status, counts())), true});
+    if (to_pages) server_.toPages(status_stream, {"", toBytes(statusText(status, counts())), true});
     if (!to_foxglove) return;
     if (host_.deployment) sendTime(status.now);
     showParameters(status);
@@ -406,7 +406,7 @@ void Publisher::showStatus() try {
 
 void Publisher::showParameters(const types::DeploymentStatus& status) {
     if (server_.parameterReaders() == 0) return reported_.clear();  // a new client receives all
-    Parameters parameters = parametersOf(status), changed;
+    Parameters parameters = listParameters(status), changed;
     for (const auto& one : parameters)
         if (std::ranges::find(reported_, one) == reported_.end()) changed.push_back(one);
     reported_ = std::move(parameters);
@@ -422,12 +422,13 @@ void Publisher::request(uint64_t client, std::string text) {
     } catch (const std::exception& error) {
         return server_.reply(client, refusalText(request.id, error.what()));
     }
-    if (!executors_.run(taskOf(request.operation), [this, client, request] { server_.reply(client, answer(request)); }))
+    if (!executors_.run(getTask(request.operation),
+                        [this, client, request] { server_.reply(client, answer(request)); }))
         server_.reply(client, refusalText(request.id, "too many requests are waiting; try again later"));
 }
 
 /** Returns the task that is called; empty if there is none. */
-std::string Publisher::taskOf(const std::string& path) const {
+std::string Publisher::getTask(const std::string& path) const {
     const std::string task = path.substr(0, path.find('.'));
     return std::ranges::find(tasks_, task, &types::TaskInterface::name) == tasks_.end() ? "" : task;
 }
@@ -439,7 +440,7 @@ std::string Publisher::answer(const Request& request) const try {
 }
 
 void Publisher::parameters(uint64_t client, ParameterRequest request, bool may_set) {
-    const std::string executor = request.values.empty() ? "" : taskOf(request.values.front().first);
+    const std::string executor = request.values.empty() ? "" : getTask(request.values.front().first);
     const auto work = [this, client, request, may_set] {
         server_.reply(client, answerParameters(client, request, may_set));
     };
@@ -455,7 +456,7 @@ std::string Publisher::answerParameters(uint64_t client, const ParameterRequest&
         if (const std::string why = setParameter(name, yaml, may_set); !why.empty())
             server_.reply(client, diagnosticText(name + ": " + why));
     }
-    Parameters all = host_.deployment ? parametersOf(host_.deployment->status()) : Parameters{};
+    Parameters all = host_.deployment ? listParameters(host_.deployment->status()) : Parameters{};
     if (!names.empty()) std::erase_if(all, [&](const auto& one) { return !names.contains(one.first); });
     return parameterValues(all, request.id);
 } catch (const std::exception& error) {
@@ -465,7 +466,7 @@ std::string Publisher::answerParameters(uint64_t client, const ParameterRequest&
 /** Returns why the setting was refused, or an empty text. */
 std::string Publisher::setParameter(const std::string& name, const std::string& yaml, bool may_set) const try {
     if (!may_set) throw std::runtime_error("a web site may set parameters only with the viewer's token");
-    const std::string task = taskOf(name);
+    const std::string task = getTask(name);
     if (task.empty() || task.size() + 1 >= name.size()) throw std::runtime_error("is not a property of any task");
     std::string operation = name;
     operation.replace(task.size(), 2, std::string(".set") + types::raised(name[task.size() + 1]));

@@ -79,7 +79,7 @@ struct ViewerConfig {
 /** Returns the state of the deployment as JSON for pages. */
 std::string statusText(const types::DeploymentStatus& status, const ServerCounts& counts);
 /** Returns all properties, named "sonar.range", as JSON values. */
-Parameters parametersOf(const types::DeploymentStatus& status);
+Parameters listParameters(const types::DeploymentStatus& status);
 std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, bool control);
 
 /** A page's request. */
@@ -184,7 +184,7 @@ private:
     void sendTime(types::Time now);
     std::string answerParameters(uint64_t client, const ParameterRequest& request, bool may_set);
     std::string setParameter(const std::string& name, const std::string& yaml, bool may_set) const;
-    std::string taskOf(const std::string& path) const;
+    std::string getTask(const std::string& path) const;
     std::string answer(const Request& request) const;
     std::string carryOut(const Request& request) const;
     void refuseOwn(const std::string& operation) const;

@@ -17,7 +17,7 @@ void append(std::string& data, const std::vector<T>& values) {
     data.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
-Json matrixOf(const glm::dmat4& m) {
+Json toMatrix(const glm::dmat4& m) {
     Json columns = Json::array();
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r) columns.push_back(m[c][r]);
@@ -43,17 +43,17 @@ std::vector<size_t> shownObjects(const types::Geometry& geometry, const std::vec
     return shown;
 }
 
-Json positionOf(const glm::dvec3& p) { return {p.x, p.y, p.z}; }
-Json orientationOf(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
+Json getPosition(const glm::dvec3& p) { return {p.x, p.y, p.z}; }
+Json getOrientation(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
 
 /** Appends the positions of the objects that a snapshot deforms. Returns their places in the data. */
-Json shapesOf(const types::Snapshot& snapshot, size_t max_triangles, std::string& data) {
+Json getShapes(const types::Snapshot& snapshot, size_t max_triangles, std::string& data) {
     const bool coarse = snapshot.geometry->triangleCount() > max_triangles;
     const types::GeometryPtr posed = types::posedGeometry(snapshot);
     Json shapes = Json::array();
     for (const types::DeformedObject& deformed : snapshot.deformed) {
         const auto mesh = static_cast<size_t>(posed->objects[deformed.object].mesh);
-        const Part part = partOf(posed->meshes[mesh], coarse);
+        const Part part = getPart(posed->meshes[mesh], coarse);
         shapes.push_back({{"object", deformed.object}, {"offset", data.size()}, {"count", part.positions.size()}});
         append(data, part.positions);
     }
@@ -62,7 +62,7 @@ Json shapesOf(const types::Snapshot& snapshot, size_t max_triangles, std::string
 
 }  // namespace
 
-Part partOf(const types::Mesh& mesh, bool coarse) {
+Part getPart(const types::Mesh& mesh, bool coarse) {
     Part part;
     part.material = mesh.clusters.empty() ? 0 : mesh.clusters.front().material;
     std::vector<uint32_t> number(mesh.positions.size(), UINT32_MAX);
@@ -80,7 +80,7 @@ Part partOf(const types::Mesh& mesh, bool coarse) {
 ShownScene shownScene(const types::Geometry& geometry, size_t max_triangles) {
     ShownScene scene;
     scene.coarse = geometry.triangleCount() > max_triangles;
-    for (const types::Mesh& mesh : geometry.meshes) scene.parts.push_back(partOf(mesh, scene.coarse));
+    for (const types::Mesh& mesh : geometry.meshes) scene.parts.push_back(getPart(mesh, scene.coarse));
     scene.objects = shownObjects(geometry, scene.parts, max_triangles);
     std::vector<bool> used(scene.parts.size());
     for (const size_t i : scene.objects) used[static_cast<size_t>(geometry.objects[i].mesh)] = true;
@@ -107,7 +107,7 @@ std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles, 
         objects.push_back({{"object", i},
                            {"name", object.name},
                            {"mesh", object.mesh},
-                           {"matrix", matrixOf(object.world_from_object)}});
+                           {"matrix", toMatrix(object.world_from_object)}});
     }
     for (const types::Material& material : geometry.materials) materials.push_back(material.name);
     const Json json = {{"source", source},
@@ -123,17 +123,17 @@ std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles, 
 std::string snapshotMessage(const types::Snapshot& snapshot, size_t max_triangles, const std::string& source) {
     Json moved = Json::array();
     for (const types::MovedObject& object : snapshot.moved)
-        moved.push_back({{"object", object.object}, {"matrix", matrixOf(object.world_from_object)}});
+        moved.push_back({{"object", object.object}, {"matrix", toMatrix(object.world_from_object)}});
     Json json = {{"type", "snapshot"},
                  {"source", source},
                  {"time_us", snapshot.time.microseconds},
-                 {"position", positionOf(snapshot.sonar.position)},
-                 {"orientation", orientationOf(snapshot.sonar.orientation)},
+                 {"position", getPosition(snapshot.sonar.position)},
+                 {"orientation", getOrientation(snapshot.sonar.orientation)},
                  {"moved", moved}};
     if (snapshot.water_surface) json["water_surface"] = *snapshot.water_surface;
     if (snapshot.deformed.empty()) return json.dump();
     std::string data;
-    json["shapes"] = shapesOf(snapshot, max_triangles, data);
+    json["shapes"] = getShapes(snapshot, max_triangles, data);
     return pageMessage(snapshot_kind, json.dump(), data);
 }
 
@@ -141,8 +141,8 @@ std::string poseText(const types::Pose& pose, const std::string& source) {
     return Json{{"type", "pose"},
                 {"source", source},
                 {"time_us", pose.time.microseconds},
-                {"position", positionOf(pose.position)},
-                {"orientation", orientationOf(pose.orientation)}}
+                {"position", getPosition(pose.position)},
+                {"orientation", getOrientation(pose.orientation)}}
         .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

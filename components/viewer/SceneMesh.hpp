@@ -16,7 +16,7 @@ struct Part {
 };
 
 /** Returns a mesh as sent: the vertices that its triangles use, in the order of their first use. */
-Part partOf(const types::Mesh& mesh, bool coarse);
+Part getPart(const types::Mesh& mesh, bool coarse);
 
 /** The part of a scene that is shown. In a scene of more than `max_triangles`, large meshes are reduced to outlines;
  *  then the objects with the fewest triangles are omitted. */

@@ -26,7 +26,7 @@ constexpr std::array tints{Tint{"sand", {0.69, 0.60, 0.42, 1}},  Tint{"mud", {0.
                            Tint{"steel", {0.53, 0.41, 0.31, 1}}, Tint{"concrete", {0.62, 0.63, 0.64, 1}},
                            Tint{"wood", {0.49, 0.36, 0.24, 1}},  Tint{"rubber", {0.20, 0.20, 0.23, 1}}};
 
-foxglove::Color colourOf(const types::Geometry& geometry, int material) {
+foxglove::Color getColour(const types::Geometry& geometry, int material) {
     const auto number = static_cast<size_t>(material);
     const std::string name =
         types::lowered(number < geometry.materials.size() ? geometry.materials[number].name : std::string());
@@ -36,8 +36,8 @@ foxglove::Color colourOf(const types::Geometry& geometry, int material) {
 
 /** Returns the triangles of an object, with points in the axes of a frame. Programs draw points in 32 bits: those of an
  *  object far from the frame's origin are relative to the pose of the triangles. */
-foxglove::TriangleListPrimitive trianglesOf(const Part& part, const glm::dmat4& world_from_object,
-                                            ros::WorldFrame axes) {
+foxglove::TriangleListPrimitive getTriangles(const Part& part, const glm::dmat4& world_from_object,
+                                             ros::WorldFrame axes) {
     foxglove::TriangleListPrimitive triangles;
     triangles.indices = part.indices;
     const glm::dvec3 place = ros::worldFromRock(axes, glm::dvec3(world_from_object[3]));
@@ -66,7 +66,7 @@ Bytes SceneUpdates::whole(const types::Snapshot& snapshot) {
     shapes_ = {snapshot.deformed, snapshot.joints, snapshot.morphs};
     Places places = moved_;
     places.insert(home_.begin(), home_.end());
-    return messageOf(snapshot, places, true);
+    return makeMessage(snapshot, places, true);
 }
 
 void SceneUpdates::addChanged(const types::Snapshot& snapshot, Places& places) const {
@@ -84,10 +84,10 @@ Bytes SceneUpdates::moved(const types::Snapshot& snapshot) {
     if (now == moved_ && shapes == shapes_) return nullptr;
     moved_ = std::move(now);
     shapes_ = std::move(shapes);
-    return messageOf(snapshot, moved_, false);
+    return makeMessage(snapshot, moved_, false);
 }
 
-Bytes SceneUpdates::messageOf(const types::Snapshot& snapshot, const Places& places, bool all) const {
+Bytes SceneUpdates::makeMessage(const types::Snapshot& snapshot, const Places& places, bool all) const {
     foxglove::SceneUpdate update;
     const types::GeometryPtr posed = snapshot.deformed.empty() ? geometry_ : types::posedGeometry(snapshot);
     const ros::Time stamp = ros::toRos(snapshot.time);
@@ -95,18 +95,19 @@ Bytes SceneUpdates::messageOf(const types::Snapshot& snapshot, const Places& pla
     for (const auto& [number, place] : places) {
         const types::Object& object = geometry_->objects[number];
         const int mesh = posed->objects[number].mesh;
-        const Part own = mesh == object.mesh ? Part() : partOf(posed->meshes[static_cast<size_t>(mesh)], shown_.coarse);
+        const Part own =
+            mesh == object.mesh ? Part() : getPart(posed->meshes[static_cast<size_t>(mesh)], shown_.coarse);
         const Part& part = mesh == object.mesh ? shown_.parts[static_cast<size_t>(mesh)] : own;
         foxglove::SceneEntity& entity = update.entities.emplace_back();
         entity.timestamp = stamp;
         entity.frame_id = snapshot.sonar.target_frame;
         entity.id = std::to_string(number) + " " + object.name;
-        entity.triangles.push_back(trianglesOf(part, place, axes_));
-        entity.triangles.back().color = colourOf(*geometry_, part.material);
+        entity.triangles.push_back(getTriangles(part, place, axes_));
+        entity.triangles.back().color = getColour(*geometry_, part.material);
     }
     std::vector<char> bytes;
     ros::encode(update, bytes);
-    return bytesOf({bytes.begin(), bytes.end()});
+    return toBytes({bytes.begin(), bytes.end()});
 }
 
 }  // namespace insonify::viewer

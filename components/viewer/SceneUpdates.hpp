@@ -33,7 +33,7 @@ private:
     };
     /** Adds the shown objects that a snapshot moves or deforms. */
     void addChanged(const types::Snapshot& snapshot, Places& places) const;
-    Bytes messageOf(const types::Snapshot& snapshot, const Places& places, bool all) const;
+    Bytes makeMessage(const types::Snapshot& snapshot, const Places& places, bool all) const;
 
     ros::WorldFrame axes_;
     size_t max_triangles_;

@@ -298,7 +298,7 @@ void Server::toFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message) {
 uint64_t Server::foxglove() const { return core_->foxglove_; }
 uint64_t Server::parameterReaders() const { return core_->parameter_readers_; }
 void Server::timeToFoxglove(uint64_t nanoseconds) {
-    core_->publish(time_key, {"", bytesOf(timeMessage(nanoseconds)), false}, nanoseconds);
+    core_->publish(time_key, {"", toBytes(timeMessage(nanoseconds)), false}, nanoseconds);
 }
 void Server::everyToFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message) {
     core_->post([core = core_.get(), channel, nanoseconds, message = std::move(message)] {
@@ -315,12 +315,12 @@ void Server::parametersToFoxglove(Parameters changed) {
             Parameters wanted;
             for (const auto& one : changed)
                 if (session.parameters().contains(one.first)) wanted.push_back(one);
-            if (!wanted.empty()) session.post({"", bytesOf(parameterValues(wanted, {})), true});
+            if (!wanted.empty()) session.post({"", toBytes(parameterValues(wanted, {})), true});
         });
     });
 }
 void Server::reply(uint64_t client, std::string text) {
-    core_->post([core = core_.get(), client, frame = Frame{"", bytesOf(std::move(text)), true}] {
+    core_->post([core = core_.get(), client, frame = Frame{"", toBytes(std::move(text)), true}] {
         const auto found = core->sessions_.find(client);
         if (found == core->sessions_.end()) return;
         const auto session = found->second;  // sending may end it

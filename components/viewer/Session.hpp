@@ -100,11 +100,11 @@ constexpr size_t max_rest = 256 << 10;    // of a refused request, read so that 
 constexpr auto request_timeout = std::chrono::seconds(5), response_timeout = std::chrono::seconds(10),
                rest_timeout = std::chrono::seconds(1);
 
-inline std::string textOf(beast::string_view view) { return {view.data(), view.size()}; }
+inline std::string toText(beast::string_view view) { return {view.data(), view.size()}; }
 
 inline AccessPolicy::Request admission(const HttpRequest& request) {
-    return {textOf(request.target()), textOf(request[http::field::host]), textOf(request[http::field::origin]),
-            textOf(request[http::field::authorization])};
+    return {toText(request.target()), toText(request[http::field::host]), toText(request[http::field::origin]),
+            toText(request[http::field::authorization])};
 }
 
 inline HttpResponse responseTo(const HttpRequest& request, unsigned status, std::string_view type,
@@ -122,7 +122,7 @@ inline HttpResponse responseTo(const HttpRequest& request, unsigned status, std:
 }
 
 /** Returns the client's first offered protocol that this server speaks; empty if none. */
-inline std::string protocolOf(const std::string& offered) {
+inline std::string getProtocol(const std::string& offered) {
     const std::string separators = ", \t";
     for (size_t at = 0; (at = offered.find_first_not_of(separators, at)) != std::string::npos;) {
         const size_t end = std::min(offered.find_first_of(separators, at), offered.size());
@@ -235,7 +235,7 @@ inline void Session::answer() {
     const HttpRequest& request = parser_->get();
     const AccessPolicy::Request asked = admission(request);
     const bool wants_socket = websocket::is_upgrade(request);
-    protocol_ = protocolOf(textOf(request[http::field::sec_websocket_protocol]));
+    protocol_ = getProtocol(toText(request[http::field::sec_websocket_protocol]));
     const bool foxglove = protocol_ == foxglove_protocol || protocol_ == foxglove_sdk_protocol;
     kind_ = foxglove ? Kind::Foxglove : protocol_ == page_protocol ? Kind::Page : Kind::None;
     may_set_ = context_.access.maySet(asked);
@@ -309,8 +309,8 @@ inline void Session::greet() {
     buffer_.consume(buffer_.size());
     context_.recount();
     if (kind_ == Kind::Foxglove) {
-        post({"", bytesOf(serverInfo(context_.options.session)), true});
-        post({"", bytesOf(advertise(context_.options.channels)), true});
+        post({"", toBytes(serverInfo(context_.options.session)), true});
+        post({"", toBytes(advertise(context_.options.channels)), true});
     } else {
         for (Frame& frame : context_.handler.greeting()) post(std::move(frame));
     }
@@ -348,14 +348,14 @@ inline bool Session::handleParameters(const std::string& text) try {
     if (request.kind == Subscribe) context_.handler.subscribedToParameters();
     return true;
 } catch (const std::invalid_argument& error) {
-    post({"", bytesOf(diagnosticText(std::string("the message ") + error.what())), true});
+    post({"", toBytes(diagnosticText(std::string("the message ") + error.what())), true});
     return true;
 }
 
 inline void Session::handleFoxglove(const std::string& text) {
     const auto before = subscriptions_.all();
     if (const std::string diagnostic = subscriptions_.take(text); !diagnostic.empty())
-        post({"", bytesOf(diagnosticText("the message " + diagnostic)), true});
+        post({"", toBytes(diagnosticText("the message " + diagnostic)), true});
     for (const auto& [subscription, channel] : before)
         if (!subscriptions_.all().contains(subscription)) queue_.forget(subscription);
     context_.recount();

@@ -13,8 +13,8 @@ namespace {
 
 /** Returns what is wrong with a sample; empty if nothing is. */
 template <class T>
-std::string diagnosticOf(const T* sample) {
-    const char* const what = sample ? types::diagnosticOf(*sample) : "is null";
+std::string findDiagnostic(const T* sample) {
+    const char* const what = sample ? types::findDiagnostic(*sample) : "is null";
     return what ? what : "";
 }
 
@@ -23,7 +23,7 @@ template <class Input>
 std::string drain(Input& input, Publisher& publisher, size_t source, types::Time now) {
     std::string reported;
     for (typename Input::Carried sample{}; input.port.readNew(sample);) {
-        const std::string diagnostic = diagnosticOf(types::carriedSample(sample));
+        const std::string diagnostic = findDiagnostic(types::carriedSample(sample));
         if (diagnostic.empty())
             publisher.offer(source, std::move(sample), now);
         else

@@ -43,7 +43,7 @@ private:
     template <class T>
     struct SourceOf {
         const Source source;
-        explicit SourceOf(const std::string& path) : source{path, formsOf<T>(path), on_pages<T>} {}
+        explicit SourceOf(const std::string& path) : source{path, getForms<T>(path), on_pages<T>} {}
     };
 
     bool configureHook() override;

@@ -127,7 +127,7 @@ def save_picture(file):
         ask(until="insonify.attitude() && insonify.snapshot().position[0] > 12", seconds=300)
         ask(press=["t"])
         for bearing, share in [(-0.45, 0.62), (0.2, 0.72)]:
-            ask(eval=f"self.at = insonify.fan.pixelOf({share} * 50.8, {bearing})")
+            ask(eval=f"self.at = insonify.fan.findPixel({share} * 50.8, {bearing})")
             x, y = ask(eval="(() => { const box = insonify.fan.canvas.getBoundingClientRect(); return [box.left + at[0], box.bottom - at[1]]; })()")
             for kind in ["mousePressed", "mouseReleased"]:
                 ask(mouse={"type": kind, "x": x, "y": y, "button": "left", "clickCount": 1})

@@ -126,7 +126,7 @@ TEST(BackscatterTest, ATableIsItsLawOverTheCosine) {
     const BackscatterTable lambert([](double grazing) { return lambertSection(-16.7, std::sin(grazing)); });
     EXPECT_EQ(lambert.values().size(), 1024u);
     for (size_t i = 1; i < 1024; ++i) {
-        const double cosine = BackscatterTable::cosineOf(static_cast<int>(i));
+        const double cosine = BackscatterTable::computeCosine(static_cast<int>(i));
         EXPECT_NEAR(lambert.values()[i], std::pow(10, -1.67) * cosine, 1e-12) << cosine;
     }
 }

@@ -38,12 +38,12 @@ struct BeamPatternTest : ::testing::Test {
 TEST_F(BeamPatternTest, WidthsMatchTheTable) {
     for (const WeightingRow& row : weightings) {
         const BeamPattern pattern = longArray(row.law());
-        const CutShape one_way = shapeOf([&](double a) { return pattern.power(a); });
-        const CutShape two_way = shapeOf([&](double a) { return pattern.power(a) * pattern.power(a); });
+        const CutShape one_way = getShape([&](double a) { return pattern.power(a); });
+        const CutShape two_way = getShape([&](double a) { return pattern.power(a) * pattern.power(a); });
         EXPECT_NEAR(inWavelengths(one_way.width_3db, pattern), row.width, 0.01 * row.width) << row.name;
         EXPECT_NEAR(inWavelengths(two_way.width_3db, pattern), row.two_way_width, 0.01 * row.two_way_width) << row.name;
         // The amplitude instead of the power would give another width.
-        const CutShape amplitude = shapeOf([&](double a) { return std::sqrt(pattern.power(a)); });
+        const CutShape amplitude = getShape([&](double a) { return std::sqrt(pattern.power(a)); });
         EXPECT_GT(inWavelengths(amplitude.width_3db, pattern), 1.2 * row.width) << row.name;
     }
 }
@@ -51,7 +51,7 @@ TEST_F(BeamPatternTest, WidthsMatchTheTable) {
 TEST_F(BeamPatternTest, FirstNullsAndSidelobesMatchTheTable) {
     for (const WeightingRow& row : weightings) {
         const BeamPattern pattern = longArray(row.law());
-        const CutShape shape = shapeOf([&](double a) { return pattern.power(a); });
+        const CutShape shape = getShape([&](double a) { return pattern.power(a); });
         EXPECT_NEAR(pattern.aperture() * std::sin(shape.first_null.value()), row.first_null, 0.02 * row.first_null)
             << row.name;
         EXPECT_NEAR(shape.peak_sidelobe_db.value(), row.peak_sidelobe_db, 0.3) << row.name;
@@ -77,7 +77,7 @@ TEST_F(BeamPatternTest, DolphsBeamsMatchTheTableWithSidelobesOfEqualHeight) {
         law.sidelobe_db = row.sidelobe_db;
         law.aperture_m = 0.064;  // 64 elements of half a wavelength
         const BeamPattern pattern(law, 0.002);
-        const CutShape shape = shapeOf([&](double a) { return pattern.power(a); });
+        const CutShape shape = getShape([&](double a) { return pattern.power(a); });
         EXPECT_NEAR(inWavelengths(shape.width_3db, pattern), row.width, 0.01 * row.width);
         EXPECT_NEAR(shape.peak_sidelobe_db.value(), row.sidelobe_db, 0.01);
         EXPECT_GT(10 * std::log10(pattern.power(80 * degree)), row.sidelobe_db - 30);
@@ -94,7 +94,7 @@ TEST_F(BeamPatternTest, ABeamHasTheGivenWidthWithAnyWeighting) {
             const BeamPattern pattern(law);
             EXPECT_EQ(pattern.power(0), 1);
             EXPECT_NEAR(pattern.power(width / 2 * degree), 0.5, 1e-6) << width << ' ' << static_cast<int>(weighting);
-            EXPECT_NEAR(shapeOf([&](double a) { return pattern.power(a); }).width_3db, width * degree,
+            EXPECT_NEAR(getShape([&](double a) { return pattern.power(a); }).width_3db, width * degree,
                         1e-3 * width * degree);
         }
 }
@@ -104,7 +104,7 @@ TEST_F(BeamPatternTest, AGaussianHasNoSidelobesAndNoPowerBehind) {
     law.weighting = Weighting::Gaussian;
     law.width_deg = 10;
     const BeamPattern gaussian(law);
-    const CutShape shape = shapeOf([&](double a) { return gaussian.power(a); });
+    const CutShape shape = getShape([&](double a) { return gaussian.power(a); });
     EXPECT_FALSE(shape.first_null.has_value());
     EXPECT_FALSE(shape.peak_sidelobe_db.has_value());
     EXPECT_NEAR(10 * std::log10(gaussian.power(10 * degree)), -12.04, 0.1);
@@ -117,7 +117,7 @@ TEST_F(BeamPatternTest, SteeringWidensABeamAsTheInverseCosine) {
     const BeamPattern pattern = longArray({});
     const double axis = 60 * degree;
     EXPECT_EQ(pattern.power(axis, axis), 1);
-    const CutShape shape = shapeOf([&](double a) { return pattern.power(axis + a, axis); });
+    const CutShape shape = getShape([&](double a) { return pattern.power(axis + a, axis); });
     EXPECT_NEAR(inWavelengths(shape.width_3db, pattern), 2 * 0.8859, 0.01 * 2 * 0.8859);
 }
 
@@ -150,8 +150,8 @@ TEST_F(BeamPatternTest, AMeasuredTableGivesTheMeasuredPattern) {
     for (const double angle : {-20.0, -7.3, 0.0, 3.0, 15.05, 40.0})
         EXPECT_NEAR(measured.power(angle * degree), taylor.power(angle * degree), 2e-3) << angle;
     EXPECT_EQ(measured.power(61 * degree), 0);
-    const CutShape a = shapeOf([&](double x) { return measured.power(x); }),
-                   b = shapeOf([&](double x) { return taylor.power(x); });
+    const CutShape a = getShape([&](double x) { return measured.power(x); }),
+                   b = getShape([&](double x) { return taylor.power(x); });
     EXPECT_NEAR(a.width_3db, b.width_3db, 0.01 * b.width_3db);
     EXPECT_NEAR(*a.first_null, *b.first_null, 0.02 * *b.first_null);
     EXPECT_NEAR(*a.peak_sidelobe_db, *b.peak_sidelobe_db, 0.3);
@@ -159,48 +159,48 @@ TEST_F(BeamPatternTest, AMeasuredTableGivesTheMeasuredPattern) {
 
 TEST_F(BeamPatternTest, DiagnosticsOfATableHaveFileLineAndColumn) {
     const Folder folder;
-    const auto diagnosticOf = [&](const std::string& text) {
+    const auto findDiagnostic = [&](const std::string& text) {
         std::ofstream(folder / "beam.csv") << text;
         BeamLaw law;
         law.file = folder / "beam.csv";
-        return test::errorOf<types::ConfigError>([&] { BeamPattern pattern(law); });
+        return test::computeError<types::ConfigError>([&] { BeamPattern pattern(law); });
     };
-    EXPECT_THAT(diagnosticOf("angle,level\n"),
+    EXPECT_THAT(findDiagnostic("angle,level\n"),
                 HasSubstr("beam.csv:1:1: is 'angle,level'; the header must be angle_deg,level_db"));
-    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n1,loud\n"), HasSubstr("beam.csv:3:3: level_db: is 'loud'"));
-    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n0,-1\n"), HasSubstr("beam.csv:3:1: angle_deg: is not above"));
-    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n1,-1,2\n"),
+    EXPECT_THAT(findDiagnostic("angle_deg,level_db\n0,0\n1,loud\n"), HasSubstr("beam.csv:3:3: level_db: is 'loud'"));
+    EXPECT_THAT(findDiagnostic("angle_deg,level_db\n0,0\n0,-1\n"), HasSubstr("beam.csv:3:1: angle_deg: is not above"));
+    EXPECT_THAT(findDiagnostic("angle_deg,level_db\n0,0\n1,-1,2\n"),
                 HasSubstr("beam.csv:3:6: has too many fields; a line has 2"));
-    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n200,nan\n"), HasSubstr("beam.csv:3:5: level_db: is 'nan'"));
-    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n"), HasSubstr("needs at least 2"));
-    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("does not include 0"));
-    EXPECT_THAT(diagnosticOf(""), HasSubstr("is empty"));
+    EXPECT_THAT(findDiagnostic("angle_deg,level_db\n0,0\n200,nan\n"), HasSubstr("beam.csv:3:5: level_db: is 'nan'"));
+    EXPECT_THAT(findDiagnostic("angle_deg,level_db\n0,0\n"), HasSubstr("needs at least 2"));
+    EXPECT_THAT(findDiagnostic("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("does not include 0"));
+    EXPECT_THAT(findDiagnostic(""), HasSubstr("is empty"));
     BeamLaw nowhere;
     nowhere.file = folder / "nowhere.csv";
     EXPECT_THROW(BeamPattern{nowhere}, types::ConfigError);
 }
 
 TEST_F(BeamPatternTest, ALawHasOneWidthAndOnlyTheParametersOfItsWeighting) {
-    EXPECT_EQ(test::refusalsOf(BeamLaw{}).size(), 1u);
+    EXPECT_EQ(test::countRefusals(BeamLaw{}).size(), 1u);
     BeamLaw law;
     law.width_deg = 1;
-    EXPECT_TRUE(test::refusalsOf(law).empty());
+    EXPECT_TRUE(test::countRefusals(law).empty());
     law.sidelobe_db = -30;
-    EXPECT_THAT(test::refusalsOf(law).at(0), testing::StartsWith("sidelobe_db: "));
+    EXPECT_THAT(test::countRefusals(law).at(0), testing::StartsWith("sidelobe_db: "));
     law.weighting = Weighting::Dolph;
-    EXPECT_TRUE(test::refusalsOf(law).empty());
+    EXPECT_TRUE(test::countRefusals(law).empty());
     law.sidelobe_db = -5;
     law.nbar = 4;
-    EXPECT_EQ(test::refusalsOf(law).size(), 2u);
+    EXPECT_EQ(test::countRefusals(law).size(), 2u);
     law.sidelobe_db = -30;
     law.weighting = Weighting::Taylor;
-    EXPECT_TRUE(test::refusalsOf(law).empty());
+    EXPECT_TRUE(test::countRefusals(law).empty());
     law.aperture_m = 0.1;
-    EXPECT_EQ(test::refusalsOf(law).size(), 1u);
+    EXPECT_EQ(test::countRefusals(law).size(), 1u);
     BeamLaw gaussian;
     gaussian.weighting = Weighting::Gaussian;
     gaussian.aperture_m = 0.1;
-    EXPECT_THAT(test::refusalsOf(gaussian).at(0), testing::StartsWith("aperture_m: "));
+    EXPECT_THAT(test::countRefusals(gaussian).at(0), testing::StartsWith("aperture_m: "));
 }
 
 }  // namespace

@@ -101,15 +101,15 @@ TEST(PulseTest, ExtentReachesToTheFloor) {
 
 TEST(PulseTest, NeedsEitherABandwidthOrADuration) {
     PulseConfig config;
-    EXPECT_EQ(test::refusalsOf(config).size(), 1u);
+    EXPECT_EQ(test::countRefusals(config).size(), 1u);
     config.duration_us = 100;
-    EXPECT_TRUE(test::refusalsOf(config).empty());
+    EXPECT_TRUE(test::countRefusals(config).empty());
     config.window = PulseWindow::Hann;
-    EXPECT_THAT(test::refusalsOf(config).at(0), testing::StartsWith("window: "));
+    EXPECT_THAT(test::countRefusals(config).at(0), testing::StartsWith("window: "));
     config.bandwidth_khz = 50;
-    EXPECT_THAT(test::refusalsOf(config).at(0), testing::StartsWith("duration_us: "));
+    EXPECT_THAT(test::countRefusals(config).at(0), testing::StartsWith("duration_us: "));
     config.duration_us.reset();
-    EXPECT_TRUE(test::refusalsOf(config).empty());
+    EXPECT_TRUE(test::countRefusals(config).empty());
 }
 
 }  // namespace

@@ -127,31 +127,31 @@ TEST(RoughSurfaceTest, NoEnergyIsCreated) {
 
 TEST(RoughSurfaceTest, AllMatterIsFiniteFrom10KilohertzTo3Megahertz) {
     for (size_t i = 0; i < matterCount(); ++i) {
-        const MatterProperties& matter = propertiesOf(static_cast<Matter>(i));
+        const MatterProperties& matter = getProperties(static_cast<Matter>(i));
         if (!matter.hasRoughness()) continue;
         for (const double khz : {10.0, 33.0, 100.0, 450.0, 900.0, 3000.0}) {
-            const RoughSurface surface = roughSurfaceOf(matter, khz, 1025, 1500);
-            EXPECT_NEAR(surface.reflection(), matter.reflection, 0.06) << nameOf(matter.matter);
+            const RoughSurface surface = makeRoughSurface(matter, khz, 1025, 1500);
+            EXPECT_NEAR(surface.reflection(), matter.reflection, 0.06) << getName(matter.matter);
             for (const double grazing_deg : {0.0, 1e-9, 1.0, 45.0, 89.999, 90.0}) {
                 const double section = solidSection(surface, grazing_deg * pi / 180);
-                EXPECT_TRUE(std::isfinite(section) && section >= 0) << nameOf(matter.matter) << " " << khz;
+                EXPECT_TRUE(std::isfinite(section) && section >= 0) << getName(matter.matter) << " " << khz;
             }
-            EXPECT_LE(energyBack(surface, 0), 1) << nameOf(matter.matter) << " " << khz;
+            EXPECT_LE(energyBack(surface, 0), 1) << getName(matter.matter) << " " << khz;
         }
     }
 }
 
 TEST(RoughSurfaceTest, SmoothMetalsShineAndRockAndConcreteDoNotAt900Kilohertz) {
-    const auto surfaceOf = [](Matter matter) { return roughSurfaceOf(propertiesOf(matter), 900, 1025, 1500); };
+    const auto getSurface = [](Matter matter) { return makeRoughSurface(getProperties(matter), 900, 1025, 1500); };
     for (const Matter smooth : {Matter::Steel, Matter::Aluminium, Matter::Glass, Matter::Acrylic, Matter::Pvc}) {
-        EXPECT_GT(surfaceOf(smooth).lobeShare(), 0.95) << nameOf(smooth);
-        EXPECT_LT(std::sqrt(surfaceOf(smooth).squareSlope()), 0.01) << nameOf(smooth);
+        EXPECT_GT(getSurface(smooth).lobeShare(), 0.95) << getName(smooth);
+        EXPECT_LT(std::sqrt(getSurface(smooth).squareSlope()), 0.01) << getName(smooth);
     }
     for (const Matter rough : {Matter::Rock, Matter::Granite, Matter::Fouling})
-        EXPECT_LT(surfaceOf(rough).lobeShare(), 0.05) << nameOf(rough);
-    EXPECT_LT(surfaceOf(Matter::Concrete).lobeShare(), 0.5);
+        EXPECT_LT(getSurface(rough).lobeShare(), 0.05) << getName(rough);
+    EXPECT_LT(getSurface(Matter::Concrete).lobeShare(), 0.5);
     // At 30 kHz concrete is smooth.
-    EXPECT_GT(roughSurfaceOf(propertiesOf(Matter::Concrete), 30, 1025, 1500).lobeShare(), 0.95);
+    EXPECT_GT(makeRoughSurface(getProperties(Matter::Concrete), 30, 1025, 1500).lobeShare(), 0.95);
 }
 
 }  // namespace

@@ -117,28 +117,28 @@ TEST(SoundProfileTest, RaysTrappedOnTheAxisOfAChannelStayFinite) {
         EXPECT_TRUE(std::isfinite(traced(channel, 100, elevation, {5}).back().depth));
 }
 
-std::string diagnosticOf(const std::string& text) {
+std::string findDiagnostic(const std::string& text) {
     const Folder folder;
     const std::string file = folder / "profile.csv";
     std::ofstream(file) << text;
-    return test::errorOf<types::ConfigError>([&] { SoundProfile::read(file); });
+    return test::computeError<types::ConfigError>([&] { SoundProfile::read(file); });
 }
 
 TEST(SoundProfileTest, ReportsAnErrorInAFileWithItsPlace) {
-    EXPECT_EQ(diagnosticOf("depth_m,sound_speed_m_s\n0,1500\n10,1490.5\n"), "");
-    EXPECT_THAT(diagnosticOf("depth_m\n0\n10\n"),
+    EXPECT_EQ(findDiagnostic("depth_m,sound_speed_m_s\n0,1500\n10,1490.5\n"), "");
+    EXPECT_THAT(findDiagnostic("depth_m\n0\n10\n"),
                 HasSubstr("profile.csv:1:1: is 'depth_m'; the header must be depth_m,sound_speed_m_s"));
-    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,1500\n20,1490\n10,1480\n"),
+    EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,1500\n20,1490\n10,1480\n"),
                 HasSubstr("profile.csv:4:1: depth_m: is not above that of the line before"));
-    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,1500\n"),
+    EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,1500\n"),
                 HasSubstr("profile.csv:2:1: has 1 lines after its header"));
-    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,nan\n1,1500\n"),
+    EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,nan\n1,1500\n"),
                 HasSubstr("profile.csv:2:3: sound_speed_m_s: is 'nan'"));
-    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,-1500\n1,1500\n"),
+    EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,-1500\n1,1500\n"),
                 HasSubstr("profile.csv:2:3: sound_speed_m_s: is '-1500'; it must be a number from 1 to 20000"));
-    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,1500\n1\n"),
+    EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,1500\n1\n"),
                 HasSubstr("profile.csv:3:2: sound_speed_m_s: is missing"));
-    EXPECT_THAT(diagnosticOf(""), HasSubstr("is empty"));
+    EXPECT_THAT(findDiagnostic(""), HasSubstr("is empty"));
 }
 
 }  // namespace

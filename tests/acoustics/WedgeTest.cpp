@@ -61,7 +61,7 @@ struct Piece {
     double size;
 };
 
-std::vector<Piece> lineOf(Vec from, Vec to, int count) {
+std::vector<Piece> makeLine(Vec from, Vec to, int count) {
     std::vector<Piece> pieces;
     const Vec way = (to - from) * (1.0 / count);
     // Smaller pieces at the ends, where fields grow.
@@ -77,7 +77,7 @@ using Fields = std::vector<Complex>;
 
 /** Field of a soft strip: the single layer on it vanishes with the incident wave, i/4 int H0 q = -u_i. */
 Fields softStrip(double k, double width, const std::vector<double>& from) {
-    const std::vector<Piece> pieces = lineOf({-width / 2, 0}, {width / 2, 0}, static_cast<int>(k * width * 2.5) + 40);
+    const std::vector<Piece> pieces = makeLine({-width / 2, 0}, {width / 2, 0}, static_cast<int>(k * width * 2.5) + 40);
     const size_t n = pieces.size();
     constexpr double gamma = 1.781072417990198;
     std::vector<std::vector<Complex>> matrix(n, std::vector<Complex>(n)), sides;
@@ -118,7 +118,7 @@ Fields rigidSquare(double k, double width, const std::vector<double>& from) {
     const Vec corners[] = {{-h, -h}, {h, -h}, {h, h}, {-h, h}};
     for (int side = 0; side < 4; ++side)
         for (const Piece& piece :
-             lineOf(corners[side], corners[(side + 1) % 4], static_cast<int>(k * width * 1.6) + 24))
+             makeLine(corners[side], corners[(side + 1) % 4], static_cast<int>(k * width * 1.6) + 24))
             pieces.push_back(piece);
     const size_t n = pieces.size();
     std::vector<std::vector<Complex>> matrix(n, std::vector<Complex>(n)), sides;
@@ -158,7 +158,7 @@ Fields rigidSquare(double k, double width, const std::vector<double>& from) {
 }
 
 /** Physical optics of a lit face of a width about a place, in the units of D; positive for a rigid face. */
-Complex opticsOf(double k, double width, Vec middle, Vec normal, double angle) {
+Complex computeOptics(double k, double width, Vec middle, Vec normal, double angle) {
     const Vec to{std::cos(angle), std::sin(angle)};
     const double cosine = dot(to, normal);
     if (cosine <= 0) return 0;
@@ -246,7 +246,7 @@ TEST(WedgeTest, ASoftStripIsItsTwoEdges) {
     double optics_error = 0, error = 0, norm = 0;
     for (size_t a = 0; a < angles.size(); ++a) {
         const Vec to{std::cos(angles[a]), std::sin(angles[a])};
-        const Complex optics = -opticsOf(k, width, {0, 0}, {0, 1}, angles[a]);
+        const Complex optics = -computeOptics(k, width, {0, 0}, {0, 1}, angles[a]);
         Complex sum = optics;
         for (const double side : {-1.0, 1.0}) {  // the face of the right edge is to its left
             const double from_face = side < 0 ? angles[a] : pi - angles[a];
@@ -275,7 +275,8 @@ TEST(WedgeTest, ARigidSquareIsItsFacesAndEdges) {
             return coefficient * std::exp(-2.0 * i * k * dot(to, at));
         };
         const auto wedge = [&](double from_face) { return wedgeEcho(WedgeFaces::Rigid, 1.5 * pi, from_face); };
-        const Complex optics = opticsOf(k, width, {h, 0}, {1, 0}, angle) + opticsOf(k, width, {0, h}, {0, 1}, angle);
+        const Complex optics =
+            computeOptics(k, width, {h, 0}, {1, 0}, angle) + computeOptics(k, width, {0, h}, {0, 1}, angle);
         const Complex keller = optics + edge({h, h}, wedge(pi / 2 + angle).fringe) +
                                edge({h, -h}, wedge(pi / 2 - angle).fringe) + edge({-h, h}, wedge(angle).fringe);
         const double share = grazingShare(false, k * width, angle);  // along the face y = h

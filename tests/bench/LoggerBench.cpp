@@ -46,7 +46,7 @@ private:
     std::chrono::steady_clock::time_point before_;
 };
 
-std::string timesOf(const framework::TaskContext& task, const char* stage, double scale) {
+std::string getTimes(const framework::TaskContext& task, const char* stage, double scale) {
     const framework::Statistics& times = task.stages().at(stage);
     return fmt::format(R"({{"median": {:.3f}, "p99": {:.3f}, "max": {:.3f}}})", times.median() * scale,
                        times.p99() * scale, times.max() * scale);
@@ -80,8 +80,9 @@ connections:
                R"("write_us": {}, "write_p99_at_most_us": {:.0f}, "interval_ms": {}, "logger_update_ms": {:.3f}}})"
                "\n",
                result.samples, seconds / period, in_log, lost,
-               static_cast<double>(std::filesystem::file_size(log)) / 1e6 / result.wall_s, timesOf(sonar, "write", 1e6),
-               write_p99_at_max * 1e6, timesOf(sonar, "interval", 1e3), deployment.task("log")->cycles().max() * 1e3);
+               static_cast<double>(std::filesystem::file_size(log)) / 1e6 / result.wall_s,
+               getTimes(sonar, "write", 1e6), write_p99_at_max * 1e6, getTimes(sonar, "interval", 1e3),
+               deployment.task("log")->cycles().max() * 1e3);
     const bool slow = sonar.stages().at("write").p99() > write_p99_at_max;
     return result.failed() || in_log != result.samples || lost > 0 || slow ? 1 : 0;
 }

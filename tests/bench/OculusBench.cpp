@@ -80,7 +80,7 @@ framework::Registry registry() {
 /** Counts the pings that arrive in this number of seconds, and missing pings by their numbers. */
 void count(uint16_t port, double seconds) {
     test::OculusDriver driver(port);
-    driver.send(device::bytesOf(device::OculusFire{.rate = 2, .flags = 0x4B, .range = 10}));
+    driver.send(device::toBytes(device::OculusFire{.rate = 2, .flags = 0x4B, .range = 10}));
     for (int i = 0; i < 20; ++i) driver.nextPing();  // shaders are compiled, the quality is chosen
     const auto begin = Clock::now();
     const uint32_t first = driver.nextPing().number;
@@ -123,14 +123,14 @@ std::vector<Change> changes() {
  *  longest among the first four pings of each second. */
 void change(uint16_t port, double seconds) {
     test::OculusDriver driver(port);
-    driver.send(device::bytesOf(device::OculusFire{.flags = 0x4B, .range = 20}));
+    driver.send(device::toBytes(device::OculusFire{.flags = 0x4B, .range = 20}));
     for (int i = 0; i < 30; ++i) driver.nextPing();  // shaders are compiled, the quality is chosen
     std::string rows;
     for (const Change& changed : changes()) {
         std::vector<double> all, first;
         ping_times.take();
         for (size_t second = 0; static_cast<double>(second) < seconds; ++second) {
-            driver.send(device::bytesOf(changed.requests[second % changed.requests.size()]));
+            driver.send(device::toBytes(changed.requests[second % changed.requests.size()]));
             for (int ping = 0; ping < 10; ++ping) driver.nextPing();
             const std::vector<double> times = ping_times.take();
             all.insert(all.end(), times.begin(), times.end());

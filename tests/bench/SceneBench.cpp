@@ -142,7 +142,7 @@ types::GeometryPtr field(uint32_t cells) {
             const uint32_t k = row * (cells + 1) + column;
             indices.insert(indices.end(), {k, k + cells + 1, k + 1, k + 1, k + cells + 1, k + cells + 2});
         }
-    types::Mesh mesh = study::meshOf(positions, indices);
+    types::Mesh mesh = study::getMesh(positions, indices);
     scene::buildClusters(mesh);
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.emplace_back();

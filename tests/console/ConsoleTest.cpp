@@ -70,7 +70,7 @@ double seconds(const auto& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-std::vector<std::string> linesOf(const std::string& text) {
+std::vector<std::string> getLines(const std::string& text) {
     std::istringstream stream(text);
     std::vector<std::string> lines;
     for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -94,7 +94,7 @@ TEST(ConsoleTest, APipeThatNobodyReadsHoldsUpNoCallerAndKeepsTheOrder) {
     finishPrinting();
     printDiagnostic("the end\n");  // prints on this thread
     error.back();
-    std::vector<std::string> lines = linesOf(pipe.text());
+    std::vector<std::string> lines = getLines(pipe.text());
     ASSERT_FALSE(lines.empty());
     EXPECT_EQ(lines.back(), "the end");
     lines.pop_back();
@@ -145,7 +145,7 @@ TEST(ConsoleTest, ResultsFollowTheDiagnosticsBeforeThem) {
         }
         finishPrinting();
     }
-    const std::vector<std::string> lines = linesOf(both.text());
+    const std::vector<std::string> lines = getLines(both.text());
     size_t number = 0;
     for (const std::string& line : lines)
         if (line.find("missing") == line.npos) {  // of the tests before
@@ -180,7 +180,7 @@ TEST(ConsoleTest, WaitsForANonBlockingPipeInsteadOfLosingResults) {
         late.join();
     }
     EXPECT_EQ(reason, "");
-    EXPECT_EQ(linesOf(pipe.text()).size(), 3000u);
+    EXPECT_EQ(getLines(pipe.text()).size(), 3000u);
 }
 
 TEST(ConsoleTest, AProgressLineIsWipedBeforeADiagnostic) {

@@ -17,7 +17,7 @@ TEST(JsonTest, KeysKeepTheirOrderAndInvalidValuesAreReplaced) {
 TEST(JsonTest, WritesTheTextToAFileOrThrows) {
     const Folder folder;
     write({{"range", 5}}, folder / "a.json");
-    const std::vector<char> bytes = bytesOf(folder / "a.json");
+    const std::vector<char> bytes = toBytes(folder / "a.json");
     EXPECT_EQ(std::string(bytes.begin(), bytes.end()), "{\n  \"range\": 5\n}\n");
     EXPECT_THROW(write({}, folder / "none" / "a.json"), std::runtime_error);
 }

@@ -34,7 +34,7 @@ TEST(OutputFolderTest, KeepsTheFilesOfAnotherRunInTheFolderThatItHasMade) {
         writeBytes(shared / "auv2.0.log", {'a'});
     }
     first.reset();  // its start has failed
-    EXPECT_EQ(bytesOf(shared / "auv2.0.log"), std::vector<char>{'a'});
+    EXPECT_EQ(toBytes(shared / "auv2.0.log"), std::vector<char>{'a'});
 }
 
 TEST(OutputFolderTest, KeepsAnEmptyFolderThatAnotherRunIsStartingIn) {

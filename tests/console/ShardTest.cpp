@@ -39,7 +39,7 @@ TEST(ShardTest, ReportsAnInvalidShardWithTheAlternatives) {
     };
     for (const auto& [text, why] : wrong) {
         EXPECT_THAT(Shard::refuse(text), HasSubstr(why));
-        EXPECT_THAT(test::errorOf<types::ConfigError>([&] { Shard::read(text); }),
+        EXPECT_THAT(test::computeError<types::ConfigError>([&] { Shard::read(text); }),
                     testing::AllOf(HasSubstr("--shard"), HasSubstr(why)));
     }
     EXPECT_EQ(Shard::refuse("3/4"), "");

@@ -42,7 +42,7 @@ struct AnimatedSweepTest : scene::SceneFiles {
         write("d.yml", text);
     }
     /** Returns the records of a data set, in order. */
-    std::vector<json> recordsOf(const std::string& poses_and_settings) const {
+    std::vector<json> getRecords(const std::string& poses_and_settings) const {
         write("sweep.yml", sweep + poses_and_settings);
         EXPECT_THAT(callInsonify(owned_, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "out"}), succeeds());
         std::map<std::string, json> records;
@@ -82,7 +82,7 @@ struct AnimatedSweepTest : scene::SceneFiles {
 };
 
 TEST_F(AnimatedSweepTest, EachSampleShowsTheShapeAtItsOwnTimeOfTheAnimations) {
-    const auto records = recordsOf(R"(
+    const auto records = getRecords(R"(
 poses:
   random: {count: 8, x: 0.5, y: -3, z: 0, yaw_deg: 90}
 settings:
@@ -101,7 +101,7 @@ TEST_F(AnimatedSweepTest, ATrajectoryShowsTheShapeAtTheTimeOfItsPoses) {
     write("pass.csv",
           "time,x,y,z,qw,qx,qy,qz\n0,0.5,-3,0,0.70710678,0,0,0.70710678\n"
           "1.8,0.5,-3,0,0.70710678,0,0,0.70710678\n");
-    const auto records = recordsOf(R"(
+    const auto records = getRecords(R"(
 poses:
   trajectory: {file: pass.csv, count: 5}
 settings:

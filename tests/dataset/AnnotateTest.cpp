@@ -55,7 +55,7 @@ struct AnnotateTest : ::testing::Test {
     }
     /** Whether a box contains the pixel of a bin. */
     bool holds(const Box& box, uint32_t beam, uint32_t bin) const {
-        const cv::Point at = shown_->pixelOf(beam, bin / shown_->binsPerCell());
+        const cv::Point at = shown_->findPixel(beam, bin / shown_->binsPerCell());
         return at.x >= box.x && at.x < box.x + box.width && at.y >= box.y && at.y < box.y + box.height;
     }
 

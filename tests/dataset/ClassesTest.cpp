@@ -47,7 +47,7 @@ TEST(ClassesTest, APatternThatMatchesNothingIsRefused) {
     Sweep sweep;
     sweep.file = "sweep.yml";
     sweep.classes = {{"wreck", {"hul"}, 3, 1}};
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { const Classes classes(sweep, objects); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { const Classes classes(sweep, objects); }),
                 HasSubstr("sweep.yml:3:1: classes.wreck[0]: is hul, which is no "
                           "name in the scene; did you mean hull?"));
 }

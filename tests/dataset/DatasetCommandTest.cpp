@@ -43,15 +43,15 @@ const std::string drawn_settings = R"(settings:
 )";
 
 /** Bytes of all files of a folder, by name. */
-std::map<std::string, std::string> filesOf(const fs::path& folder) {
+std::map<std::string, std::string> getFiles(const fs::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::directory_iterator(folder)) files[entry.path().filename()] = readFile(entry.path());
     return files;
 }
 
-std::vector<std::string> namesOf(const fs::path& folder) {
+std::vector<std::string> getNames(const fs::path& folder) {
     std::vector<std::string> names;
-    for (const auto& [name, bytes] : filesOf(folder)) names.push_back(name);
+    for (const auto& [name, bytes] : getFiles(folder)) names.push_back(name);
     return names;
 }
 
@@ -72,8 +72,8 @@ struct DatasetCommandTest : testing::Test {
     Outcome make(const std::string& out, std::vector<std::string> more = {}) const {
         return callInsonify(folder_, words(out, std::move(more)));
     }
-    json recordOf(const std::string& out, const std::string& index) const {
-        for (const auto& [name, bytes] : filesOf(folder_ / out))
+    json makeRecord(const std::string& out, const std::string& index) const {
+        for (const auto& [name, bytes] : getFiles(folder_ / out))
             if (name.starts_with(index) && name.ends_with(".json")) return json::parse(bytes);
         return {};
     }
@@ -85,13 +85,13 @@ struct DatasetCommandTest : testing::Test {
 
 TEST_F(DatasetCommandTest, EachSampleHasItsFilesAndTheManifestNamesAll) {
     ASSERT_THAT(make("out"), prints(AllOf(HasSubstr("8 of 8 samples in "), HasSubstr(", 8 of them new"))));
-    const auto files = filesOf(folder_ / "out");
+    const auto files = getFiles(folder_ / "out");
     const json manifest = json::parse(files.at("manifest.json"));
     EXPECT_EQ(manifest["samples"], 8);
     EXPECT_EQ(manifest["classes"], json::array({"pile", "wreck", "rock", "pipeline"}));
     EXPECT_EQ(manifest["files"].size() + 1, files.size());
     for (const auto& [name, sum] : manifest["files"].items()) EXPECT_TRUE(files.contains(name)) << name;
-    const json near = recordOf("out", "000001"), far = recordOf("out", "000005");
+    const json near = makeRecord("out", "000001"), far = makeRecord("out", "000005");
     EXPECT_EQ(near["settings"]["sonar.range"], 20);
     EXPECT_EQ(far["settings"]["sonar.range"], 30);
     EXPECT_EQ(near["pose"], far["pose"]);
@@ -111,8 +111,8 @@ TEST_F(DatasetCommandTest, TheBytesDoNotDependOnTheProcess) {
             EXPECT_FALSE(fs::exists(folder_ / three / "manifest.json"));
             ASSERT_EQ(make(three, {"--format", format, "--shard", shard}).code, 0);
         }
-        EXPECT_EQ(namesOf(folder_ / one), namesOf(folder_ / three)) << format;
-        EXPECT_EQ(filesOf(folder_ / one), filesOf(folder_ / three)) << format;
+        EXPECT_EQ(getNames(folder_ / one), getNames(folder_ / three)) << format;
+        EXPECT_EQ(getFiles(folder_ / one), getFiles(folder_ / three)) << format;
     }
 }
 
@@ -120,12 +120,12 @@ TEST_F(DatasetCommandTest, ACountDrawsSamplesOfTheSweepWhateverTheNumberOfWorker
     ASSERT_EQ(make("whole").code, 0);
     ASSERT_THAT(make("five", {"--count", "5"}), prints(HasSubstr("5 of 5 samples in ")));
     for (const char* shard : {"1/2", "0/2"}) ASSERT_EQ(make("shards", {"--count", "5", "--shard", shard}).code, 0);
-    EXPECT_EQ(filesOf(folder_ / "five"), filesOf(folder_ / "shards"));
+    EXPECT_EQ(getFiles(folder_ / "five"), getFiles(folder_ / "shards"));
     ASSERT_EQ(make("three", {"--count", "3"}).code, 0);
     ASSERT_EQ(make("other", {"--count", "3", "--seed", "4"}).code, 0);
     const auto drawn = [&](const char* out) {
         std::set<std::string> all;
-        for (const auto& [name, bytes] : filesOf(folder_ / out))
+        for (const auto& [name, bytes] : getFiles(folder_ / out))
             if (name.starts_with("00") && name.ends_with(".png")) all.insert(name.substr(0, 6) + bytes);
         return all;
     };
@@ -152,7 +152,7 @@ TEST_F(DatasetCommandTest, PartsAreJoinedToTheBytesOfTheWholeSetAndSeedsToOneSet
     };
     ASSERT_THAT(join({"part2", "part0", "part1", "--out", "joined"}),
                 prints(HasSubstr("8 samples of 3 parts in joined: manifest.json, statistics.html")));
-    EXPECT_EQ(filesOf(folder_ / "joined"), filesOf(folder_ / "whole"));
+    EXPECT_EQ(getFiles(folder_ / "joined"), getFiles(folder_ / "whole"));
     ASSERT_EQ(make("nine", {"--seed", "9", "--count", "2"}).code, 0);
     ASSERT_THAT(join({"whole", "nine", "--out", "both"}), prints(HasSubstr("10 samples of 2 parts")));
     std::multiset<int> images, annotations;
@@ -185,12 +185,12 @@ TEST_F(DatasetCommandTest, PartsThatDoNotFitAreRefusedBeforeAnythingIsWritten) {
     EXPECT_THAT(join({"--out", "out"}).err, HasSubstr("PART is required"));
     EXPECT_FALSE(fs::exists(folder_ / "out"));
     ASSERT_EQ(make("c", {"--shard", "1/2"}).code, 0);
-    const auto before = filesOf(folder_ / "a");
+    const auto before = getFiles(folder_ / "a");
     EXPECT_THAT(join({"a", "c", "--out", "a"}), isRefused(HasSubstr("--out: is a, one of the parts")));
     fs::create_directory(folder_ / "own");
     writeFile(folder_ / "own/manifest.json", "mine");
     EXPECT_THAT(join({"a", "c", "--out", "own"}), isRefused(HasSubstr("holds manifest.json, which a data set would")));
-    EXPECT_EQ(filesOf(folder_ / "a"), before);
+    EXPECT_EQ(getFiles(folder_ / "a"), before);
 }
 
 TEST_F(DatasetCommandTest, DrawnSettingsAreInTheRecordAndChangeThePicture) {
@@ -199,7 +199,7 @@ TEST_F(DatasetCommandTest, DrawnSettingsAreInTheRecordAndChangeThePicture) {
     ASSERT_THAT(make("out"), succeeds());
     std::set<double> strengths;
     for (const char* index : {"000000", "000001", "000002"}) {
-        const json settings = recordOf("out", index)["settings"];
+        const json settings = makeRecord("out", index)["settings"];
         strengths.insert(settings["scene.materials.sand.lambert_db"].get<double>());
         EXPECT_TRUE(settings["scene.water_surface"].is_number());
         EXPECT_EQ(settings["noise.speckle"]["law"], "rayleigh");
@@ -215,12 +215,12 @@ TEST_F(DatasetCommandTest, SettingsOfTheSweepAndTheSeedOfTheCommandTakePrecedenc
     ASSERT_EQ(make("plain").code, 0);
     ASSERT_EQ(make("set", set).code, 0);
     ASSERT_EQ(make("seed", {"--seed", "9"}).code, 0);
-    const json plain = recordOf("plain", "000000"), changed = recordOf("set", "000000");
+    const json plain = makeRecord("plain", "000000"), changed = makeRecord("set", "000000");
     EXPECT_EQ(plain["ping"]["bins"], 200);
     EXPECT_EQ(changed["ping"]["bins"], 100);
     EXPECT_NEAR(changed["ping"]["range_m"], 20, 0.3);
     EXPECT_EQ(changed["pose"], plain["pose"]);
-    EXPECT_NE(recordOf("seed", "000000")["pose"], plain["pose"]);
+    EXPECT_NE(makeRecord("seed", "000000")["pose"], plain["pose"]);
     EXPECT_THAT(make("plain", set).err, HasSubstr("a sample of another sweep"));
     EXPECT_THAT(make("plain", {"--seed", "9"}).err, HasSubstr("a sample of another sweep"));
 }
@@ -239,7 +239,7 @@ void addKeys(const json& value, const std::string& path, std::set<std::string>& 
 TEST_F(DatasetCommandTest, ARecordHasTheKeysOfThePage) {
     ASSERT_EQ(make("out", {"--shard", "1/8"}).code, 0);
     std::set<std::string> written, documented;
-    addKeys(recordOf("out", "000001"), "", written);
+    addKeys(makeRecord("out", "000001"), "", written);
     const std::string page = readFile(root / "components/dataset/README.md");
     const size_t begin = page.find("\n## The record\n");
     ASSERT_NE(begin, std::string::npos);
@@ -255,15 +255,15 @@ TEST_F(DatasetCommandTest, ARecordHasTheKeysOfThePage) {
 
 TEST_F(DatasetCommandTest, KeepsSamplesAndRemakesMissingOrDamagedSamples) {
     ASSERT_EQ(make("out").code, 0);
-    const auto whole = filesOf(folder_ / "out");
-    const std::vector<std::string> names = namesOf(folder_ / "out");
+    const auto whole = getFiles(folder_ / "out");
+    const std::vector<std::string> names = getNames(folder_ / "out");
     const auto kept = fs::last_write_time(folder_ / "out" / names[6]);
     fs::remove(folder_ / "out" / names[0]);
     fs::resize_file(folder_ / "out" / names[3], 100);
     fs::remove(folder_ / "out/manifest.json");
     const Outcome again = make("out");
     EXPECT_THAT(again.out, AllOf(HasSubstr("8 of 8 samples in "), HasSubstr(", 2 of them new")));
-    EXPECT_EQ(filesOf(folder_ / "out"), whole);
+    EXPECT_EQ(getFiles(folder_ / "out"), whole);
     EXPECT_EQ(fs::last_write_time(folder_ / "out" / names[6]), kept);
     EXPECT_THAT(make("out").out, AllOf(HasSubstr("8 of 8 samples in "), HasSubstr(", 0 of them new")));
 }
@@ -273,13 +273,13 @@ TEST_F(DatasetCommandTest, AKilledRunIsContinued) {
     const TestFolder elsewhere;  // for the output of the killed run
     for (const char* name : {"d.yml", "sweep.yml"}) fs::copy(folder_ / name, elsewhere / name);
     const Process killed(insonifyWords(words((folder_ / "out").string())), elsewhere.path());
-    const auto aFewAreThere = [&] { return fs::exists(folder_ / "out") && namesOf(folder_ / "out").size() > 4; };
+    const auto aFewAreThere = [&] { return fs::exists(folder_ / "out") && getNames(folder_ / "out").size() > 4; };
     EXPECT_TRUE(insonify::test::becomesTrue(aFewAreThere));
     killed.signal(SIGKILL);
     killed.wait();
     writeFile(folder_ / "out/.part_00_1_left.png", "of a writer that is no more");
     ASSERT_EQ(make("out").code, 0);
-    EXPECT_EQ(filesOf(folder_ / "out"), filesOf(folder_ / "whole"));
+    EXPECT_EQ(getFiles(folder_ / "out"), getFiles(folder_ / "whole"));
 }
 
 TEST_F(DatasetCommandTest, TwoProcessesInOneFolderDoNotHarmEachOther) {
@@ -291,7 +291,7 @@ TEST_F(DatasetCommandTest, TwoProcessesInOneFolderDoNotHarmEachOther) {
     const Outcome others = other.wait();
     EXPECT_EQ(own.code, 0) << own.err;
     EXPECT_EQ(others.code, 0) << others.err;
-    EXPECT_EQ(filesOf(folder_ / "out"), filesOf(folder_ / "whole"));
+    EXPECT_EQ(getFiles(folder_ / "out"), getFiles(folder_ / "whole"));
 }
 
 TEST_F(DatasetCommandTest, AnotherSweepNeedsAnotherFolder) {
@@ -324,12 +324,12 @@ TEST_F(DatasetCommandTest, PycocotoolsReadsItAndEveryBoxHoldsItsObjectsEnergy) {
 TEST_F(DatasetCommandTest, YoloWithoutASplitValidatesOnTheTrainingPictures) {
     writeFile(folder_ / "sweep.yml", replaced(sweep, "split: {train: 0.5, val: 0.5, test: 0}\n", ""));
     ASSERT_EQ(make("out", {"--format", "yolo"}).code, 0);
-    EXPECT_THAT(filesOf(folder_ / "out").at("data.yaml"), StartsWith("train: train.txt\nval: train.txt  # "));
+    EXPECT_THAT(getFiles(folder_ / "out").at("data.yaml"), StartsWith("train: train.txt\nval: train.txt  # "));
 }
 
 TEST_F(DatasetCommandTest, YoloHasALabelForEachBoxAndListsByPart) {
     ASSERT_EQ(make("out", {"--format", "yolo"}).code, 0);
-    const auto files = filesOf(folder_ / "out");
+    const auto files = getFiles(folder_ / "out");
     EXPECT_EQ(files.at("data.yaml"),
               "train: train.txt\nval: val.txt\nnames:\n  0: \"pile\"\n  1: \"wreck\"\n  2: \"rock\"\n  3: "
               "\"pipeline\"\n");
@@ -339,7 +339,7 @@ TEST_F(DatasetCommandTest, YoloHasALabelForEachBoxAndListsByPart) {
         for (std::string line; std::getline(lines, line); ++listed) EXPECT_TRUE(files.contains(line.substr(2))) << line;
     }
     EXPECT_EQ(listed, 8u);
-    const json record = recordOf("out", "000002");
+    const json record = makeRecord("out", "000002");
     std::istringstream labels(files.at(std::string(record["files"].items().begin().key()).substr(0, 19) + ".txt"));
     for (const json& each : record["annotations"]) {
         double category = 0, x = 0, y = 0, width = 0, height = 0;
@@ -356,7 +356,7 @@ TEST_F(DatasetCommandTest, MasksShowInstancesAndClassesPixelByPixel) {
     if (python(folder_, "import matplotlib.image").code != 0)
         GTEST_SKIP() << "/usr/bin/python3 has no matplotlib; scripts/setup installs it";
     ASSERT_EQ(make("out", {"--format", "mask", "--shard", "1/8"}).code, 0);
-    const json record = recordOf("out", "000001");
+    const json record = makeRecord("out", "000001");
     const Outcome read = python(folder_, R"(
 import glob, json
 import matplotlib.image as image
@@ -387,8 +387,8 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryGiveTracks) {
     }
     EXPECT_GT(frames.size(), 1u);
     EXPECT_TRUE(std::ranges::any_of(frames, [](const auto& of) { return of.second.size() > 1; }));
-    EXPECT_EQ(recordOf("out", "000003")["time_s"], 6);
-    EXPECT_EQ(recordOf("out", "000003")["picture"]["width"], 128);
+    EXPECT_EQ(makeRecord("out", "000003")["time_s"], 6);
+    EXPECT_EQ(makeRecord("out", "000003")["picture"]["width"], 128);
 }
 
 TEST_F(DatasetCommandTest, PosesOfATrajectoryMoveOnWavesAsTheTaskMovesThem) {
@@ -401,7 +401,7 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryMoveOnWavesAsTheTaskMovesThem) {
         insonify::types::Pose pose;
         pose.position = {4 + 2 * i, -4, -5.5};
         motion.move(2 * i, pose);
-        const json position = recordOf("out", "00000" + std::to_string(i))["pose"]["position"];
+        const json position = makeRecord("out", "00000" + std::to_string(i))["pose"]["position"];
         EXPECT_NEAR(position[2].get<double>(), pose.position.z, 1e-6) << i;
     }
     writeFile(folder_ / "sweep.yml", "poses:\n  trajectory: {file: path.csv, count: 3, motion: {seed: 3}}\n");
@@ -419,7 +419,7 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryAreFromItsFirstStampToItsLast) {
     EXPECT_THAT(make(", to: 103"), isRefused(HasSubstr(place + "to: is 103 s; the trajectory is from 100 to 102 s")));
     ASSERT_EQ(make("").code, 0);
     for (int i = 0; i < 3; ++i) {
-        const json record = recordOf("out", "00000" + std::to_string(i));
+        const json record = makeRecord("out", "00000" + std::to_string(i));
         EXPECT_EQ(record["time_s"], 100 + i);
         EXPECT_EQ(record["pose"]["position"][0], 4 + 2 * i);
     }
@@ -445,7 +445,7 @@ TEST_F(DatasetCommandTest, TheFloorOfASurveyIsAScene) {
     writeFile(folder_ / "sweep.yml", "poses: {grid: {z: [-11, -10]}}\n");
     ASSERT_THAT(make("out"), succeeds());
     for (const char* index : {"000000", "000001"}) {
-        const json record = recordOf("out", index);
+        const json record = makeRecord("out", index);
         EXPECT_EQ(record["scene"], "bathymetry");
         EXPECT_THAT(record["annotations"], IsEmpty());
     }
@@ -472,7 +472,7 @@ classes: {rock: rock_000}
 )");
     ASSERT_EQ(make("out").code, 0);
     for (const char* index : {"000000", "000001"}) {
-        const json record = recordOf("out", index);
+        const json record = makeRecord("out", index);
         ASSERT_EQ(record["annotations"].size(), 1u) << index;
         const json& found = record["annotations"][0];
         EXPECT_EQ(found["name"], "rock_000");
@@ -497,7 +497,7 @@ classes: {rock: rock_000}
     ASSERT_EQ(make("out").code, 0);
     double nearest = 0;
     for (int i = 0; i < 12; ++i) {
-        const json record = recordOf("out", fmt::format("{:06}", i));
+        const json record = makeRecord("out", fmt::format("{:06}", i));
         const double c = record["ping"]["speed_of_sound_m_s"], bins = record["ping"]["bins"];
         const bool exact = record["settings"]["sonar.range_rounding"] == "exact";
         const double range = exact ? 6.3 : bins * std::ceil(6.3 / bins / c * 1e6) * 1e-6 * c;
@@ -521,7 +521,7 @@ annotations: {shadows: true}
     ASSERT_EQ(make("out").code, 0);
     EXPECT_EQ(json::parse(readFile(folder_ / "out/manifest.json"))["classes"], json::array({"rock", "rock_shadow"}));
     for (const char* index : {"000000", "000001"}) {
-        const json record = recordOf("out", index);
+        const json record = makeRecord("out", index);
         ASSERT_EQ(record["annotations"].size(), 2u) << index;
         const json &rock = record["annotations"][0], &shadow = record["annotations"][1];
         EXPECT_EQ(rock["shadow"], false);
@@ -539,7 +539,7 @@ TEST_F(DatasetCommandTest, ScenesHaveFilesAndPropertiesOfTheirOwn) {
     writeFile(folder_ / "sweep.yml", "scenes: [" + (root / "deploy/scenes/tank.glb").string() +
                                          ", {set: {sonar.bin_count: 100}}]\nposes: {grid: {z: -3}}\n");
     ASSERT_EQ(make("out").code, 0);
-    const json first = recordOf("out", "000000"), second = recordOf("out", "000001");
+    const json first = makeRecord("out", "000000"), second = makeRecord("out", "000001");
     EXPECT_EQ(first["scene"], "tank.glb");
     EXPECT_EQ(first["ping"]["bins"], 200);
     EXPECT_EQ(second["scene"], "harbour.glb");
@@ -555,7 +555,7 @@ TEST_F(DatasetCommandTest, APatternOfObjectsMayMatchInOneOfTheScenesAlone) {
                                          "objects: [{names: [rock_000, pillar*], x: [6, 20], y: [-8, 8], avoid: "
                                          "[quay_wall]}]\n");
     ASSERT_THAT(make("out"), succeeds());
-    const json harbour = recordOf("out", "000000")["objects"], tank = recordOf("out", "000001")["objects"];
+    const json harbour = makeRecord("out", "000000")["objects"], tank = makeRecord("out", "000001")["objects"];
     ASSERT_EQ(harbour.size(), 1u);
     EXPECT_EQ(harbour[0]["name"], "rock_000");
     for (const json& each : tank) EXPECT_THAT(each["name"].get<std::string>(), testing::StartsWith("pillar"));
@@ -568,7 +568,7 @@ TEST_F(DatasetCommandTest, APatternOfObjectsMayMatchInOneOfTheScenesAlone) {
 
 TEST_F(DatasetCommandTest, ALogOfASampleHasItsPingTruthAndPose) {
     ASSERT_EQ(make("out", {"--format", "mcap", "--shard", "2/8"}).code, 0);
-    const json record = recordOf("out", "000002");
+    const json record = makeRecord("out", "000002");
     const std::string log = "out/" + std::string(record["files"].items().begin().key());
     const json info = json::parse(callInsonify(folder_, {"log", "info", log, "--json"}).out);
     std::map<std::string, int> samples;
@@ -600,5 +600,5 @@ TEST_F(DatasetCommandTest, TheSweepOfTheHarbourIsMadeWithItsDeployment) {
     ASSERT_THAT(callInsonify(folder_, {"dataset", root / "deploy/truth.yml", "--sweep",
                                        root / "deploy/sweeps/harbour.yml", "--out", "out", "--shard", "0/24"}),
                 prints(AllOf(HasSubstr("1 of 24 samples in "), HasSubstr(", 1 of them new"))));
-    EXPECT_GT(recordOf("out", "000000")["annotations"].size(), 5u);
+    EXPECT_GT(makeRecord("out", "000000")["annotations"].size(), 5u);
 }

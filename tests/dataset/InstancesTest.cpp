@@ -7,8 +7,8 @@ namespace {
 
 using ::testing::ElementsAre;
 
-Classes classesOf(std::vector<ClassRule> rules, const std::vector<std::string>& objects,
-                  const std::vector<std::string>& nodes) {
+Classes getClasses(std::vector<ClassRule> rules, const std::vector<std::string>& objects,
+                   const std::vector<std::string>& nodes) {
     Sweep sweep;
     sweep.classes = std::move(rules);
     sweep.annotations.shadows = true;
@@ -21,7 +21,7 @@ TEST(InstancesTest, PartsBelowANodeOfAClassAreOneInstanceOfItsName) {
                                           {"arm_l", "arms", "diver_1", "world"},
                                           {"torso.001", "diver_2", "world"},
                                           {"arm_r", "arms", "diver_1", "world"}};
-    const Classes classes = classesOf({{"diver", {"diver_*"}, 1, 1}}, {"floor", "torso"}, {"diver_1", "diver_2"});
+    const Classes classes = getClasses({{"diver", {"diver_*"}, 1, 1}}, {"floor", "torso"}, {"diver_1", "diver_2"});
     const Instances instances(classes, objects);
     EXPECT_EQ(instances.category(instances.of(0)), 0u);
     EXPECT_EQ(instances.name(instances.of(0)), "floor");
@@ -40,8 +40,8 @@ TEST(InstancesTest, TheNearestClassCountsAndTheOutermostNodeThatHasIt) {
                                           {"chain_01", "mooring"},
                                           {"chain_02", "chain_01", "mooring"}};
     const Classes classes =
-        classesOf({{"wheel", {"wheel_*"}, 1, 1}, {"car", {"car_*"}, 1, 1}, {"chain", {"chain_*"}, 1, 1}},
-                  {"wheel_1", "car_body", "chain_03"}, {"car_1"});
+        getClasses({{"wheel", {"wheel_*"}, 1, 1}, {"car", {"car_*"}, 1, 1}, {"chain", {"chain_*"}, 1, 1}},
+                   {"wheel_1", "car_body", "chain_03"}, {"car_1"});
     const Instances instances(classes, objects);
     EXPECT_EQ(instances.name(instances.of(0)), "wheel_1");
     EXPECT_EQ(instances.name(instances.of(1)), "car_1");

@@ -24,7 +24,7 @@ using testing::IsSupersetOf;
 
 constexpr const char* version = "1.2";
 
-Title titleOf(Format format, std::vector<Member> members) {
+Title getTitle(Format format, std::vector<Member> members) {
     return {version, "d.yml", "sweep.yml", "origin", format, true, false, 2, {"pile", "rock"}, std::move(members)};
 }
 
@@ -34,8 +34,8 @@ Member member(uint64_t seed, uint64_t total, std::optional<uint64_t> count = {})
 
 /** Writes a sample of a few boxes that depends on its digest and number alone. */
 void putSample(Store& store, Format format, uint64_t index) {
-    std::mt19937_64 random(std::hash<std::string>{}(store.stemOf(index)));
-    const std::string stem = store.stemOf(index), picture = stem + (hasPictures(format) ? ".png" : ".npz");
+    std::mt19937_64 random(std::hash<std::string>{}(store.makeStem(index)));
+    const std::string stem = store.makeStem(index), picture = stem + (hasPictures(format) ? ".png" : ".npz");
     Json record{{"index", index},
                 {"part", std::array{"train", "val", "test"}[random() % 3]},
                 {"scene", "harbour.glb"},
@@ -64,7 +64,7 @@ std::string textIn(const fs::path& file) {
 }
 
 /** Bytes of all files of a folder, by name. */
-std::map<std::string, std::string> filesOf(const fs::path& folder) {
+std::map<std::string, std::string> getFiles(const fs::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::directory_iterator(folder)) files[entry.path().filename()] = textIn(entry.path());
     return files;
@@ -152,7 +152,7 @@ TEST_F(JoinTest, ASetThatIsJoinedFromRandomPartsIsTheWholeSetByteForByte) {
         const uint64_t total = 1 + random() % 12;
         const std::optional<uint64_t> count =
             random() % 2 ? std::optional<uint64_t>(1 + random() % total) : std::nullopt;
-        const Title title = titleOf(format, {member(random(), total, count)});
+        const Title title = getTitle(format, {member(random(), total, count)});
         const std::string name = std::to_string(round);
         const fs::path expected = whole(name + "whole", title);
         const size_t parts = 1 + random() % 4;
@@ -163,20 +163,20 @@ TEST_F(JoinTest, ASetThatIsJoinedFromRandomPartsIsTheWholeSetByteForByte) {
             folders.push_back(
                 make(fmt::format("{}part{}", name, part), title, [&](uint64_t i) { return owner[i] == part; }));
         std::ranges::shuffle(folders, random);
-        EXPECT_EQ(filesOf(joined(name + "joined", folders)), filesOf(expected)) << round;
+        EXPECT_EQ(getFiles(joined(name + "joined", folders)), getFiles(expected)) << round;
     }
 }
 
 TEST_F(JoinTest, SetsOfOtherSeedsAreJoinedInAnyOrderAndInSteps) {
-    const Title one = titleOf(Format::Coco, {member(3, 8)}), two = titleOf(Format::Coco, {member(1, 8, 5)}),
-                three = titleOf(Format::Coco, {member(9, 8)});
+    const Title one = getTitle(Format::Coco, {member(3, 8)}), two = getTitle(Format::Coco, {member(1, 8, 5)}),
+                three = getTitle(Format::Coco, {member(9, 8)});
     const fs::path a = whole("a", one), b = whole("b", two),
                    even = make("even", three, [](uint64_t i) { return i % 2 == 0; }),
                    odd = make("odd", three, [](uint64_t i) { return i % 2 == 1; });
-    const auto all = filesOf(joined("all", {a, b, odd, even}));
-    EXPECT_EQ(filesOf(joined("other", {even, b, odd, a})), all);
-    EXPECT_EQ(filesOf(joined("steps", {odd, joined("ab", {a, b}), even})), all);
-    EXPECT_EQ(filesOf(whole("made", titleOf(Format::Coco, {member(1, 8, 5), member(3, 8), member(9, 8)}))), all);
+    const auto all = getFiles(joined("all", {a, b, odd, even}));
+    EXPECT_EQ(getFiles(joined("other", {even, b, odd, a})), all);
+    EXPECT_EQ(getFiles(joined("steps", {odd, joined("ab", {a, b}), even})), all);
+    EXPECT_EQ(getFiles(whole("made", getTitle(Format::Coco, {member(1, 8, 5), member(3, 8), member(9, 8)}))), all);
     EXPECT_EQ(Json::parse(all.at("manifest.json"))["samples"], 21);
     EXPECT_TRUE(all.contains("tracks_005_001.txt"));  // scene 1 of the third seed
 }
@@ -186,7 +186,7 @@ TEST_F(JoinTest, NumbersOfImagesAndAnnotationsAreUniqueOverAllParts) {
     for (int round = 0; round < 10; ++round) {
         std::vector<Member> members;
         for (uint64_t seed = 1; seed <= 1 + random() % 3; ++seed) members.push_back(member(seed, 12));
-        const fs::path folder = whole(std::to_string(round), titleOf(Format::Coco, members));
+        const fs::path folder = whole(std::to_string(round), getTitle(Format::Coco, members));
         std::set<uint64_t> images, annotations;
         size_t image_count = 0, annotation_count = 0;
         std::set<std::string> categories, pictures;
@@ -217,7 +217,7 @@ TEST_F(JoinTest, NumbersOfImagesAndAnnotationsAreUniqueOverAllParts) {
 }
 
 TEST_F(JoinTest, PartsThatDoNotFitAreRefused) {
-    const Title title = titleOf(Format::Mask, {member(3, 6)});
+    const Title title = getTitle(Format::Mask, {member(3, 6)});
     const auto is = [](uint64_t rest) { return [=](uint64_t i) { return i % 3 == rest; }; };
     const fs::path a = make("a", title, is(0)), b = make("b", title, is(1)), c = make("c", title, is(2));
     EXPECT_EQ(refusal({a, b, c}), "");
@@ -239,7 +239,7 @@ TEST_F(JoinTest, PartsThatDoNotFitAreRefused) {
     EXPECT_THAT(refusal({a, b, c, a}), AllOf(HasSubstr("a/000000_"), HasSubstr("sample 0 of seed 3 is in "),
                                              HasSubstr("a as well; give each sample once")));
     EXPECT_THAT(refusal({a, c}), HasSubstr("2 of 6 samples of seed 3 are in none of the parts, the first is 1"));
-    Title other = titleOf(Format::Mask, {member(4, 6)});
+    Title other = getTitle(Format::Mask, {member(4, 6)});
     const Title fixed = [&] {
         Title fixed = title;
         return fixed.one_seed = true, fixed;
@@ -250,10 +250,10 @@ TEST_F(JoinTest, PartsThatDoNotFitAreRefused) {
 }
 
 TEST_F(JoinTest, FoldersThatAreNoSetsOrAreDamagedAreRefused) {
-    const Title title = titleOf(Format::Npz, {member(3, 3)});
+    const Title title = getTitle(Format::Npz, {member(3, 3)});
     const fs::path a = whole("a", title);
     EXPECT_THAT(refusal({a, folder_ / "nowhere"}), HasSubstr("nowhere: has no dataset.json"));
-    for (const auto& [name, bytes] : filesOf(a)) {
+    for (const auto& [name, bytes] : getFiles(a)) {
         if (!name.ends_with(".npz")) continue;
         std::ofstream(a / name) << "other";
         EXPECT_THAT(refusal({a}), HasSubstr("the sample is damaged; make it again: run its shard with this --out"));
@@ -286,12 +286,12 @@ TEST_F(JoinTest, FoldersThatAreNoSetsOrAreDamagedAreRefused) {
 }
 
 TEST_F(JoinTest, ASampleThatNamesAFileOutsideOfItsFolderIsRefused) {
-    const Title title = titleOf(Format::Npz, {member(3, 1)});
+    const Title title = getTitle(Format::Npz, {member(3, 1)});
     const fs::path a = make("a", title, [](uint64_t) { return false; });
     std::ofstream(folder_ / "other.txt") << "other";  // with the right sum
     Store store(a, title.members[0].digest);
     Json record{{"index", 0}, {"part", "train"}, {"annotations", Json::array()}};
-    record["files"] = {{"../other.txt", store.putText(store.stemOf(0) + ".txt", "other")}};
+    record["files"] = {{"../other.txt", store.putText(store.makeStem(0) + ".txt", "other")}};
     store.putRecord(0, record);
     EXPECT_THAT(refusal({a}), HasSubstr("the sample is damaged"));
 }

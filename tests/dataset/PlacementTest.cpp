@@ -30,7 +30,7 @@ SceneParts stones(int count) {
     return parts;
 }
 
-Sweep sweepOf(std::vector<double> x, std::vector<double> y) {
+Sweep makeSweep(std::vector<double> x, std::vector<double> y) {
     Sweep sweep;
     sweep.file = "sweep.yml";
     ObjectGroup& group = sweep.objects.emplace_back();
@@ -50,7 +50,7 @@ std::vector<PlacedObject> placed(const Sweep& sweep, const SceneParts& scene, in
 double apart(const glm::dvec3& a, const glm::dvec3& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 TEST(PlacementTest, ObjectsStandInTheirAreaAndDoNotTouch) {
-    const Sweep sweep = sweepOf({-4, 4}, {2, 8});
+    const Sweep sweep = makeSweep({-4, 4}, {2, 8});
     const SceneParts scene = stones(12);
     for (uint64_t pose = 0; pose < 50; ++pose) {
         const auto objects = placed(sweep, scene, 12, pose);
@@ -66,7 +66,7 @@ TEST(PlacementTest, ObjectsStandInTheirAreaAndDoNotTouch) {
 }
 
 TEST(PlacementTest, ObjectsKeepClearOfTheVehicleAndAvoidedNodes) {
-    Sweep sweep = sweepOf({-2, 2}, {-2, 2});
+    Sweep sweep = makeSweep({-2, 2}, {-2, 2});
     sweep.objects[0].avoid = {"wall*"};
     SceneParts scene = stones(1);
     scene.boxes["wall_a"].add(glm::dvec3(-2, -2, -5));
@@ -79,7 +79,7 @@ TEST(PlacementTest, ObjectsKeepClearOfTheVehicleAndAvoidedNodes) {
 }
 
 TEST(PlacementTest, AnAreaMovesWithTheVehicle) {
-    Sweep sweep = sweepOf({5, 6}, {0, 1});
+    Sweep sweep = makeSweep({5, 6}, {0, 1});
     sweep.objects[0].frame = Frame::Vehicle;
     types::Pose vehicle;
     vehicle.position = {100, 200, -5};
@@ -91,7 +91,7 @@ TEST(PlacementTest, AnAreaMovesWithTheVehicle) {
 }
 
 TEST(PlacementTest, ObjectsStandOnTheHighestGroundBelowTheirOrigin) {
-    Sweep sweep = sweepOf({1, 3}, {1, 3});
+    Sweep sweep = makeSweep({1, 3}, {1, 3});
     sweep.objects[0].ground = "floor";
     SceneParts scene = stones(1);
     scene.grounds["floor"] = {{glm::dvec3(-9, -9, -9), glm::dvec3(9, -9, -9), glm::dvec3(0, 20, -9)},
@@ -104,7 +104,7 @@ TEST(PlacementTest, ObjectsStandOnTheHighestGroundBelowTheirOrigin) {
 }
 
 TEST(PlacementTest, AScaledObjectIsOnTheGroundClearOfOthers) {
-    Sweep sweep = sweepOf({1, 12}, {1, 12});
+    Sweep sweep = makeSweep({1, 12}, {1, 12});
     sweep.objects[0].ground = "floor";
     sweep.objects[0].scale = {0.5, 2};
     SceneParts scene = stones(8);
@@ -128,7 +128,7 @@ TEST(PlacementTest, AScaledObjectIsOnTheGroundClearOfOthers) {
 }
 
 TEST(PlacementTest, ATiltedObjectIsOnTheGroundClearOfOthers) {
-    Sweep sweep = sweepOf({1, 30}, {1, 30});
+    Sweep sweep = makeSweep({1, 30}, {1, 30});
     sweep.objects[0].ground = "floor";
     sweep.objects[0].roll_deg = {90, 90};
     SceneParts scene = stones(2);
@@ -148,7 +148,7 @@ TEST(PlacementTest, ATiltedObjectIsOnTheGroundClearOfOthers) {
 }
 
 TEST(PlacementTest, AnyTurnIsUniform) {
-    Sweep sweep = sweepOf({1, 30}, {1, 30});
+    Sweep sweep = makeSweep({1, 30}, {1, 30});
     sweep.objects[0].any_turn = true;
     const SceneParts scene = stones(1);
     constexpr int poses = 4000;
@@ -170,7 +170,7 @@ TEST(PlacementTest, AnyTurnIsUniform) {
 }
 
 TEST(PlacementTest, PlacesTheCountAndMovesTheOthersOutOfReach) {
-    Sweep sweep = sweepOf({-20, 20}, {-20, 20});
+    Sweep sweep = makeSweep({-20, 20}, {-20, 20});
     sweep.objects[0].count = {2, 5};
     std::array<int, 7> seen{};
     for (uint64_t pose = 0; pose < 300; ++pose) {
@@ -183,7 +183,7 @@ TEST(PlacementTest, PlacesTheCountAndMovesTheOthersOutOfReach) {
 }
 
 TEST(PlacementTest, EachObjectIsChosenEquallyOftenAndByThePoseAlone) {
-    Sweep sweep = sweepOf({-20, 20}, {-20, 20});
+    Sweep sweep = makeSweep({-20, 20}, {-20, 20});
     sweep.objects[0].count = {2, 2};
     constexpr int poses = 1200;
     std::array<int, 6> chosen{};
@@ -203,14 +203,14 @@ TEST(PlacementTest, EachObjectIsChosenEquallyOftenAndByThePoseAlone) {
 }
 
 TEST(PlacementTest, ReportsAnAreaWithoutGround) {
-    Sweep sweep = sweepOf({2, 4}, {2, 4});
+    Sweep sweep = makeSweep({2, 4}, {2, 4});
     sweep.objects[0].ground = "sea_floor";
     SceneParts scene = stones(1);
     for (const double x : {0.0, 20.0}) {  // elsewhere, and below the area
         scene.grounds["sea_floor"] = {{glm::dvec3(20 - x, 0, -9), {30 - x, 0, -9}, {20 - x, 10, -9}}};
         const auto work = [&] { placed(sweep, scene, 1, 8); };
         if (x == 0)
-            EXPECT_THAT(test::errorOf<types::ConfigError>(work),
+            EXPECT_THAT(test::computeError<types::ConfigError>(work),
                         HasSubstr("no ground, sea_floor, is below its area: give it another area"));
         else
             EXPECT_NO_THROW(work());
@@ -218,9 +218,9 @@ TEST(PlacementTest, ReportsAnAreaWithoutGround) {
 }
 
 TEST(PlacementTest, ReportsTheNumberOfObjectsThatFit) {
-    const Sweep sweep = sweepOf({2, 4}, {2, 4});
+    const Sweep sweep = makeSweep({2, 4}, {2, 4});
     EXPECT_THAT(
-        test::errorOf<types::ConfigError>([&] { placed(sweep, stones(30), 30, 8); }),
+        test::computeError<types::ConfigError>([&] { placed(sweep, stones(30), 30, 8); }),
         testing::AllOf(HasSubstr("sweep.yml:4:5: objects[0]: has room for "), HasSubstr("of its 30 objects at pose 8")))
         << "30 stones of a metre on 4 m2";
 }

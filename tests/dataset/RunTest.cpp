@@ -9,13 +9,13 @@ namespace {
 using ::testing::Each;
 using ::testing::ElementsAre;
 
-types::SonarPtr lineOf(float level, uint32_t bins = 5) {
+types::SonarPtr makeLine(float level, uint32_t bins = 5) {
     auto ping = std::make_shared<types::Sonar>(test::emptyPing(180, 2, bins));
     std::ranges::fill(ping->bins, level);
     return ping;
 }
 
-types::SonarTruthPtr truthOf(const types::Sonar& ping, int32_t object) {
+types::SonarTruthPtr getTruth(const types::Sonar& ping, int32_t object) {
     auto truth = std::make_shared<types::SonarTruth>();
     truth->copyGrid(ping);
     truth->objects = {"floor", "rock"};
@@ -27,8 +27,8 @@ types::SonarTruthPtr truthOf(const types::Sonar& ping, int32_t object) {
 TEST(RunTest, JoinsTheBeamsOfAllPingsInOrder) {
     dataset::Run run;
     for (int i = 0; i < 3; ++i) {
-        const auto line = lineOf(static_cast<float>(i));
-        run.add(line, truthOf(*line, i % 2));
+        const auto line = makeLine(static_cast<float>(i));
+        run.add(line, getTruth(*line, i % 2));
     }
     EXPECT_EQ(run.size(), 3u);
     EXPECT_EQ(run.ping().beam_count, 6u);
@@ -44,11 +44,11 @@ TEST(RunTest, JoinsTheBeamsOfAllPingsInOrder) {
 TEST(RunTest, PingsOfOtherBinsAreRefused) {
     dataset::Run run;
     for (const uint32_t bins : {5, 6}) {
-        const auto line = lineOf(1, bins);
+        const auto line = makeLine(1, bins);
         if (bins == 5)
-            run.add(line, truthOf(*line, 0));
+            run.add(line, getTruth(*line, 0));
         else
-            EXPECT_THROW(run.add(line, truthOf(*line, 0)), std::runtime_error);
+            EXPECT_THROW(run.add(line, getTruth(*line, 0)), std::runtime_error);
     }
 }
 

@@ -78,7 +78,7 @@ TEST(SamplesTest, PosesVaryFastestThenSettingsThenScenes) {
     EXPECT_EQ(samples.at(6).setting, 1u);
     EXPECT_EQ(samples.at(12).scene, 1u);
     EXPECT_EQ(last.run.front().at.position, glm::dvec3(2, 0, 0));
-    EXPECT_THAT(samples.settingsOf(1), ElementsAre(Pair("sonar.range", "30"), Pair("sonar.bin_count", "100")));
+    EXPECT_THAT(samples.getSettings(1), ElementsAre(Pair("sonar.range", "30"), Pair("sonar.bin_count", "100")));
 }
 
 TEST(SamplesTest, ASampleDependsOnItsNumberAlone) {
@@ -160,12 +160,13 @@ TEST(SamplesTest, RefusesMissingAndRepeatedObjectsWithTheirPlace) {
     Sweep sweep = drawn(1);
     sweep.objects.resize(2);
     for (ObjectGroup& group : sweep.objects) group.names = {"stone_1"}, group.x = group.y = {0, 1}, group.line = 9;
-    const auto messageOf = [&] {
-        return test::errorOf<types::ConfigError>([&] { const Samples samples(sweep, {}, {stoneParts(2)}); });
+    const auto makeMessage = [&] {
+        return test::computeError<types::ConfigError>([&] { const Samples samples(sweep, {}, {stoneParts(2)}); });
     };
-    EXPECT_EQ(messageOf(), "sweep.yml:9: objects[1].names: places stone_1 for the second time");
+    EXPECT_EQ(makeMessage(), "sweep.yml:9: objects[1].names: places stone_1 for the second time");
     sweep.objects[1].names = {"stne_0"};
-    EXPECT_THAT(messageOf(), HasSubstr("objects[1].names[0]: is stne_0, which is no name in the scene; did you mean"));
+    EXPECT_THAT(makeMessage(),
+                HasSubstr("objects[1].names[0]: is stne_0, which is no name in the scene; did you mean"));
 }
 
 TEST(SamplesTest, ACountIsAtMostTheNumberOfObjectsInTheSceneWithMost) {
@@ -173,14 +174,14 @@ TEST(SamplesTest, ACountIsAtMostTheNumberOfObjectsInTheSceneWithMost) {
     sweep.scenes.resize(2);
     ObjectGroup& group = sweep.objects.emplace_back();
     group.names = {"stone_*"}, group.x = group.y = {-10, 10}, group.line = 9;
-    const auto messageOf = [&](uint32_t low, uint32_t high) {
+    const auto makeMessage = [&](uint32_t low, uint32_t high) {
         sweep.objects.front().count = {low, high};
-        return test::errorOf<types::ConfigError>([&] {
+        return test::computeError<types::ConfigError>([&] {
             const Samples samples(sweep, {}, {stoneParts(1), stoneParts(4)});
         });
     };
-    EXPECT_EQ(messageOf(1, 4), "");
-    EXPECT_EQ(messageOf(1, 5), "sweep.yml:9: objects[0].count: is [1, 5], but only 4 objects match names");
+    EXPECT_EQ(makeMessage(1, 4), "");
+    EXPECT_EQ(makeMessage(1, 5), "sweep.yml:9: objects[0].count: is [1, 5], but only 4 objects match names");
 }
 
 TEST(SamplesTest, APatternMustMatchInOneOfTheScenes) {
@@ -193,15 +194,15 @@ TEST(SamplesTest, APatternMustMatchInOneOfTheScenes) {
     SceneParts few = stoneParts(1), many = stoneParts(4);
     few.nodes = {"wall"};
     const Samples samples(sweep, {}, {few, many});
-    EXPECT_THAT(samples.objectsOf(0), ElementsAre("stone_0"));
-    EXPECT_THAT(samples.objectsOf(1), ElementsAre("stone_0", "stone_3"));
-    const auto messageOf = [&] {
-        return test::errorOf<types::ConfigError>([&] { const Samples refused(sweep, {}, {few, many}); });
+    EXPECT_THAT(samples.getObjects(0), ElementsAre("stone_0"));
+    EXPECT_THAT(samples.getObjects(1), ElementsAre("stone_0", "stone_3"));
+    const auto makeMessage = [&] {
+        return test::computeError<types::ConfigError>([&] { const Samples refused(sweep, {}, {few, many}); });
     };
     group.avoid = {"wal"};
-    EXPECT_THAT(messageOf(), HasSubstr("objects[0].avoid[0]: is wal, which is no name in any of the scenes"));
+    EXPECT_THAT(makeMessage(), HasSubstr("objects[0].avoid[0]: is wal, which is no name in any of the scenes"));
     group.names = {"stone_4"};
-    EXPECT_THAT(messageOf(), HasSubstr("objects[0].names[0]: is stone_4, which is no name in any of the scenes"));
+    EXPECT_THAT(makeMessage(), HasSubstr("objects[0].names[0]: is stone_4, which is no name in any of the scenes"));
 }
 
 TEST(SamplesTest, EachSampleDrawsItsSettingsByItsNumberAlone) {

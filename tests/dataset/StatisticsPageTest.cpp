@@ -8,7 +8,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-Json recordOf(uint64_t index, const std::string& part, uint32_t area) {
+Json makeRecord(uint64_t index, const std::string& part, uint32_t area) {
     return {{"index", index},
             {"part", part},
             {"scene", "har<bour>.glb"},
@@ -21,8 +21,8 @@ Json recordOf(uint64_t index, const std::string& part, uint32_t area) {
 TEST(StatisticsPageTest, ShowsCountsSizesRangesAndExamples) {
     const std::vector<std::string> classes{"pile", "rock"};
     StatisticsPage page("sweep.yml", classes);
-    page.add(recordOf(0, "train", 100), "000000_a.png");
-    page.add(recordOf(1, "val", 300), "000001_b.png");
+    page.add(makeRecord(0, "train", 100), "000000_a.png");
+    page.add(makeRecord(1, "val", 300), "000001_b.png");
     const std::string text = page.text();
     EXPECT_THAT(text, HasSubstr("<p>2 samples</p>"));
     EXPECT_THAT(text, HasSubstr("<td>pile</td><td>2</td><td>2</td><td>200</td><td>4.00</td><td>8.50</td>"));
@@ -39,9 +39,9 @@ TEST(StatisticsPageTest, ShowsCountsSizesRangesAndExamples) {
 TEST(StatisticsPageTest, ASettingWithAValueInEachSampleIsOneRow) {
     const std::vector<std::string> classes{"pile"};
     StatisticsPage page("sweep.yml", classes);
-    for (uint64_t index = 0; index < 5; ++index) page.add(recordOf(index, "train", 100), "");
+    for (uint64_t index = 0; index < 5; ++index) page.add(makeRecord(index, "train", 100), "");
     EXPECT_THAT(page.text(), HasSubstr("<td>sonar.gain: 0 to 2, median 1</td>"));
-    for (uint64_t index = 5; index < 30; ++index) page.add(recordOf(index, "train", 100), "");
+    for (uint64_t index = 5; index < 30; ++index) page.add(makeRecord(index, "train", 100), "");
     EXPECT_THAT(page.text(), HasSubstr("sonar.range = 30"));
     EXPECT_THAT(page.text(), HasSubstr("<td>sonar.gain: 0 to 14.5, median 7.25</td>"));
     EXPECT_THAT(page.text(), Not(HasSubstr("sonar.gain = ")));
@@ -51,7 +51,7 @@ TEST(StatisticsPageTest, ValuesOfAListAreInNumericOrder) {
     const std::vector<std::string> classes{"pile"};
     StatisticsPage page("sweep.yml", classes);
     for (const int value : {100, 20, 9, 20}) {
-        Json record = recordOf(0, "train", 100);
+        Json record = makeRecord(0, "train", 100);
         record["settings"] = {{"sonar.range", value}};
         page.add(record, "");
     }
@@ -65,7 +65,7 @@ TEST(StatisticsPageTest, ValuesOfAListAreInNumericOrder) {
 TEST(StatisticsPageTest, WithoutPicturesThereAreNoExamples) {
     const std::vector<std::string> classes{"pile"};
     StatisticsPage page("sweep.yml", classes);
-    page.add(recordOf(0, "train", 100), "");
+    page.add(makeRecord(0, "train", 100), "");
     EXPECT_THAT(page.text(), Not(HasSubstr("Examples")));
 }
 

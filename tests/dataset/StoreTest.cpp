@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 struct StoreTest : ::testing::Test {
     Store store(const std::string& digest = "a") const { return Store(folder_.path(), digest); }
     void putSample(Store& store, uint64_t index) const {
-        const std::string name = store.stemOf(index) + ".txt";
+        const std::string name = store.makeStem(index) + ".txt";
         Json record{{"index", index}, {"value", 0.1}};
         record["files"] = {{name, store.putText(name, "sample " + std::to_string(index))}};
         store.putRecord(index, record);
@@ -28,7 +28,7 @@ struct StoreTest : ::testing::Test {
 TEST_F(StoreTest, ASampleExistsOnceItsRecordExists) {
     Store files = store();
     EXPECT_FALSE(files.has(3));
-    files.putText(files.stemOf(3) + ".txt", "sample 3");
+    files.putText(files.makeStem(3) + ".txt", "sample 3");
     EXPECT_FALSE(files.has(3));
     putSample(files, 3);
     EXPECT_TRUE(files.has(3));
@@ -39,7 +39,7 @@ TEST_F(StoreTest, ASampleExistsOnceItsRecordExists) {
 
 TEST_F(StoreTest, ADamagedSampleDoesNotExist) {
     Store files = store();
-    const std::string stem = files.stemOf(0);
+    const std::string stem = files.makeStem(0);
     const auto broken = [&](const std::string& name, const std::string& text) {
         putSample(files, 0);
         EXPECT_TRUE(files.has(0));
@@ -60,9 +60,9 @@ TEST_F(StoreTest, ADamagedSampleDoesNotExist) {
 }
 
 TEST_F(StoreTest, NamesAreOfNumberAndDigest) {
-    EXPECT_THAT(store().stemOf(42), testing::MatchesRegex("000042_[0-9a-f]{12}"));
-    EXPECT_NE(store("a").stemOf(42), store("b").stemOf(42));
-    EXPECT_NE(store("a").stemOf(1).substr(7), store("a").stemOf(2).substr(7));
+    EXPECT_THAT(store().makeStem(42), testing::MatchesRegex("000042_[0-9a-f]{12}"));
+    EXPECT_NE(store("a").makeStem(42), store("b").makeStem(42));
+    EXPECT_NE(store("a").makeStem(1).substr(7), store("a").makeStem(2).substr(7));
 }
 
 TEST_F(StoreTest, AFolderOfAnotherDataSetIsRefused) {
@@ -102,7 +102,7 @@ TEST_F(StoreTest, AWriterWhoseFileIsTakenForALeftoverWritesAgain) {
         if (++tries == 1) files.removeLeftovers();
     });
     EXPECT_EQ(tries, 2);
-    EXPECT_EQ(bytesOf(folder_ / "x.png").size(), 5u);
+    EXPECT_EQ(toBytes(folder_ / "x.png").size(), 5u);
 }
 
 TEST_F(StoreTest, SeveralMayWriteTheSameSample) {

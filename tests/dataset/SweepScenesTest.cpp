@@ -44,15 +44,15 @@ dataset::Sweep standingOn(const std::string& ground) {
 }
 
 TEST(SweepScenesTest, AGroundIsOfAllNodesThatItsPatternMatches) {
-    EXPECT_EQ(partsOf(standingOn("floor_low"), floors()).grounds.at("floor_low").size(), 1u);
-    const auto both = partsOf(standingOn("floor_*"), floors()).grounds.at("floor_*");
+    EXPECT_EQ(getParts(standingOn("floor_low"), floors()).grounds.at("floor_low").size(), 1u);
+    const auto both = getParts(standingOn("floor_*"), floors()).grounds.at("floor_*");
     ASSERT_EQ(both.size(), 2u);
     EXPECT_EQ(both[0][0].z, -5);
     EXPECT_EQ(both[1][0].z, -4);
 }
 
 TEST(SweepScenesTest, AGroundWithoutASurfaceIsRefusedAtItsPlace) {
-    EXPECT_THAT(test::errorOf<types::ConfigError>([] { partsOf(standingOn("frame"), floors()); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([] { getParts(standingOn("frame"), floors()); }),
                 HasSubstr("sweep.yml:4:5: objects[0].ground: is frame, which has no surface to stand on"));
 }
 
@@ -81,11 +81,11 @@ types::Geometry mappedFloors() {
 
 /** Expects that each change gives a different digest. */
 void expectOthers(const types::Geometry& plain, const Changes& changes) {
-    std::set<std::string> digests = {digestOf(plain)};
+    std::set<std::string> digests = {computeDigest(plain)};
     for (size_t i = 0; i < changes.size(); ++i) {
         types::Geometry changed = plain;
         changes[i](changed);
-        EXPECT_TRUE(digests.insert(digestOf(changed)).second) << i;
+        EXPECT_TRUE(digests.insert(computeDigest(changed)).second) << i;
     }
 }
 
@@ -120,7 +120,7 @@ TEST(SweepScenesTest, EveryAcousticPropertyOfAGeometryChangesItsDigest) {
         [](auto& changed) { changed.normal_maps[0].rgb[0] = 9; },
     };
     expectOthers(plain, changes);
-    EXPECT_EQ(digestOf(plain), digestOf(types::Geometry(plain)));
+    EXPECT_EQ(computeDigest(plain), computeDigest(types::Geometry(plain)));
 }
 
 TEST(SweepScenesTest, EveryAcousticPropertyOfASurfaceMapChangesTheDigest) {

@@ -18,7 +18,7 @@ Axis drawnFrom(std::vector<double> uniform, std::vector<double> normal) {
     return axis;
 }
 
-std::vector<double> stepsOf(const Axis& axis) {
+std::vector<double> getSteps(const Axis& axis) {
     std::vector<double> steps;
     for (uint64_t i = 0; i < axis.stepCount(); ++i) steps.push_back(axis.step(i));
     return steps;
@@ -26,14 +26,14 @@ std::vector<double> stepsOf(const Axis& axis) {
 
 TEST(SweepTest, StepsGoEvenlyFromOneValueToTheOther) {
     Axis axis;
-    EXPECT_THAT(stepsOf(axis), ElementsAre(0));
+    EXPECT_THAT(getSteps(axis), ElementsAre(0));
     axis.from = -1, axis.to = 1, axis.count = 3;
-    EXPECT_THAT(stepsOf(axis), ElementsAre(-1, 0, 1));
+    EXPECT_THAT(getSteps(axis), ElementsAre(-1, 0, 1));
     axis.count = 1;
-    EXPECT_THAT(stepsOf(axis), ElementsAre(-1));
+    EXPECT_THAT(getSteps(axis), ElementsAre(-1));
     axis = {};
     axis.values = {4, 2};
-    EXPECT_THAT(stepsOf(axis), ElementsAre(4, 2));
+    EXPECT_THAT(getSteps(axis), ElementsAre(4, 2));
 }
 
 TEST(SweepTest, AHugeGridDoesNotOverflow) {
@@ -85,25 +85,25 @@ TEST(SweepTest, AStarMatchesAnyLetters) {
 }
 
 TEST(SweepTest, RefusesContradictoryKeys) {
-    EXPECT_THAT(test::refusalsOf(Axis{}), testing::SizeIs(1));
+    EXPECT_THAT(test::countRefusals(Axis{}), testing::SizeIs(1));
     Axis axis = drawnFrom({4, 2}, {});
-    EXPECT_THAT(test::refusalsOf(axis), ElementsAre("uniform: must be [min, max], the min not above the max"));
+    EXPECT_THAT(test::countRefusals(axis), ElementsAre("uniform: must be [min, max], the min not above the max"));
     axis = drawnFrom({}, {1, -1});
-    EXPECT_THAT(test::refusalsOf(axis),
+    EXPECT_THAT(test::countRefusals(axis),
                 ElementsAre("normal: must be two numbers, [mean, deviation], the deviation not below 0"));
     axis = {};
     axis.from = 1;
-    EXPECT_THAT(test::refusalsOf(axis), ElementsAre("needs all of from, to and count for steps"));
+    EXPECT_THAT(test::countRefusals(axis), ElementsAre("needs all of from, to and count for steps"));
     Split split;
     split.val = 0.2;
-    EXPECT_THAT(test::refusalsOf(split), ElementsAre("adds up to 1.2; train, val and test must add up to 1"));
+    EXPECT_THAT(test::countRefusals(split), ElementsAre("adds up to 1.2; train, val and test must add up to 1"));
     ObjectGroup group;
     group.names = {"a"};
     group.x = {0, 1};
-    EXPECT_THAT(test::refusalsOf(group), ElementsAre("y: is missing; give [min, max]"));
+    EXPECT_THAT(test::countRefusals(group), ElementsAre("y: is missing; give [min, max]"));
     TrajectoryPoses poses;
     poses.file = "a.csv";
-    EXPECT_THAT(test::refusalsOf(poses),
+    EXPECT_THAT(test::countRefusals(poses),
                 ElementsAre("must have one of count and period, which set the number of poses"));
 }
 

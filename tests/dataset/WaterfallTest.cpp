@@ -142,12 +142,12 @@ TEST_F(WaterfallTest, ScaledObjectsHaveTheRecordedSize) {
 /** Along a trajectory, a run continues from its pose and must end before the trajectory. */
 TEST_F(WaterfallTest, ARunFollowsATrajectory) {
     writeFile(folder_ / "t.csv", "time,x,y,z,qw,qx,qy,qz\n0,2,-14,-5,1,0,0,0\n20,32,-14,-5,1,0,0,0\n");
-    const auto sweepOf = [&](const std::string& poses, const std::string& more) {
+    const auto makeSweep = [&](const std::string& poses, const std::string& more) {
         writeFile(folder_ / "sweep.yml", "poses: {trajectory: {file: t.csv, " + poses +
                                              "}}\nlines: {count: 50, period: 0.1" + more +
                                              "}\npicture: {shape: waterfall}\nclasses: {rock: rock_*}\n");
     };
-    sweepOf("period: 5", "");
+    makeSweep("period: 5", "");
     const auto files = made("out", {"--format", "npz"});
     EXPECT_EQ(std::ranges::count_if(files, [](const auto& each) { return each.first.ends_with(".npz"); }), 4)
         << "at 0, 5, 10 and 15 s";
@@ -166,11 +166,11 @@ TEST_F(WaterfallTest, ARunFollowsATrajectory) {
         EXPECT_EQ(outcome.code, 2);
         return outcome.err;
     };
-    sweepOf("count: 2, from: 16", "");
+    makeSweep("count: 2, from: 16", "");
     EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines: take 4.9 s; the trajectory from 16 to 20 s is shorter"));
-    sweepOf("count: 2", ", speed: 1");
+    makeSweep("count: 2", ", speed: 1");
     EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines.speed: is given with a trajectory, which has its own"));
-    sweepOf("count: 2", ", motion: {heave_m: 1}");
+    makeSweep("count: 2", ", motion: {heave_m: 1}");
     EXPECT_THAT(refused(), HasSubstr("lines.motion: is given with a trajectory; give it as poses.trajectory.motion"));
 }
 

@@ -20,7 +20,7 @@ TEST_F(AllocationTest, AllocatesNothingAfterTheFirstPings) {
           std::pair{"/points", ros::PointCloud2::type_name}})
         readers.push_back(
             std::make_unique<Reader>(node, ddsTopic(topic), type, "", Quality{}, std::function<void()>{}));
-    const types::SonarPtr ping = pingOf(32, 100);
+    const types::SonarPtr ping = makePing(32, 100);
     Bytes bytes;
     uint64_t sender = 0;
     size_t taken = 0;

@@ -53,7 +53,7 @@ TEST_F(DomainTest, TakesTheGivenDomainOrThatOfTheEnvironment) {
     EXPECT_EQ(domainId({}), 0u);
     for (const char* bad : {"x", "-1", "233", "1 ", "99999999999999"}) {
         setenv("ROS_DOMAIN_ID", bad, 1);
-        EXPECT_THAT(test::errorOf<types::ConfigError>([] { domainId({}); }),
+        EXPECT_THAT(test::computeError<types::ConfigError>([] { domainId({}); }),
                     HasSubstr("ROS_DOMAIN_ID is " + std::string(bad)))
             << bad;
     }
@@ -64,11 +64,11 @@ TEST_F(DomainTest, ReportsWhyADomainCannotBeJoined) {
            "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"nothere0\"/></Interfaces></General>"
            "</Domain></CycloneDDS>",
            1);
-    const std::string text = test::errorOf<types::ConfigError>([] { joinDomain(domainId({}), ""); });
+    const std::string text = test::computeError<types::ConfigError>([] { joinDomain(domainId({}), ""); });
     EXPECT_THAT(text, HasSubstr("DDS domain " + std::to_string(domainId({})) + " cannot be joined"));
     EXPECT_THAT(text, HasSubstr("nothere0"));
     setenv("CYCLONEDDS_URI", "<CycloneDDS><Domain><Nonsense/></Domain></CycloneDDS>", 1);
-    EXPECT_THAT(test::errorOf<types::ConfigError>([] { joinDomain(domainId({}), ""); }), HasSubstr("Nonsense"));
+    EXPECT_THAT(test::computeError<types::ConfigError>([] { joinDomain(domainId({}), ""); }), HasSubstr("Nonsense"));
 }
 
 TEST_F(DomainTest, TheEnvironmentOfRosSetsTheDiscovery) {
@@ -91,9 +91,9 @@ TEST_F(DomainTest, TheEnvironmentOfRosSetsTheDiscovery) {
                 AllOf(HasSubstr(no_multicast), HasSubstr("<Peers><Peer address=\"localhost\"/></Peers>")));
     EXPECT_THAT(settings("OFF", "10.0.0.2", ""),
                 AllOf(HasSubstr(no_multicast), HasSubstr("<Tag>ros_discovery_off_"), Not(HasSubstr("Peer address"))));
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { settings("LOCAL", "", ""); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { settings("LOCAL", "", ""); }),
                 HasSubstr("ROS_AUTOMATIC_DISCOVERY_RANGE is LOCAL; must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT"));
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { settings("", "\"/><x", ""); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { settings("", "\"/><x", ""); }),
                 HasSubstr("ROS_STATIC_PEERS is \"/><x"));
 }
 

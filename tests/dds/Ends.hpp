@@ -68,7 +68,7 @@ struct Subscribing {
         return pose;
     }
     /** Returns a peer's first pose after its greetings, which are at the origin. */
-    std::optional<types::Pose> firstOf(const Peer& peer) {
+    std::optional<types::Pose> findFirst(const Peer& peer) {
         auto pose = next();
         if (pose) peer.begin();
         while (pose && pose->position == glm::dvec3(0)) pose = next();
@@ -80,7 +80,7 @@ struct Subscribing {
 };
 
 /** Returns a fan of noise, stamped now. */
-inline types::SonarPtr pingOf(uint32_t beams, uint32_t bins) {
+inline types::SonarPtr makePing(uint32_t beams, uint32_t bins) {
     auto ping = std::make_shared<types::Sonar>();
     ping->resize(bins, beams);
     ping->time = framework::wallClock();
@@ -95,7 +95,7 @@ inline types::SonarPtr pingOf(uint32_t beams, uint32_t bins) {
 
 /** A ping without a stamp, which a listening peer acknowledges with "met" and does not count. */
 inline types::SonarPtr greeting() {
-    auto ping = std::make_shared<types::Sonar>(*pingOf(4, 4));
+    auto ping = std::make_shared<types::Sonar>(*makePing(4, 4));
     ping->time = {};
     return ping;
 }

@@ -33,7 +33,7 @@ TEST_F(FastDdsTest, ReceivesEveryPingOf128KilobytesAt40Hertz) {
                                            [](PublisherConfig& config) { config.depth = 200; });  // a busy machine
     Peer peer({program, "listen", "marine_acoustic_msgs::msg::dds_::ProjectedSonarImage_", "/auv/sonar", "240", "200"});
     ASSERT_TRUE(peer.meets([&] { publishing.send(greeting()); }));
-    const types::SonarPtr ping = pingOf(256, 500);
+    const types::SonarPtr ping = makePing(256, 500);
     for (int i = 0; i < 200; ++i) {
         publishing.send(ping);
         std::this_thread::sleep_for(std::chrono::milliseconds(25));
@@ -63,7 +63,7 @@ TEST_F(FastDdsTest, SendsPosesWithoutLoss) {
     });
     Peer peer({program, "send", "nav_msgs::msg::dds_::Odometry_", "/auv/odometry", greeting, odometry, "100"});
     for (int i = 0; i < 100; ++i) {
-        const auto pose = i == 0 ? subscribing.firstOf(peer) : subscribing.next();
+        const auto pose = i == 0 ? subscribing.findFirst(peer) : subscribing.next();
         ASSERT_TRUE(pose) << i;
         EXPECT_EQ(pose->position, glm::dvec3(2, -1, 3));  // from east, north, up
     }

@@ -41,7 +41,7 @@ TEST_F(PeerTest, ReceivesEveryPingOfAMegabyteAt40Hertz) {
     Peer peer("listen ProjectedSonarImage /auv/sonar 240 200");
     ASSERT_TRUE(peer.meets([&] { publishing.send(greeting()); }));
     constexpr int count = 200;  // 5 s
-    auto ping = std::make_shared<types::Sonar>(*pingOf(256, 1000));
+    auto ping = std::make_shared<types::Sonar>(*makePing(256, 1000));
     sendAll(count, 40, [&] {
         ping->time = framework::wallClock();
         publishing.send(ping);
@@ -92,7 +92,7 @@ TEST_F(PeerTest, SendsPosesWithoutLoss) {
     Peer peer("odometry /auv/odometry 200 40 --greet");
     std::vector<double> latencies;  // [ms]
     for (int i = 0; i < 200; ++i) {
-        const auto pose = i == 0 ? subscribing.firstOf(peer) : subscribing.next();
+        const auto pose = i == 0 ? subscribing.findFirst(peer) : subscribing.next();
         ASSERT_TRUE(pose) << i;
         latencies.push_back((framework::wallClock() - pose->time).seconds() * 1e3);
         EXPECT_EQ(pose->position, glm::dvec3(2, -i, -3));  // from east, north, up
@@ -137,7 +137,7 @@ TEST_F(PeerTest, ReadsEveryTypeThatIsSent) {
     Publishing<types::SonarPtr> publishing(topics);
     for (const auto& [name, type] : types)
         peers.push_back(std::make_unique<Peer>(std::string("listen ") + name + " /" + name + " 240 1"));
-    const types::SonarPtr ping = pingOf(16, 50);
+    const types::SonarPtr ping = makePing(16, 50);
     ASSERT_TRUE(becomesTrue([&] {
         publishing.send(ping);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -56,7 +56,7 @@ struct Sonar : framework::TaskContext {
     framework::OutputPort<types::SonarPtr> ping{this, "ping", ""};
 };
 
-std::string textOf(const types::Diagnostics& diagnostics) {
+std::string toText(const types::Diagnostics& diagnostics) {
     std::string text;
     for (const types::Diagnostic& diagnostic : diagnostics) text += diagnostic.path + " " + diagnostic.message + "\n";
     return text;
@@ -72,7 +72,7 @@ TEST_F(PublisherTaskTest, SendsAPingAsEachMessageThatItCanBecome) {
                                             topicOut("in", "/points", message_type<ros::PointCloud2>),
                                             topicOut("in", "/scan", message_type<ros::LaserScan>),
                                             topicOut("in", "/clock", message_type<ros::Clock>)});
-    const types::SonarPtr ping = pingOf(16, 50);
+    const types::SonarPtr ping = makePing(16, 50);
     const auto send = [&] { publishing.send(ping); };
     const auto image = received<ros::ProjectedSonarImage>("/image", send);
     EXPECT_EQ(image.image.beam_count, 16u);
@@ -183,7 +183,7 @@ TEST_F(PublisherTaskTest, PublishesTheMountToLateSubscribersAndTheFrequencyInPin
     EXPECT_NEAR(mounts.transforms[1].transform.rotation.x, std::sqrt(0.5), 1e-15);
 
     const auto send = [&] {
-        sonar.ping.write(pingOf(4, 4));
+        sonar.ping.write(makePing(4, 4));
         task.update();
     };
     EXPECT_EQ(received<ros::ProjectedSonarImage>("/image", send).ping_info.frequency, 750e3f);
@@ -194,11 +194,11 @@ TEST_F(PublisherTaskTest, WarnsOnceOfAMessageThatFastDdsWouldLose) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/large", message_type<ros::ProjectedSonarImage>)});
     std::vector<std::string> reported;
     publishing.task.environment().warn = [&](const std::string& text) { reported.push_back(text); };
-    received<ros::ProjectedSonarImage>("/large", [&] { publishing.send(pingOf(16, 50)); });
+    received<ros::ProjectedSonarImage>("/large", [&] { publishing.send(makePing(16, 50)); });
     EXPECT_THAT(reported, testing::IsEmpty());
     Reader reader(node, ddsTopic("/large"), ros::ProjectedSonarImage::type_name, "", {}, {});
-    EXPECT_TRUE(becomesTrue([&] { return publishing.send(pingOf(256, 500)), !reported.empty(); }));
-    publishing.send(pingOf(256, 500));
+    EXPECT_TRUE(becomesTrue([&] { return publishing.send(makePing(256, 500)), !reported.empty(); }));
+    publishing.send(makePing(256, 500));
     ASSERT_EQ(reported.size(), 1u);
     EXPECT_THAT(reported[0],
                 HasSubstr("/large: its messages of 520 kB are larger than Linux's receive buffers (213 kB)"));
@@ -212,7 +212,7 @@ TEST_F(PublisherTaskTest, TheRemedyForALargeMessageDiffersFromThePresentSetting)
     std::vector<std::string> reported;
     publishing.task.environment().warn = [&](const std::string& text) { reported.push_back(text); };
     Reader reader(node, ddsTopic("/large"), ros::ProjectedSonarImage::type_name, "", {}, {});
-    EXPECT_TRUE(becomesTrue([&] { return publishing.send(pingOf(512, 500)), !reported.empty(); }));
+    EXPECT_TRUE(becomesTrue([&] { return publishing.send(makePing(512, 500)), !reported.empty(); }));
     ASSERT_EQ(reported.size(), 1u);
     EXPECT_THAT(reported[0], testing::AllOf(HasSubstr("lose most of them; raise"), testing::Not(HasSubstr("dtype"))));
 }
@@ -233,7 +233,7 @@ TEST_F(PublisherTaskTest, SendsAPictureAsAnImage) {
 
 TEST_F(PublisherTaskTest, MakesNoMessageForATopicWithoutReaders) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/nobody", message_type<ros::LaserScan>)});
-    auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
+    auto crooked = std::make_shared<types::Sonar>(*makePing(4, 4));
     crooked->bearings[1] = types::Angle{0.1234};  // cannot become a LaserScan
     publishing.send(crooked);
     EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());
@@ -244,7 +244,7 @@ TEST_F(PublisherTaskTest, DropsAndCountsSamplesThatDoNotFitTheMessage) {
                                             topicOut("in", "/image", message_type<ros::RawSonarImage>)});
     std::vector<std::string> reported;
     publishing.task.environment().warn = [&](const std::string& text) { reported.push_back(text); };
-    auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
+    auto crooked = std::make_shared<types::Sonar>(*makePing(4, 4));
     crooked->bearings[1] = types::Angle{0.1234};
     Reader reader(node, ddsTopic("/scan"), ros::LaserScan::type_name, "", {}, {});
     ASSERT_TRUE(becomesTrue([&] { return publishing.send(crooked), !publishing.task.notices().empty(); }));
@@ -306,9 +306,9 @@ TEST_F(PublisherTaskTest, ReportsWrongPortsAndTypesBeforeTheRun) {
     ASSERT_NE(task.makeInput("ping", sonar.port), nullptr);
     types::Diagnostics diagnostics;
     task.check(diagnostics);
-    EXPECT_THAT(textOf(diagnostics), HasSubstr("topics[0].type is nav_msgs/Odometry; "));
-    EXPECT_THAT(textOf(diagnostics), HasSubstr("can be marine_acoustic_msgs/ProjectedSonarImage, "));
-    EXPECT_THAT(textOf(diagnostics), HasSubstr("topics[1].port is none; no connection leads to publisher.none"));
+    EXPECT_THAT(toText(diagnostics), HasSubstr("topics[0].type is nav_msgs/Odometry; "));
+    EXPECT_THAT(toText(diagnostics), HasSubstr("can be marine_acoustic_msgs/ProjectedSonarImage, "));
+    EXPECT_THAT(toText(diagnostics), HasSubstr("topics[1].port is none; no connection leads to publisher.none"));
 }
 
 TEST_F(PublisherTaskTest, ReportsNamesThatRosRefuses) {
@@ -319,7 +319,7 @@ TEST_F(PublisherTaskTest, ReportsNamesThatRosRefuses) {
                      topicOut("x", "a-b", message_type<ros::Image>)};
     types::Diagnostics diagnostics;
     config.check(diagnostics);
-    EXPECT_EQ(diagnostics.size(), 5u) << textOf(diagnostics);
+    EXPECT_EQ(diagnostics.size(), 5u) << toText(diagnostics);
 }
 
 TEST_F(PublisherTaskTest, TopicsAndFramesGetTheNamespaceOfTheVehicle) {
@@ -351,7 +351,7 @@ TEST_F(PublisherTaskTest, TopicsAndFramesGetTheNamespaceOfTheVehicle) {
         {topicOut("in", "sonar", message_type<ros::ProjectedSonarImage>),
          topicOut("in", "/scan", message_type<ros::LaserScan>)},
         [](PublisherConfig& config) { config.frame_id = "fls"; }, names);
-    const auto send = [&] { publishing.send(pingOf(16, 50)); };
+    const auto send = [&] { publishing.send(makePing(16, 50)); };
     EXPECT_EQ(received<ros::ProjectedSonarImage>("/auv1/sonar", send).header.frame_id, "auv1/fls");
     EXPECT_EQ(received<ros::LaserScan>("/scan", send).header.frame_id, "auv1/fls");
     EXPECT_THAT(publishing.task.notices(),
@@ -368,7 +368,7 @@ TEST_F(PublisherTaskTest, RefusesRemapsToTheSameTopic) {
     task.config.set(config);
     EXPECT_FALSE(task.configure());
     ASSERT_TRUE(task.configError());
-    EXPECT_THAT(textOf(task.configError()->diagnostics()), HasSubstr("topics[1].topic is /b a second time"));
+    EXPECT_THAT(toText(task.configError()->diagnostics()), HasSubstr("topics[1].topic is /b a second time"));
 }
 
 TEST_F(PublisherTaskTest, PublishesTheMountBetweenPrefixedFrames) {

@@ -481,7 +481,7 @@ TEST_F(Ros2RunTest, DiagnosticsAndTheLogReportEachTask) {
     ASSERT_GE(found["rt/diagnostics"].size(), 4u);
     const json& status = found["rt/diagnostics"].back()["status"];
     ASSERT_EQ(status.size(), 4u);
-    const auto valueOf = [&](const json& task, const std::string& key) {
+    const auto getValue = [&](const json& task, const std::string& key) {
         for (const json& value : task["values"])
             if (value["key"] == key) return std::stod(value["value"].get<std::string>());
         ADD_FAILURE() << key << task;
@@ -489,11 +489,11 @@ TEST_F(Ros2RunTest, DiagnosticsAndTheLogReportEachTask) {
     };
     EXPECT_EQ(status[0]["name"], "auv/ros: vehicle");
     EXPECT_EQ(status[0]["hardware_id"], "pose::TrajectoryTask");
-    EXPECT_NEAR(valueOf(status[0], "pose rate [1/s]"), 10, 9);  // of a busy machine
+    EXPECT_NEAR(getValue(status[0], "pose rate [1/s]"), 10, 9);  // of a busy machine
     EXPECT_EQ(status[2]["name"], "auv/ros: sonar");
-    EXPECT_GT(valueOf(status[2], "ping rate [1/s]"), 0);
-    EXPECT_GT(valueOf(status[2], "last cycle [ms]"), 0);
-    EXPECT_GE(valueOf(status[2], "missed periods"), 0);
+    EXPECT_GT(getValue(status[2], "ping rate [1/s]"), 0);
+    EXPECT_GT(getValue(status[2], "last cycle [ms]"), 0);
+    EXPECT_GE(getValue(status[2], "missed periods"), 0);
     EXPECT_EQ(status[3]["message"], "Running") << status[3];
     EXPECT_EQ(status[3]["level"], 0);
     std::string texts;

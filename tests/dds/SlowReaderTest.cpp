@@ -23,7 +23,7 @@ TEST_F(SlowReaderTest, APeerThatHangsBlocksNothing) {
     for (const Peer* peer : {&hanging, &good}) ASSERT_TRUE(peer->meets([&] { publishing.send(greeting()); }));
     std::atomic<int> sent{0};
     auto all = std::async(std::launch::async, [&] {
-        auto ping = std::make_shared<types::Sonar>(*pingOf(256, 1000));
+        auto ping = std::make_shared<types::Sonar>(*makePing(256, 1000));
         for (; sent < 120; ++sent) {
             if (sent == 20) hanging.signal(SIGSTOP);
             ping->time = framework::wallClock();

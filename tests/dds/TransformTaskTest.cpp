@@ -128,13 +128,13 @@ TEST_F(TransformTaskTest, CanStampTransformsWithTheirArrival) {
 TEST_F(TransformTaskTest, ReportsWrongPropertiesWithTheirPlace) {
     TransformTask other("other");
     TransformConfig config;
-    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::StartsWith("frames: ")));
+    EXPECT_THAT(test::countRefusals(config), testing::ElementsAre(testing::StartsWith("frames: ")));
     config.frames = {{"a", "map"}, {"a", "base_link"}};
     config.topic = "a b";
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 testing::ElementsAre(testing::StartsWith("topic: "), HasSubstr("is map, the world_frame_id itself"),
                                      HasSubstr("is a a second time")));
     other.config.set(config);
     other.environment().lockstep = true;
-    EXPECT_THAT(test::refusalsOf(other), testing::Contains(HasSubstr("set schedule: realtime")));
+    EXPECT_THAT(test::countRefusals(other), testing::Contains(HasSubstr("set schedule: realtime")));
 }

@@ -19,7 +19,7 @@ namespace {
 constexpr double ground_range = 12;  ///< Ground distance of a wire along the track [m].
 constexpr int lines = output::WaterfallImage::history;
 
-double altitudeOf(int line) { return 7 + 3 * std::sin(line / 40.0); }
+double computeAltitude(int line) { return 7 + 3 * std::sin(line / 40.0); }
 
 /** A vehicle that rises and sinks by 3 m above a wire. Lines begin with the outgoing pulse, the strongest sample. */
 std::vector<char> wireXtf() {
@@ -33,7 +33,7 @@ std::vector<char> wireXtf() {
     std::vector<char> bytes = recordings::xtfHeader(format, ping);
     for (int i = 0; i < lines; ++i) {
         recordings::XtfPing record;
-        record.altitude = altitudeOf(i);
+        record.altitude = computeAltitude(i);
         record.number = static_cast<uint32_t>(i);
         record.sonar.position = {0.1 * i, 0, -2};  // so that the log has the sonar's poses
         ping.time = {1'700'000'000'000'000 + i * 100'000};
@@ -108,7 +108,7 @@ TEST_F(AltitudeRunTest, AnXtfFileOfAReplayHasTheAltitudesOfTheRecording) {
     recordings::XtfFile file(folder_ / "out/again.xtf");
     int count = 0;
     for (auto line = file.next(); line; line = file.next(), ++count)
-        EXPECT_NEAR(line->altitude, altitudeOf(count), 1e-6) << count;
+        EXPECT_NEAR(line->altitude, computeAltitude(count), 1e-6) << count;
     EXPECT_EQ(count, lines);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 json backscatter(std::vector<std::string> options) {
     options.insert(options.begin(), "backscatter");
-    return jsonOf(TestFolder(), options);
+    return makeJson(TestFolder(), options);
 }
 
 TEST(BackscatterCommandTest, ASeabedHasTheStrengthsOfTheReport) {

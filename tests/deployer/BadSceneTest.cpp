@@ -24,13 +24,13 @@ TEST(BadSceneTest, AMissingFileIsNamed) {
 }
 
 TEST(BadSceneTest, ReportsAnIndexOutOfRangeWithItsPrimitive) {
-    expectRefused(WallFolder(wall_deployment, gltfOf({10, -20, 20, 10, -20, -20, 10, 20, -20}, {0, 1, 3})), "mesh");
+    expectRefused(WallFolder(wall_deployment, makeGltf({10, -20, 20, 10, -20, -20, 10, 20, -20}, {0, 1, 3})), "mesh");
 }
 
 TEST(BadSceneTest, VerticesThatAreNaNAreDroppedWithANotice) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const WallFolder folder(wall_deployment,
-                            gltfOf({10, -20, 20, 10, -20, -20, 10, 20, -20, nan, 20, 20}, {0, 1, 2, 0, 2, 3}));
+                            makeGltf({10, -20, 20, 10, -20, -20, 10, 20, -20, nan, 20, 20}, {0, 1, 2, 0, 2, 3}));
     const Outcome outcome = folder.run();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("notice: scene: "));

@@ -25,7 +25,7 @@ struct BeamCommandTest : testing::Test {
         options.insert(options.begin(), {"beam", "sonar.yml"});
         return callInsonify(folder_, options);
     }
-    json cutsOf(const std::string& properties) {
+    json getCuts(const std::string& properties) {
         const Outcome outcome = call(properties, {"--json"});
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         return json::parse(outcome.out);
@@ -35,7 +35,7 @@ struct BeamCommandTest : testing::Test {
 };
 
 TEST_F(BeamCommandTest, PrintsWidthFirstNullAndSidelobesTwoWay) {
-    const json cuts = cutsOf(
+    const json cuts = getCuts(
         "beam_pattern: {transmit: {elevation: {width_deg: 12}}, "
         "receive: {azimuth: {weighting: hann, width_deg: 1.5}, elevation: {width_deg: 12}}}");
     const json& azimuth = cuts["azimuth"];
@@ -53,7 +53,7 @@ TEST_F(BeamCommandTest, PrintsWidthFirstNullAndSidelobesTwoWay) {
 }
 
 TEST_F(BeamCommandTest, WithoutAPatternABeamIsABox) {
-    const json cuts = cutsOf("beam_height_deg: 14");
+    const json cuts = getCuts("beam_height_deg: 14");
     EXPECT_NEAR(cuts["azimuth"]["width_3db_deg"], 1, 1e-9);
     EXPECT_NEAR(cuts["elevation"]["width_3db_deg"], 14, 1e-9);
     EXPECT_TRUE(cuts["azimuth"]["peak_sidelobe_db"].is_null());

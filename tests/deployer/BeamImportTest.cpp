@@ -66,7 +66,7 @@ std::string drivenBy(const std::string& device) {
 }
 
 /** Returns the same with an altimeter. */
-std::string sounderOf(std::string text) {
+std::string getSounder(std::string text) {
     text = replaced(text, "ScanningSonarTask", "AltimeterTask");
     text = replaced(text, "bin_count: 600", "bin_count: 200");
     if (text.find("head:") == text.npos) return text;
@@ -74,8 +74,8 @@ std::string sounderOf(std::string text) {
 }
 
 struct BeamImportTest : testing::Test {
-    /** Writes dive.bin of the pings of a run. @param messageOf returns a ping's message */
-    void record(const std::string& deployment, int count, auto&& messageOf) const {
+    /** Writes dive.bin of the pings of a run. @param makeMessage returns a ping's message */
+    void record(const std::string& deployment, int count, auto&& makeMessage) const {
         writeFile(folder_ / "wall.yml", deployment);
         ASSERT_THAT(folder_.run({"--pings", std::to_string(count)}), succeeds());
         std::vector<test::RecordedBytes> parts{test::pingViewerHeader()};
@@ -84,7 +84,7 @@ struct BeamImportTest : testing::Test {
                 device::Bytes codes;
                 for (const float bin : ping.bins) codes.push_back(static_cast<uint8_t>(bin));
                 parts.push_back(test::pingViewerRecord(test::pingViewerTime(ping.time.seconds()),
-                                                       pingBytes(messageOf(ping, std::move(codes)))));
+                                                       pingBytes(makeMessage(ping, std::move(codes)))));
             });
         writeBytes(folder_ / "dive.bin", test::joinedBytes(parts));
     }
@@ -144,13 +144,13 @@ TEST_F(BeamImportTest, AScanOfAPing360IsRenderedAgainAtItsBearings) {
 }
 
 TEST_F(BeamImportTest, ProfilesOfAPing1DAreRenderedAgainAndItsDistancesAreRanges) {
-    record(sounderOf(beam_deployment), 5, [](const types::Sonar& ping, device::Bytes codes) {
+    record(getSounder(beam_deployment), 5, [](const types::Sonar& ping, device::Bytes codes) {
         const auto distance = static_cast<uint32_t>(std::lround(1000 * (10 - 0.4 * (ping.time.seconds() - 1))));
         return device::Ping1dProfile{{distance, 95, 100, 1, 0, 18'000, 0}, std::move(codes)};
     });
     for (const bool is_driven : {true, false}) {
         SCOPED_TRACE(is_driven);
-        std::string deployment = sounderOf(is_driven ? drivenBy("device::Ping1dTask") : beam_deployment);
+        std::string deployment = getSounder(is_driven ? drivenBy("device::Ping1dTask") : beam_deployment);
         // The least gain of the device is 0.6 of the amplitude.
         if (is_driven) deployment = replaced(deployment, "full_scale_db: -20", "full_scale_db: -24.436975");
         writeFile(folder_ / "wall.yml", deployment);
@@ -184,7 +184,7 @@ TEST_F(BeamImportTest, WhatCannotBeComparedIsOneErrorWithTheRemedy) {
     EXPECT_THAT(import(),
                 isRefused(HasSubstr("tasks.sonar: has no connection to `settings`, by which each recorded "
                                     "ping gets its bearing; connect the `settings` of a device::Ping360Task")));
-    writeFile(folder_ / "wall.yml", sounderOf(beam_deployment));
+    writeFile(folder_ / "wall.yml", getSounder(beam_deployment));
     EXPECT_THAT(import(), isRefused(HasSubstr("tasks.receiver: has no input from a sonar::ScanningSonarTask, whose "
                                               "pings are recorded")));
     EXPECT_FALSE(fs::exists(folder_ / "dive.0.log"));

@@ -15,18 +15,18 @@ using insonify::types::Sonar;
 namespace {
 
 /** Returns the bin of target k of n: all bins differ, neighbours are far apart, and the nearest is at 5 m. */
-size_t binOf(size_t k, size_t n) { return 50 + 37 * k % n; }
+size_t findBin(size_t k, size_t n) { return 50 + 37 * k % n; }
 
 /** A ball of 7 cm at each of these bearings, at three elevations, whose echo is within one bin of 0.1 m. */
 GeometryPtr targetsAt(const std::vector<double>& bearings_deg) {
     std::vector<glm::dvec3> positions;
     for (size_t k = 0; k < bearings_deg.size(); ++k) {
         const double bearing = radians(bearings_deg[k]), elevation = radians(4.0 * static_cast<double>(k % 3) - 4);
-        const double range = 0.1 * (static_cast<double>(binOf(k, bearings_deg.size())) + 0.9);
+        const double range = 0.1 * (static_cast<double>(findBin(k, bearings_deg.size())) + 0.9);
         positions.push_back(range * glm::dvec3(std::cos(elevation) * std::cos(bearing),
                                                std::cos(elevation) * std::sin(bearing), std::sin(elevation)));
     }
-    return sceneOf(std::vector(positions.size(), sphere(0.07f, 16)), 0, positions);
+    return makeScene(std::vector(positions.size(), sphere(0.07f, 16)), 0, positions);
 }
 
 std::vector<double> bearingsFrom(double first_deg, double step_deg, size_t count) {
@@ -51,7 +51,7 @@ void expectTargetInEachBeam(const std::string& fan, const std::vector<double>& b
                                       fan + "}");
     ASSERT_EQ(ping.beam_count, bearings_deg.size());
     for (size_t k = 0; k < bearings_deg.size(); ++k)
-        expectTarget(ping, k, bearings_deg[k], binOf(k, bearings_deg.size()));
+        expectTarget(ping, k, bearings_deg[k], findBin(k, bearings_deg.size()));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void expectTargetInEachBeam(const std::string& fan, const std::vector<double>& b
 TEST(BearingRunTest, AWallSeenToPortIsLoggedToPort) {
     // Along the x axis from 4 to 12 m, at y = 6 m: to port. glTF is y-up, so that its z is -6.
     const WallFolder folder(replaced(wall_deployment, "field_of_view_deg: 60", "field_of_view_deg: 140"),
-                            gltfOf({4, -1, -6, 12, -1, -6, 12, 1, -6, 4, 1, -6}, {0, 1, 2, 0, 2, 3}));
+                            makeGltf({4, -1, -6, 12, -1, -6, 12, 1, -6, 4, 1, -6}, {0, 1, 2, 0, 2, 3}));
     ASSERT_EQ(folder.run({"--pings", "1"}).code, 0);
     const Sonar ping = exportedPings(folder, "out/wall.0.log", "sonar.ping").at(0);
     const double half_beam = radians(140.0 / 16 / 2), near_end = std::atan2(6, 4), far_end = std::atan2(6, 12);
@@ -99,12 +99,12 @@ TEST(BearingRunTest, ATargetAtEveryBearingOfATurningHeadIsInItsPingAndBin) {
         quality: {rows: 512, columns_per_beam: 16}})",
                     "{yaw_deg: 0}", 120);
     ASSERT_EQ(pings.size(), 120u);
-    for (size_t k = 0; k < pings.size(); ++k) expectTarget(pings[k], 0, bearings[k], binOf(k, 120));
+    for (size_t k = 0; k < pings.size(); ++k) expectTarget(pings[k], 0, bearings[k], findBin(k, 120));
 }
 
 TEST(BearingRunTest, AMountTurnedToPortMovesTargetsToStarboard) {
     const Sonar ping = loggedPing(*targetsAt({30}), R"({speed_of_sound: 1000, range: 20, bin_count: 200,
         field_of_view_deg: 120, beam_count: 60, quality: {rows: 512, columns_per_beam: 8}})",
                                   "{yaw_deg: 43}");
-    expectTarget(ping, 23, -13, binOf(0, 1));
+    expectTarget(ping, 23, -13, findBin(0, 1));
 }

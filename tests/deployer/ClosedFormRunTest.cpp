@@ -14,17 +14,17 @@ using insonify::types::Sonar;
 
 namespace {
 
-GeometryPtr bottom() { return sceneOf({ground(-5)}); }
+GeometryPtr bottom() { return makeScene({ground(-5)}); }
 
 GeometryPtr ball(double radius, int rings, double distance) {
-    return sceneOf({sphere(static_cast<float>(radius), rings)}, 0, {{distance, 0, 0}});
+    return makeScene({sphere(static_cast<float>(radius), rings)}, 0, {{distance, 0, 0}});
 }
 
 }  // namespace
 
 TEST(ClosedFormRunTest, Form1APlaneOffTheAxisShowsOmegaOverRToTheFifthAndAbsorption) {
     const double distance = 10, edge = 10.4, beta = 2 * 0.5 * std::log(10) / 10;
-    const GeometryPtr scene = sceneOf({disc(distance, std::sqrt(edge * edge - distance * distance))}, -10);
+    const GeometryPtr scene = makeScene({disc(distance, std::sqrt(edge * edge - distance * distance))}, -10);
     const Sonar ping = loggedPing(*scene, R"({speed_of_sound: 1000, range: 12, bin_count: 120, beam_count: 1,
         field_of_view_deg: 55, beam_height_deg: 50, absorption: {db_per_m: 0.5},
         quality: {rows: 512, columns_per_beam: 256}})",
@@ -65,7 +65,7 @@ TEST(ClosedFormRunTest, Form4ASphere) {
 }
 
 TEST(ClosedFormRunTest, Form5AWallInAThinVerticalBeam) {
-    const Sonar ping = loggedPing(*sceneOf({wall(10)}), R"({speed_of_sound: 1000, range: 15, bin_count: 150,
+    const Sonar ping = loggedPing(*makeScene({wall(10)}), R"({speed_of_sound: 1000, range: 15, bin_count: 150,
         beam_count: 1, field_of_view_deg: 1, beam_height_deg: 40, quality: {rows: 512, columns_per_beam: 64}})");
     expectForm(ping, thinBeamOnWall(10, radians(20), radians(1)), thinBeamOnFadingWall(10, radians(20), radians(1)));
 }
@@ -74,18 +74,18 @@ TEST(ClosedFormRunTest, Form7TwoObjectsAtOneRangeDoubleTheEnergyButNotThePublish
     const double up = radians(6);
     const glm::dvec3 high(10 * std::cos(up), 0, 10 * std::sin(up)), low(high.x, 0, -high.z);
     const auto mesh = sphere(0.3f, 64);
-    const GeometryPtr one = sceneOf({mesh}, 0, {high}), two = sceneOf({mesh, mesh}, 0, {high, low});
+    const GeometryPtr one = makeScene({mesh}, 0, {high}), two = makeScene({mesh, mesh}, 0, {high, low});
     const std::string sonar = R"({speed_of_sound: 1000, range: 12, bin_count: 120, beam_count: 1, field_of_view_deg: 10,
         beam_height_deg: 20, quality: {rows: 512, columns_per_beam: 256})";
-    const Form single = formOf(loggedPing(*one, sonar + "}"));
+    const Form single = getForm(loggedPing(*one, sonar + "}"));
     expectForm(loggedPing(*two, sonar + "}"), times(2, single), single);
-    const Form mean = formOf(loggedPing(*one, sonar + ", model: cerqueira2017}"));
+    const Form mean = getForm(loggedPing(*one, sonar + ", model: cerqueira2017}"));
     expectForm(loggedPing(*two, sonar + ", model: cerqueira2017}"), mean, times(2, mean));
 }
 
 TEST(ClosedFormRunTest, Form8AShadowEndsWhereTheRayOverTheTopMeetsTheBottom) {
     // A screen 2 m high is on the bottom, 5 m below the sonar, at a horizontal distance of 15 m.
-    const GeometryPtr scene = sceneOf({ground(-5), quad({15, -50, -5}, {0, 100, 0}, {0, 0, 2})});
+    const GeometryPtr scene = makeScene({ground(-5), quad({15, -50, -5}, {0, 100, 0}, {0, 0, 2})});
     const Sonar ping = loggedPing(*scene, R"({speed_of_sound: 1000, range: 40, bin_count: 400, beam_count: 1,
         field_of_view_deg: 1, beam_height_deg: 60, quality: {rows: 512, columns_per_beam: 64}})");
     size_t end = static_cast<size_t>(std::hypot(15, 5) / 0.1) + 2;

@@ -93,7 +93,7 @@ inline Outcome callInsonify(const TestFolder& folder, std::vector<std::string> a
 }
 
 /** Returns the output of a successful command with --json. */
-inline json jsonOf(const TestFolder& folder, std::vector<std::string> arguments) {
+inline json makeJson(const TestFolder& folder, std::vector<std::string> arguments) {
     arguments.push_back("--json");
     const Outcome outcome = callInsonify(folder, std::move(arguments));
     EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -27,7 +27,7 @@ Outcome inBash(const TestFolder& folder, const std::string& line) {
 
 std::string program() { return insonify::test::program("insonify"); }
 
-std::vector<std::string> linesOf(const std::string& text) {
+std::vector<std::string> getLines(const std::string& text) {
     std::istringstream stream(text);
     std::vector<std::string> lines;
     for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -135,7 +135,7 @@ TEST(ConsoleRunTest, AResultThatCannotBeWrittenIsOneErrorWithExitCode1) {
             const Outcome outcome = inBash(folder, "{ " + wait + program() + " " + command + "; } " + console);
             EXPECT_EQ(outcome.code, 1) << command << " " << console << ": " << outcome;
             EXPECT_THAT(outcome.err, HasSubstr("insonify: the standard output cannot be written: ")) << command;
-            const std::vector<std::string> lines = linesOf(outcome.err);
+            const std::vector<std::string> lines = getLines(outcome.err);
             EXPECT_EQ(std::ranges::count_if(lines, isError), 1) << command << ": " << outcome.err;
         }
 }

@@ -23,7 +23,7 @@ std::vector<std::string> deployments() {
     return names;
 }
 
-std::vector<std::string> runOf(const std::string& deployment, std::vector<std::string> more) {
+std::vector<std::string> getRun(const std::string& deployment, std::vector<std::string> more) {
     std::vector<std::string> words = {"run", deploy / (deployment + ".yml"), "--out", deployment};
     words.insert(words.end(), more.begin(), more.end());
     return words;
@@ -45,7 +45,7 @@ TEST_P(DeploymentFilesTest, RunsForTwoPings) {
     std::vector<std::string> more = {"--pings", "2", "--summary", "summary.json"};
     if (!lockstep)  // a slow machine must not look like a missing vehicle
         more.insert(more.end(), {"--set", "scene.pose_timeout=60"});
-    ASSERT_THAT(callInsonify(folder, runOf(GetParam(), more)), succeeds());
+    ASSERT_THAT(callInsonify(folder, getRun(GetParam(), more)), succeeds());
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 2);
     for (const auto& [connection, lost] : summary["losses"].items())  // in realtime the newest sample is used

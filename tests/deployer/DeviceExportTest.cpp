@@ -146,22 +146,22 @@ TEST_F(DeviceExportTest, BinsThatAreNotCodesAreUnchanged) {
 TEST_F(DeviceExportTest, AnXtfFileIsImportedAgainBinByBin) {
     ASSERT_THAT(callInsonify(folder_, {"log", "import", "out/lines.xtf", "--to", "again.0.log"}),
                 prints("again.0.log: 6 pings as receiver.ping\n"));
-    const auto pingsOf = [&](const char* log) {
+    const auto getPings = [&](const char* log) {
         std::vector<types::Sonar> pings;
         log::openLog(folder_ / log)->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) {
             pings.push_back(ping);
         });
         return pings;
     };
-    const auto posesOf = [&](const char* log) {
+    const auto getPoses = [&](const char* log) {
         std::vector<types::Pose> poses;
         log::openLog(folder_ / log)->forEach<types::Pose>("sonar.pose", [&](const auto& pose, const auto&) {
             poses.push_back(pose);
         });
         return poses;
     };
-    const std::vector<types::Sonar> before = pingsOf("out/lines.0.log"), after = pingsOf("again.0.log");
-    const std::vector<types::Pose> placed = posesOf("out/lines.0.log"), read = posesOf("again.0.log");
+    const std::vector<types::Sonar> before = getPings("out/lines.0.log"), after = getPings("again.0.log");
+    const std::vector<types::Pose> placed = getPoses("out/lines.0.log"), read = getPoses("again.0.log");
     ASSERT_EQ(after.size(), 6u);
     ASSERT_EQ(read.size(), 6u);
     for (size_t i = 0; i < 6; ++i) {

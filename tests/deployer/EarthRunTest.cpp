@@ -44,11 +44,11 @@ connections:
 
 /** A floor of 400 m, 10 m below the origin, in glTF's axes. */
 std::string floorGltf() {
-    return gltfOf({-200, -10, 200, -200, -10, -200, 200, -10, -200, 200, -10, 200}, {0, 2, 1, 0, 3, 2});
+    return makeGltf({-200, -10, 200, -200, -10, -200, 200, -10, -200, 200, -10, 200}, {0, 2, 1, 0, 3, 2});
 }
 
 /** The lines of a CSV file, by the names of its columns. */
-std::vector<std::map<std::string, double>> rowsOf(const std::string& csv) {
+std::vector<std::map<std::string, double>> getRows(const std::string& csv) {
     const auto split = [](const std::string& line) {
         std::vector<std::string> words;
         std::istringstream stream(line);
@@ -85,7 +85,7 @@ struct EarthRunTest : testing::Test {
                                                         std::vector<std::string> more = {}) const {
         more.insert(more.begin(), {"log", "export", log, "--stream", stream, "--to", "export.csv"});
         EXPECT_THAT(call(more), succeeds());
-        return rowsOf(readFile(folder_ / "export.csv"));
+        return getRows(readFile(folder_ / "export.csv"));
     }
     /** Returns the outcome of a check of the deployment with a part replaced. */
     Outcome checked(const std::string& what, const std::string& with) const {

@@ -120,7 +120,7 @@ struct WorkersTest : EngineTest, testing::WithParamInterface<Engine> {
         for (const pid_t pid : {command, worker}) EXPECT_TRUE(kill(pid, SIGKILL) == 0 || errno == ESRCH) << pid;
         kill(waiting, SIGKILL);  // Ray ends what a dead worker has started
     }
-    static size_t linesOf(const std::string& text, const std::string& ending) {
+    static size_t getLines(const std::string& text, const std::string& ending) {
         size_t count = 0;
         for (size_t at = text.find(ending); at != text.npos; at = text.find(ending, at + 1)) ++count;
         return count;
@@ -132,16 +132,16 @@ struct WorkersTest : EngineTest, testing::WithParamInterface<Engine> {
 TEST_P(WorkersTest, AWorkerThatDiesLosesAndDoublesNothing) {
     const Process engine(byWorkers(stallingProgram(), 2), folder_.path());
     const auto isAtIt = [&] {
-        return fs::exists(folder_ / "first/pids") && linesOf(readFile(folder_ / "stdout.txt"), "done\n") > 0;
+        return fs::exists(folder_ / "first/pids") && getLines(readFile(folder_ / "stdout.txt"), "done\n") > 0;
     };
     for (int times = 0; times < 10 && !isAtIt(); ++times) insonify::test::becomesTrue(isAtIt);
     ASSERT_TRUE(isAtIt()) << readFile(folder_ / "stderr.txt");
     killStalled();
     const Outcome outcome = engine.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
-    EXPECT_EQ(linesOf(outcome.out, "done\n"), size_t{shard_count}) << outcome.out;
+    EXPECT_EQ(getLines(outcome.out, "done\n"), size_t{shard_count}) << outcome.out;
     for (int i = 0; i < shard_count; ++i)
-        EXPECT_EQ(linesOf(outcome.out, "shard " + std::to_string(i) + "/6: done\n"), 1u) << outcome.out;
+        EXPECT_EQ(getLines(outcome.out, "shard " + std::to_string(i) + "/6: done\n"), 1u) << outcome.out;
     expectAsByOne();
 }
 
@@ -149,7 +149,7 @@ TEST_P(WorkersTest, AFailingShardIsReportedAndFailsTheWholeRun) {
     fs::remove(folder_ / "wall.gltf");
     const Outcome outcome = Process(byWorkers(insonify::test::program("insonify"), 1), folder_.path()).wait();
     EXPECT_EQ(outcome.code, 1) << outcome.err;
-    EXPECT_EQ(linesOf(outcome.out, ": exit code 2: "), size_t{shard_count}) << outcome.out;
+    EXPECT_EQ(getLines(outcome.out, ": exit code 2: "), size_t{shard_count}) << outcome.out;
     EXPECT_THAT(outcome.out, HasSubstr("wall.gltf"));
 }
 
@@ -203,7 +203,7 @@ TEST_F(EngineTest, ASlurmArrayMakesAllShards) {
 TEST_F(EngineTest, AKubernetesJobIsWellFormedAndItsPodsMakeShards) {
     if (Process({"/usr/bin/python3", "-c", "import jsonschema, yaml"}, folder_.path()).wait().code != 0)
         GTEST_SKIP() << "SKIPPED: python3-jsonschema and python3-yaml are not installed; scripts/setup does that";
-    const auto wordsOf = [&](int index) {
+    const auto splitWords = [&](int index) {
         const Outcome outcome = Process({"/usr/bin/python3", sourceFile("tests/deployer/check_job.py"),
                                          sourceFile("deploy/kubernetes/shards.yml"), std::to_string(index)},
                                         folder_.path())
@@ -213,7 +213,7 @@ TEST_F(EngineTest, AKubernetesJobIsWellFormedAndItsPodsMakeShards) {
     };
     fs::rename(folder_ / "wall.yml", folder_ / "mine.yml");
     for (const int index : {0, 15}) {
-        std::vector<std::string> words = wordsOf(index);
+        std::vector<std::string> words = splitWords(index);
         *(std::ranges::find(words, "--pings") + 1) = "32";
         EXPECT_THAT(callInsonify(folder_, words), succeeds());
     }

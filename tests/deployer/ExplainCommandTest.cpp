@@ -35,7 +35,7 @@ TEST(ExplainCommandTest, PrintsWhatMadeTheBinOfTheWall) {
 
 TEST(ExplainCommandTest, JsonHasTheBinOfThePingAndOfLaterTasks) {
     const WallFolder folder;
-    const json all = jsonOf(folder, explain("2", wall_beam, wall_bin));
+    const json all = makeJson(folder, explain("2", wall_beam, wall_bin));
     EXPECT_EQ(all["sonar"], "sonar");
     EXPECT_EQ(all["ping"], 2);
     EXPECT_EQ(all["intensity"], all["explained"]);
@@ -49,7 +49,7 @@ TEST(ExplainCommandTest, JsonHasTheBinOfThePingAndOfLaterTasks) {
     EXPECT_EQ(all["why_no_surface"], "");
     EXPECT_GT(all["later"]["noise.noisy"], 0);
     EXPECT_NE(all["later"]["noise.noisy"], all["intensity"]);
-    const json before = jsonOf(folder, explain("2", wall_beam, "10"));
+    const json before = makeJson(folder, explain("2", wall_beam, "10"));
     EXPECT_THAT(before["why_no_surface"], HasSubstr("before the first surface of the beam, wall at 9.81 m"));
     EXPECT_TRUE(before["parts"].empty());
 }
@@ -101,8 +101,8 @@ TEST(ExplainCommandTest, OneOfSeveralSonarsIsChosen) {
         EXPECT_THAT(
             callInsonify(folder, explain("1", wall_beam, wall_bin, {"--task", wrong})),
             isRefused(HasSubstr("--task: is " + wrong + ", which is no sonar here; must be one of: sonar, second")));
-    EXPECT_EQ(jsonOf(folder, explain("1", wall_beam, wall_bin, {"--task", "sonar"}))["parts"][0]["name"], "wall");
-    EXPECT_EQ(jsonOf(folder, explain("1", "0", "0", {"--task", "second"}))["sonar"], "second");
+    EXPECT_EQ(makeJson(folder, explain("1", wall_beam, wall_bin, {"--task", "sonar"}))["parts"][0]["name"], "wall");
+    EXPECT_EQ(makeJson(folder, explain("1", "0", "0", {"--task", "second"}))["sonar"], "second");
 }
 
 TEST(ExplainCommandTest, ADeploymentWithoutASonarIsRefused) {
@@ -115,8 +115,8 @@ TEST(ExplainCommandTest, ADeploymentWithoutASonarIsRefused) {
 TEST(ExplainCommandTest, SettingsChangeTheExplanation) {
     const WallFolder folder;
     const json mean =
-        jsonOf(folder, explain("1", wall_beam, wall_bin,
-                               {"--set", "sonar.frequency_khz=300", "--set", "sonar.speckle={coherent: true}"}));
+        makeJson(folder, explain("1", wall_beam, wall_bin,
+                                 {"--set", "sonar.frequency_khz=300", "--set", "sonar.speckle={coherent: true}"}));
     EXPECT_TRUE(mean["is_mean"]);
     EXPECT_NE(mean["explained"], mean["intensity"]);
     EXPECT_EQ(mean["parts"][0]["name"], "wall");

@@ -53,7 +53,7 @@ std::vector<double> geminiBearingsDeg() {
 
 struct FanImportTest : testing::Test {
     /** The pings of a run of the wall. */
-    std::vector<types::Sonar> pingsOf(const std::string& deployment, int count) const {
+    std::vector<types::Sonar> getPings(const std::string& deployment, int count) const {
         writeFile(folder_ / "wall.yml", deployment);
         EXPECT_EQ(folder_.run({"--pings", std::to_string(count)}).code, 0);
         std::vector<types::Sonar> pings;
@@ -62,7 +62,7 @@ struct FanImportTest : testing::Test {
         return pings;
     }
     /** Returns the samples from the window's start, in the order of a file. @param order of the beams */
-    static test::RecordedBytes samplesOf(const types::Sonar& ping, uint32_t first) {
+    static test::RecordedBytes getSamples(const types::Sonar& ping, uint32_t first) {
         test::RecordedBytes samples;
         for (uint32_t bin = first; bin < ping.bin_count; ++bin)
             for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
@@ -75,22 +75,22 @@ struct FanImportTest : testing::Test {
         frame.delay_us = 2000;
         frame.sound_speed = 1500;
         frame.time_us = static_cast<uint64_t>(ping.time.microseconds);
-        frame.samples = samplesOf(ping, first_bin);
+        frame.samples = getSamples(ping, first_bin);
         return frame;
     }
     void recordAris(int count) const {
         std::vector<test::ArisFrame> frames;
-        for (const auto& ping : pingsOf(wallWith(arisBearingsDeg()), count)) frames.push_back(arisFrame(ping));
+        for (const auto& ping : getPings(wallWith(arisBearingsDeg()), count)) frames.push_back(arisFrame(ping));
         writeBytes(folder_ / "dive.aris", test::arisFile(frames));
     }
     void recordGemini(int count) const {
         constexpr int64_t from_1980 = 315'532'800;  // [s]
         std::vector<test::RecordedBytes> records;
-        for (const auto& ping : pingsOf(wallWith(geminiBearingsDeg()), count)) {
+        for (const auto& ping : getPings(wallWith(geminiBearingsDeg()), count)) {
             test::GlfImage image{.start_range = first_bin, .end_range = bins, .rate_hz = 10'000};
             image.time_s = ping.time.seconds() + 1'500'000'000 - from_1980;
             for (const types::Angle bearing : ping.bearings) image.bearings.push_back(bearing.rad);
-            image.packed = samplesOf(ping, first_bin);
+            image.packed = getSamples(ping, first_bin);
             records.push_back(test::glfRecord(image));
         }
         writeBytes(folder_ / "dive.glf", test::glfFile(records));

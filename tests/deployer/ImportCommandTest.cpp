@@ -39,7 +39,7 @@ struct ImportCommandTest : testing::Test {
             result.speed_of_sound = static_cast<double>(ping.speed_of_sound);
             encoder.encode(ping, result);
             result.settle();
-            recorder.write(ping.time.seconds(), bytesOf(result));  // speckle depends on the time
+            recorder.write(ping.time.seconds(), toBytes(result));  // speckle depends on the time
         });
     }
     /** A recording of pings of the wall at 20 m and, from the third on, at 15 m. */

@@ -35,7 +35,7 @@ size_t echoesReceived(const TestFolder& folder, const std::string& sonar) {
 }
 
 /** Returns the records of a data set's samples. */
-std::vector<json> recordsOf(const fs::path& set) {
+std::vector<json> getRecords(const fs::path& set) {
     std::vector<json> records;
     for (const auto& entry : fs::directory_iterator(set))
         if (entry.path().extension() == ".json" && entry.path().filename().string().starts_with("0"))
@@ -54,7 +54,7 @@ size_t annotatedTyres(const TestFolder& folder, const std::string& annotations) 
                                       "--set", "sonar.quality.rows=128"}),
                 succeeds());
     size_t tyres = 0;
-    for (const json& record : recordsOf(folder / out))
+    for (const json& record : getRecords(folder / out))
         for (const json& annotation : record["annotations"]) tyres += annotation["class"] == "tyre";
     return tyres;
 }
@@ -171,7 +171,7 @@ TEST_P(InitPresetTest, EachPictureOfAFanShowsAnObjectOnTheFloor) {
     ASSERT_THAT(callInsonify(folder, {"dataset", ".", "--sweep", "pass.yml", "--out", "set", "--format", "mask",
                                       "--set", "sonar.quality.rows=128"}),
                 succeeds());
-    const std::vector<json> records = recordsOf(folder / "set");
+    const std::vector<json> records = getRecords(folder / "set");
     EXPECT_GE(records.size(), 12u);
     for (const json& record : records) EXPECT_FALSE(record["annotations"].empty()) << record["index"];
 }

@@ -16,8 +16,8 @@ struct DeployFolder : TestFolder {
         writeFile(*this / "x.yml", replaced(readFile(deploy / name), what, with));
     }
     /** Returns the log `name` of a run, which must have more than `least` bytes. */
-    std::string logOf(const std::string& out, const std::string& name, size_t minimum,
-                      const std::vector<std::string>& more = {}) const {
+    std::string makeLog(const std::string& out, const std::string& name, size_t minimum,
+                        const std::vector<std::string>& more = {}) const {
         std::vector<std::string> words = {"run", "x.yml", "--out", out, "--pings", "6"};
         words.insert(words.end(), more.begin(), more.end());
         EXPECT_THAT(callInsonify(*this, words), succeeds());
@@ -38,7 +38,7 @@ TEST(LockstepRunTest, TheShortestDeploymentTwiceGivesOneLogAndOnePicture) {
                                     "  - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 64}}\n"
                                     "  - {from: vehicle.pose, to: log.pose, policy: {type: buffer, size: 64}}\n");
     const size_t pings = 6 * 256 * 500 * sizeof(float);
-    EXPECT_TRUE(folder.logOf("first", "x.0.log", pings) == folder.logOf("second", "x.0.log", pings));
+    EXPECT_TRUE(folder.makeLog("first", "x.0.log", pings) == folder.makeLog("second", "x.0.log", pings));
     for (const char* picture : {"fan_000000.png", "fan_000005.png"}) {
         const std::string first = readFile(folder.path() / "first" / picture);
         EXPECT_GT(first.size(), 1000u);
@@ -49,7 +49,7 @@ TEST(LockstepRunTest, TheShortestDeploymentTwiceGivesOneLogAndOnePicture) {
 TEST(LockstepRunTest, ANoisyFanOfTheHarbourTwiceGivesOneLogAndAnotherSeedAnother) {
     const DeployFolder folder("gemini_720i.yml", "file: fan_%06d.png, every: 10, ", "");
     const size_t pings = 6 * 256 * 500 * sizeof(float);
-    const std::string first = folder.logOf("first", "gemini.0.log", pings);
-    EXPECT_TRUE(first == folder.logOf("second", "gemini.0.log", pings));
-    EXPECT_FALSE(first == folder.logOf("third", "gemini.0.log", pings, {"--seed", "2"}));
+    const std::string first = folder.makeLog("first", "gemini.0.log", pings);
+    EXPECT_TRUE(first == folder.makeLog("second", "gemini.0.log", pings));
+    EXPECT_FALSE(first == folder.makeLog("third", "gemini.0.log", pings, {"--seed", "2"}));
 }

@@ -85,7 +85,7 @@ TEST(DetectionsBagTest, ABagHasDetectionsWithTheFrequencyAndTheMountOfTheirSonar
         size_t pings = 0;
         log->forEachRef("sonar.detections", [&](const log::SampleRef& at) {
             ros::SonarDetections message;
-            ros::decode(log->bytesOf(at), message);
+            ros::decode(log->toBytes(at), message);
             EXPECT_EQ(message.ping_info.frequency, 400e3f);
             EXPECT_EQ(message.header.frame_id, "sonar");
             ASSERT_EQ(message.two_way_travel_times.size(), 16u);

@@ -10,7 +10,7 @@
 using namespace insonify::deployer;
 using insonify::test::allPages;
 using insonify::test::CodeBlock;
-using insonify::test::codeOf;
+using insonify::test::getCode;
 using insonify::test::Page;
 using insonify::test::readPage;
 using testing::HasSubstr;
@@ -54,7 +54,7 @@ struct Commands {
         for (const char* parent : {"log", "study", "device", "scene", "dataset"}) add(parent);
     }
     /** Returns the longest command at the beginning of a call. */
-    std::string nameOf(const std::vector<std::string>& words) const {
+    std::string getName(const std::vector<std::string>& words) const {
         std::string name;
         for (size_t i = 1; i < words.size(); ++i) {
             const std::string longer = name.empty() ? words[i] : name + " " + words[i];
@@ -72,24 +72,24 @@ struct Commands {
     }
 
 private:
-    static std::string helpOf(const std::string& name) {
+    static std::string getHelp(const std::string& name) {
         const TestFolder folder;
         return runInBash(folder, "insonify " + name + " --help").out;
     }
     /** Returns the commands in a list of "Subcommands:". */
     void add(const std::string& parent) {
-        const std::string text = help[parent] = helpOf(parent);
+        const std::string text = help[parent] = getHelp(parent);
         std::istringstream lines(text.substr(text.find("Subcommands:")));
         for (std::string line; std::getline(lines, line);) {
             const std::string word = line.substr(0, line.find(' ', 2));
             if (!line.starts_with("  ") || word.size() < 3) continue;
             const std::string name = (parent.empty() ? "" : parent + " ") + word.substr(2);
-            help[name] = helpOf(name);
+            help[name] = getHelp(name);
         }
     }
 };
 
-std::vector<std::string> wordsOf(const std::string& line) {
+std::vector<std::string> splitWords(const std::string& line) {
     std::istringstream stream(line.substr(0, line.find(" #")));
     std::vector<std::string> words;
     for (std::string word; stream >> word;) words.push_back(word);
@@ -110,8 +110,8 @@ std::vector<std::string> shownCalls(const Page& page) {
 
 /** Returns the command or the options of a call that do not exist. */
 std::vector<std::string> unknownIn(const std::string& call, const Commands& commands) {
-    const std::vector<std::string> words = wordsOf(call);
-    const std::string name = commands.nameOf(words);
+    const std::vector<std::string> words = splitWords(call);
+    const std::string name = commands.getName(words);
     const size_t next = name.empty() ? 1 : 2 + static_cast<size_t>(std::ranges::count(name, ' '));
     std::vector<std::string> unknown;
     if (commands.asksForOneMore(name) && next < words.size() && !words[next].starts_with("-")) return {words[next]};
@@ -202,7 +202,7 @@ TEST(PagesTest, TheComponentBuildsAndRunsInADeployment) {
         "  - {from: sonar.ping, to: mean.ping}\n  - {from: mean.mean, to: log.mean, policy: {type: buffer, size: "
         "64}}\n";
     const WallFolder folder(deployment);
-    writeFile(folder / "mean_echo.cpp", codeOf(readPage("components/framework/README.md"), "cpp"));
+    writeFile(folder / "mean_echo.cpp", getCode(readPage("components/framework/README.md"), "cpp"));
     ASSERT_THAT(
         Process({"g++", "-std=c++20", "-shared", "-fPIC", "-I" + sources.string(),
                  "-I" + std::string(insonify::test::build_dir) + "/include", "mean_echo.cpp", "-o", "mean_echo.so"},
@@ -233,5 +233,5 @@ TEST(PagesTest, TheComponentBuildsAndRunsInADeployment) {
 
 TEST(PagesTest, TheFirstDeploymentIsTheMinimalOne) {
     for (const char* path : {"README.md", "components/framework/README.md"})
-        EXPECT_THAT(readFile(sources / "deploy/minimal.yml"), HasSubstr(codeOf(readPage(path), "yaml"))) << path;
+        EXPECT_THAT(readFile(sources / "deploy/minimal.yml"), HasSubstr(getCode(readPage(path), "yaml"))) << path;
 }

@@ -50,7 +50,7 @@ struct PingDriverTest : testing::Test {
         return std::to_string(
             static_cast<int>(numbersIn(text, task + ": listens on UDP 127\\.0\\.0\\.1:(\\d+)").at(0)));
     }
-    std::string lineOf(const std::string& task) const { return folder_ / "out" / task; }
+    std::string makeLine(const std::string& task) const { return folder_ / "out" / task; }
     json driven(const std::string& arguments) const {
         const std::string script = checkout / "tests/deployer/ping_driver.py";
         const std::string said = insonify::pythonSays(script + " " + arguments, folder_ / "said.txt");
@@ -72,7 +72,7 @@ double firstReturn(const json& reported, double range) {
 }
 
 /** Returns the range that a driver computes for its samples, with sound at 1500 m/s. */
-double rangeOf(const json& reported) {
+double computeRange(const json& reported) {
     return reported["number_of_samples"].get<double>() * reported["sample_period"].get<double>() * 25e-9 * 1500 / 2;
 }
 
@@ -109,12 +109,12 @@ TEST_F(PingDriverTest, AScanOfAllAnglesByUdpHasTheWallAtItsRange) {
         EXPECT_EQ(echoes["sample_period"], 1000);
         EXPECT_EQ(echoes["transmit_frequency"], 750);
         if (off < 6 || off > 16) continue;
-        EXPECT_NEAR(firstReturn(echoes, rangeOf(echoes)), wallAt(angle), 0.1) << angle;
+        EXPECT_NEAR(firstReturn(echoes, computeRange(echoes)), wallAt(angle), 0.1) << angle;
         ++compared;
     }
     EXPECT_EQ(compared, 22);
     EXPECT_EQ(reported["coarser"]["data"].size(), 400u);
-    EXPECT_NEAR(firstReturn(reported["coarser"], rangeOf(reported["coarser"])), wallAt(90), 0.1)
+    EXPECT_NEAR(firstReturn(reported["coarser"], computeRange(reported["coarser"])), wallAt(90), 0.1)
         << "with other samples";
     EXPECT_EQ(reported["refusals"][0]["id"], 2601);
     EXPECT_EQ(reported["refusals"][0]["text"], "angle is 400; must be 0 to 399");
@@ -126,16 +126,16 @@ TEST_F(PingDriverTest, AScanOfAllAnglesByUdpHasTheWallAtItsRange) {
 }
 
 TEST_F(PingDriverTest, TheSerialLineGivesTheSame) {
-    const json reported = driven("ping360 " + lineOf("ping360") + " 90 110 20");
+    const json reported = driven("ping360 " + makeLine("ping360") + " 90 110 20");
     for (const json& echoes : reported["scan"])
-        EXPECT_NEAR(firstReturn(echoes, rangeOf(echoes)), wallAt(echoes["angle"]), 0.1) << echoes["angle"];
+        EXPECT_NEAR(firstReturn(echoes, computeRange(echoes)), wallAt(echoes["angle"]), 0.1) << echoes["angle"];
     EXPECT_EQ(reported["scan"].size(), 2u);
     EXPECT_EQ(reported["automatic"]["angles"].size(), 8u);
 }
 
 TEST_F(PingDriverTest, AnEchoSounderFindsTheBottomByUdpAndBySerialLine) {
     const double bottom = bottomBelow();
-    for (const std::string& line : {udpPort("ping1d"), lineOf("ping1d")}) {
+    for (const std::string& line : {udpPort("ping1d"), makeLine("ping1d")}) {
         const json reported = driven("ping1d " + line);
         EXPECT_EQ(reported["information"]["device_type"], 1) << line;
         EXPECT_EQ(reported["range"]["scan_length"], 6000) << line;

@@ -7,7 +7,7 @@ using testing::HasSubstr;
 
 TEST(PlanCommandTest, JsonHasRunAndOmittedFeatures) {
     const WallFolder folder;
-    const json plan = jsonOf(folder, {"plan", "wall.yml"});
+    const json plan = makeJson(folder, {"plan", "wall.yml"});
     EXPECT_TRUE(plan["features"].is_array());
     EXPECT_FALSE(plan["passes"].empty());
     ASSERT_FALSE(plan["omitted"].empty());
@@ -49,7 +49,7 @@ TEST(PlanCommandTest, TruthIsOmittedUnlessTheDeploymentConnectsIt) {
 
 TEST(PlanCommandTest, SetChangesThePlan) {
     const WallFolder folder;
-    const json plan = jsonOf(folder, {"plan", "wall.yml", "--set", "sonar.quality.rows=48"});
+    const json plan = makeJson(folder, {"plan", "wall.yml", "--set", "sonar.quality.rows=48"});
     EXPECT_EQ(plan["quality"]["rows"], 48);
 }
 
@@ -67,7 +67,7 @@ TEST(PlanCommandTest, SeveralSonarsArePrintedByName) {
     two = replaced(two, "  - {from: sonar.ping, to: noise.clean}\n",
                    "  - {from: sonar.ping, to: noise.clean}\n  - {from: scene.snapshot, to: second.snapshot}\n");
     const WallFolder folder(two);
-    const json plans = jsonOf(folder, {"plan", "wall.yml"});
+    const json plans = makeJson(folder, {"plan", "wall.yml"});
     EXPECT_EQ(plans["sonar"]["quality"]["rows"], 32);
     EXPECT_TRUE(plans.contains("second"));
 }

@@ -16,7 +16,7 @@ const fs::path root = insonify::test::source_dir;
 using Lines = std::vector<std::string>;
 
 /** The page by its sections: the part before the first under "", the others under their headings. */
-std::map<std::string, Lines> sectionsOf(const std::string& page) {
+std::map<std::string, Lines> getSections(const std::string& page) {
     std::map<std::string, Lines> sections;
     std::istringstream lines(page);
     std::string section;
@@ -46,7 +46,7 @@ TEST(ReferenceTest, ThePageMatchesDescribe) {
     const Outcome made =
         Process({"/usr/bin/python3", root / "scripts/make_reference", insonifyWords({}).front()}, folder.path()).wait();
     ASSERT_EQ(made.code, 0) << made.err;
-    const auto now = sectionsOf(made.out), page = sectionsOf(readFile(root / "components/PROPERTIES.md"));
+    const auto now = getSections(made.out), page = getSections(readFile(root / "components/PROPERTIES.md"));
     const std::string remedy = ": scripts/make_reference > components/PROPERTIES.md";
     for (const auto& [section, lines] : now) {
         if (section.empty() && now.size() != page.size()) continue;  // a list of the sections

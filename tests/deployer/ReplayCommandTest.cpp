@@ -40,7 +40,7 @@ std::string wallRanges(const TestFolder& folder, const std::string& log) {
         .out;
 }
 
-json infoOf(const TestFolder& folder, const std::string& log) {
+json getInfo(const TestFolder& folder, const std::string& log) {
     return json::parse(callInsonify(folder, {"log", "info", log, "--json"}).out);
 }
 
@@ -55,7 +55,7 @@ TEST(ReplayCommandTest, AStreamReplacesItsPortAndItsTaskIsNotStarted) {
     const json tasks = json::parse(readFile(folder / "summary.json"))["tasks"];
     for (const char* replaced_task : {"vehicle", "sonar", "noise"}) EXPECT_FALSE(tasks.contains(replaced_task));
     EXPECT_TRUE(tasks.contains("log"));
-    for (const json& stream : infoOf(folder, "again/wall.0.log")["streams"]) EXPECT_EQ(stream["count"], 3) << stream;
+    for (const json& stream : getInfo(folder, "again/wall.0.log")["streams"]) EXPECT_EQ(stream["count"], 3) << stream;
 }
 
 TEST(ReplayCommandTest, LoggedPosesGiveTheSamePings) {
@@ -123,7 +123,7 @@ TEST(ReplayCommandTest, WithoutADeploymentTheSourcesOfPosesAreListed) {
             callInsonify(folder, command),
             prints(AllOf(testing::ContainsRegex("/odom +nav_msgs/msg/Odometry +odom -> base_link +5 "),
                          testing::ContainsRegex("odom->base_link +tf2_msgs/msg/TFMessage +odom -> base_link +5 "))));
-    const json poses = infoOf(folder, "bag.mcap")["poses"];
+    const json poses = getInfo(folder, "bag.mcap")["poses"];
     ASSERT_EQ(poses.size(), 2u);
     EXPECT_EQ(poses[1]["source"], "odom->base_link");
     ASSERT_EQ(folder.run().code, 0);
@@ -164,7 +164,7 @@ TEST(ReplayCommandTest, ATruncatedLogIsReplayedUpToItsLastCompleteBlock) {
     ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
     fs::resize_file(folder / "out/wall.0.log", fs::file_size(folder / "out/wall.0.log") - 5);
     EXPECT_THAT(callInsonify(folder, {"replay", "out/wall.0.log", "wall.yml", "--out", "again"}), succeeds());
-    EXPECT_TRUE(infoOf(folder, "again/wall.0.log")["complete"]);
+    EXPECT_TRUE(getInfo(folder, "again/wall.0.log")["complete"]);
 }
 
 TEST(ReplayCommandTest, ALogIsNotReplacedByItsReplay) {

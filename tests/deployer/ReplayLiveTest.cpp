@@ -53,7 +53,7 @@ struct ReplayLiveTest : testing::Test {
         for (size_t i = 0; i < from->streams().size(); ++i) to.addLike(*from, i);
         for (const log::SampleRef& at : from->samples()) to.copy(at.stream, *from, at);
         const log::Stream* const stream = from->find(property);
-        report(to, stream ? from->indexOf(property) : 0);
+        report(to, stream ? from->findIndex(property) : 0);
         to.close();
     }
 

@@ -67,12 +67,12 @@ TEST_F(ReplayPaceTest, StartsBehindAStepOfTheClockBySecondsAndByDates) {
     log::pocolog::Reader recorded(folder_ / "out/wall.0.log");
     recorded.forEach<types::Sonar>("noise.noisy", [&](const types::Sonar& one, const log::SampleRef&) { ping = one; });
     const Time first{1'800'000'000'000'000};
-    const auto stampOf = [&](int i, int step) { return first + Time::fromSeconds(i + (i < 3 ? 0 : step)); };
+    const auto getStamp = [&](int i, int step) { return first + Time::fromSeconds(i + (i < 3 ? 0 : step)); };
     for (const int step : {-600, 600}) {
         {
             log::pocolog::Writer log(folder_ / "stepped.0.log");
             const size_t stream = log.addStream<types::Sonar>("noise.noisy");
-            for (int i = 0; i < 6; ++i) ping.time = stampOf(i, step), log.write(stream, ping.time, ping);
+            for (int i = 0; i < 6; ++i) ping.time = getStamp(i, step), log.write(stream, ping.time, ping);
             log.close();
         }
         const auto start = [&](const std::string& from) {
@@ -85,9 +85,9 @@ TEST_F(ReplayPaceTest, StartsBehindAStepOfTheClockBySecondsAndByDates) {
         const int behind = step > 0 ? 4 + step : 4;  // a step forward is a pause
         EXPECT_EQ(start("1"), Time::fromSeconds(1));
         EXPECT_EQ(start(std::to_string(behind)), Time::fromSeconds(behind));
-        EXPECT_EQ(start(log::readable(stampOf(2, step))), Time::fromSeconds(2));
+        EXPECT_EQ(start(log::readable(getStamp(2, step))), Time::fromSeconds(2));
         if (step > 0) {
-            EXPECT_EQ(start(log::readable(stampOf(4, step))), Time::fromSeconds(behind));
+            EXPECT_EQ(start(log::readable(getStamp(4, step))), Time::fromSeconds(behind));
         }
         EXPECT_EQ(start(std::to_string(behind + 1)), Time::fromSeconds(behind + 1)) << "the last";
         EXPECT_THAT(

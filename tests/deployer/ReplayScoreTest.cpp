@@ -116,7 +116,7 @@ TEST_F(ReplayScoreTest, ARotatedLogIsOne) {
     EXPECT_TRUE(readFile(folder_ / "one.mcap") == readFile(folder_ / "many.mcap"));
     EXPECT_TRUE(readFile(folder_ / "one_cut/x.0.log") == readFile(folder_ / "many_cut/x.0.log"));
     std::vector<std::string> listed = {"log", "cut", "--to", "listed/x.0.log", "--from", "0.35"};
-    for (const auto& [number, file] : log::sequenceOf(folder_ / "many/wall.0.log"))
+    for (const auto& [number, file] : log::findSequence(folder_ / "many/wall.0.log"))
         listed.push_back("many/" + file.filename().string());
     EXPECT_EQ(call(listed).err.find("is continued in"), std::string::npos);
     EXPECT_TRUE(readFile(folder_ / "one_cut/x.0.log") == readFile(folder_ / "listed/x.0.log"));

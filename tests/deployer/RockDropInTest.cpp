@@ -81,8 +81,8 @@ TEST_F(RockDropInTest, EchoesGrowWithTheGainAndAreNearOneAtOneHalf) {
         EXPECT_GT(strongest, 0.5f) << model;
         EXPECT_LE(strongest, 1.0f) << model;
         EXPECT_GT(std::ranges::count_if(half.bins, [](float bin) { return bin > 0.05f; }), 100) << model;
-        EXPECT_GT(test::sumOf(half), 1.5 * test::sumOf(tenth)) << model;
-        EXPECT_EQ(test::sumOf(none), 0) << model;
+        EXPECT_GT(test::computeSum(half), 1.5 * test::computeSum(tenth)) << model;
+        EXPECT_EQ(test::computeSum(none), 0) << model;
     }
 }
 
@@ -111,7 +111,7 @@ TEST_F(RockDropInTest, SwitchesInsertAndRemoveEffects) {
         const types::Sonar plain = with("false", "false");
         EXPECT_EQ(plain.bins, with("false", "false").bins) << name;
         EXPECT_NE(plain.bins, with("false", "true").bins) << name;
-        EXPECT_GT(test::sumOf(plain), 1.2 * test::sumOf(with("true", "false"))) << name;
+        EXPECT_GT(test::computeSum(plain), 1.2 * test::computeSum(with("true", "false"))) << name;
     }
 }
 
@@ -176,20 +176,20 @@ TEST_F(RockDropInTest, TheLogHasRocksNamesOfPortsPropertiesAndTasks) {
         for (const auto& [name, stream] : all.items())
             deployments += stream["metadata"].contains("insonify_deployment");
     EXPECT_EQ(deployments, 2) << "once in each file";
-    const auto expectOf = [](const json& stream, const char* object, const char* kind, const char* type) {
+    const auto expectEntry = [](const json& stream, const char* object, const char* kind, const char* type) {
         EXPECT_EQ(stream["metadata"]["rock_task_name"], "multibeam");
         EXPECT_EQ(stream["metadata"]["rock_task_object_name"], object);
         EXPECT_EQ(stream["metadata"]["rock_task_model"], "imaging_sonar_simulation::MultibeamSonarTask");
         EXPECT_EQ(stream["metadata"]["rock_stream_type"], kind);
         EXPECT_EQ(stream["metadata"]["rock_cxx_type_name"], type);
     };
-    expectOf(log.at("multibeam.sonar_samples"), "sonar_samples", "port", "/base/samples/Sonar");
-    expectOf(log.at("multibeam.shader_image"), "shader_image", "port", "/base/samples/frame/Frame");
-    expectOf(log.at("multibeam.state"), "state", "port", "/int32_t");
-    expectOf(properties.at("multibeam.range"), "range", "property", "/double");
-    expectOf(properties.at("multibeam.gain"), "gain", "property", "/double");
-    expectOf(properties.at("multibeam.beam_width"), "beam_width", "property", "/base/Angle");
-    expectOf(properties.at("multibeam.enable_attenuation"), "enable_attenuation", "property", "/bool");
+    expectEntry(log.at("multibeam.sonar_samples"), "sonar_samples", "port", "/base/samples/Sonar");
+    expectEntry(log.at("multibeam.shader_image"), "shader_image", "port", "/base/samples/frame/Frame");
+    expectEntry(log.at("multibeam.state"), "state", "port", "/int32_t");
+    expectEntry(properties.at("multibeam.range"), "range", "property", "/double");
+    expectEntry(properties.at("multibeam.gain"), "gain", "property", "/double");
+    expectEntry(properties.at("multibeam.beam_width"), "beam_width", "property", "/base/Angle");
+    expectEntry(properties.at("multibeam.enable_attenuation"), "enable_attenuation", "property", "/bool");
     ASSERT_THAT(callInsonify(folder_, {"log", "export", "out/properties.0.log", "--stream", "multibeam.beam_width",
                                        "--to", "w.csv"}),
                 succeeds());

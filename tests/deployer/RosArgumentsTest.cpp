@@ -22,7 +22,7 @@ struct RosArgumentsTest : testing::Test {
         words.insert(words.end(), ros_args.begin(), ros_args.end());
         return callInsonify(folder, words);
     }
-    json info() { return jsonOf(folder, {"log", "info", "out/x.mcap"}); }
+    json info() { return makeJson(folder, {"log", "info", "out/x.mcap"}); }
     std::vector<std::string> topics() {
         const auto log = openLog(folder / "out/x.mcap");
         std::vector<std::string> all;
@@ -35,7 +35,7 @@ struct RosArgumentsTest : testing::Test {
         const auto log = openLog(folder / "out/x.mcap");
         std::optional<Message> found;
         log->forEachRef(stream, [&](const insonify::log::SampleRef& at) {
-            if (!found) ros::decode(log->bytesOf(at), found.emplace());
+            if (!found) ros::decode(log->toBytes(at), found.emplace());
         });
         return found.value();
     }

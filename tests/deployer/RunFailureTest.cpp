@@ -132,13 +132,13 @@ TEST(RunFailureTest, ARunWithoutAThreadForWhatIsMadeAheadHasTheSamePings) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "a sanitizer must be the first library";
 #endif
-    const WallFolder folder("", gltfOf({270, -20, 20, 270, -20, -20, 270, 20, -20, 270, 20, 20}, {0, 1, 2, 0, 2, 3}));
+    const WallFolder folder("", makeGltf({270, -20, 20, 270, -20, -20, 270, 20, -20, 270, 20, 20}, {0, 1, 2, 0, 2, 3}));
     std::string text =
         replaced(wall_deployment, "{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}",
                  "{time: 0, position: [252, 0, -1]}, {time: 2, position: [262, 0, -1]}");
     writeFile(folder / "wall.yml", replaced(text, "      range: 20\n", "      range: 20\n      visibility: cpu\n"));
     constexpr int most = 60, pings = 20;
-    const auto binsOf = [&](int threads) {
+    const auto getBins = [&](int threads) {
         fs::remove_all(folder / "out");
         const Outcome outcome = runWithThreads(folder, threads, "wall.yml", pings);
         if (outcome.code != 0) return std::string();
@@ -149,10 +149,10 @@ TEST(RunFailureTest, ARunWithoutAThreadForWhatIsMadeAheadHasTheSamePings) {
     };
     int threads = 0;
     std::string fewest;
-    for (; threads < most && fewest.empty(); ++threads) fewest = binsOf(threads);
+    for (; threads < most && fewest.empty(); ++threads) fewest = getBins(threads);
     EXPECT_LT(threads, most);
-    EXPECT_EQ(fewest, binsOf(threads)) << "with one thread more";
-    EXPECT_EQ(fewest, binsOf(1000)) << "with all threads";
+    EXPECT_EQ(fewest, getBins(threads)) << "with one thread more";
+    EXPECT_EQ(fewest, getBins(1000)) << "with all threads";
 }
 
 TEST(RunFailureTest, EveryThreadThatIsRefusedIsAnErrorOfTheRun) {

@@ -21,7 +21,7 @@ std::string pictured() {
     return text + "  - {from: noise.noisy, to: fan.ping, policy: {type: buffer, size: 64}}\n";
 }
 
-std::vector<std::string> linesOf(const std::string& text) {
+std::vector<std::string> getLines(const std::string& text) {
     std::istringstream stream(text);
     std::vector<std::string> lines;
     for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -34,7 +34,7 @@ TEST(RunFilesTest, TheEndOfARunIsShortAndNamesThePictureToOpenFirst) {
     const WallFolder folder(pictured());
     const Outcome outcome = folder.run({"--pings", "3"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const std::vector<std::string> lines = linesOf(outcome.out);
+    const std::vector<std::string> lines = getLines(outcome.out);
     ASSERT_EQ(lines.size(), 7u) << outcome.out;
     EXPECT_THAT(lines[0], testing::MatchesRegex("3 pings in .* s: .* per second"));
     EXPECT_THAT(lines[1], testing::MatchesRegex("sonar: .* ms per ping, the median; .* ms at most"));
@@ -74,7 +74,7 @@ TEST(RunFilesTest, FilesAreTheRunsIfTheyHaveChangedWhateverTheClockSays) {
     const insonify::Folder folder;
     const auto hours = [](int count) { return fs::file_time_type::clock::now() + std::chrono::hours(count); };
     const auto stamp = [&](const char* name, int h) { fs::last_write_time(folder / name, hours(h)); };
-    EXPECT_TRUE(listingOf(folder / "missing").empty());
+    EXPECT_TRUE(listFolder(folder / "missing").empty());
     for (const char* name : {"future", "past", "grown", "rewritten", "set_back", "index.idx"})
         writeFile(folder / name, "earlier");
     fs::create_directory(folder / "below");
@@ -82,7 +82,7 @@ TEST(RunFilesTest, FilesAreTheRunsIfTheyHaveChangedWhateverTheClockSays) {
     stamp("future", 10);
     stamp("past", -10);
     stamp("rewritten", -1);
-    const FolderListing before = listingOf(folder.path());
+    const FolderListing before = listFolder(folder.path());
     EXPECT_EQ(before.size(), 7u);
     const auto kept = fs::last_write_time(folder / "grown");
     writeFile(folder / "grown", "earlier and more");
@@ -109,14 +109,14 @@ TEST(RunFilesTest, AFolderThatMayNotBeReadHidesNoOtherFile) {
     if (user == 0) {  // root may read everything
         ASSERT_EQ(seteuid(65534), 0);
     }
-    const FolderListing listing = listingOf(folder.path());
+    const FolderListing listing = listFolder(folder.path());
     if (user == 0) {
         ASSERT_EQ(seteuid(0), 0);
     }
     fs::permissions(folder / "a/secret", fs::perms::all);
     EXPECT_EQ(listing.size(), 2u);
     EXPECT_TRUE(listing.contains("b/file") && listing.contains("file"));
-    EXPECT_TRUE(listingOf(folder / "missing").empty());
+    EXPECT_TRUE(listFolder(folder / "missing").empty());
 }
 
 TEST(RunFilesTest, AFileFromTheFutureIsNotOfThisRun) {

@@ -12,7 +12,7 @@ using testing::Not;
 
 namespace {
 
-json sceneOf(const TestFolder& folder, const std::string& file) { return jsonOf(folder, {"scene", file}); }
+json makeScene(const TestFolder& folder, const std::string& file) { return makeJson(folder, {"scene", file}); }
 
 /** A floor of 40 x 30 m at height -2, with a step to -1 in its middle; the file has z up, or y up as in glTF. */
 std::string floorGltf(bool z_up) {
@@ -23,14 +23,14 @@ std::string floorGltf(bool z_up) {
         positions[i + 1] = up[i + 2];
         positions[i + 2] = -up[i + 1];
     }
-    return gltfOf(positions, {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7});
+    return makeGltf(positions, {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7});
 }
 
 }  // namespace
 
 TEST(SceneCommandTest, PrintsBoxTrianglesMaterialsAndObjects) {
     const TestFolder folder;
-    const json scene = sceneOf(folder, fs::path(insonify::test::source_dir) / "deploy/scenes/wall.glb");
+    const json scene = makeScene(folder, fs::path(insonify::test::source_dir) / "deploy/scenes/wall.glb");
     EXPECT_THAT(scene["bounds"]["min"], ElementsAre(10, -20, -3));
     EXPECT_THAT(scene["bounds"]["max"], ElementsAre(11, 20, 3));
     EXPECT_EQ(scene["objects"].size(), 1u);
@@ -53,7 +53,7 @@ TEST(SceneCommandTest, PrintsWallsAndWhatIsBehindThem) {
     const TestFolder folder;
     const fs::path vessels = fs::path(insonify::test::source_dir) / "deploy/scenes/vessels.glb";
     std::map<std::string, json> walls;
-    const json scene = sceneOf(folder, vessels);
+    const json scene = makeScene(folder, vessels);
     for (const json& material : scene["materials"]) walls[material["name"]] = material["shell"];
     EXPECT_TRUE(walls.at("sand").is_null());
     EXPECT_EQ(walls.at("glass bottle")["behind"], "water");
@@ -70,7 +70,7 @@ TEST(SceneCommandTest, WarnsOfASceneOnItsSideForAFileWithZUpOnly) {
     writeFile(folder / "y_up.gltf", floorGltf(false));
     EXPECT_THAT(callInsonify(folder, {"scene", "z_up.gltf"}).out, HasSubstr("may lie on its side"));
     EXPECT_THAT(callInsonify(folder, {"scene", "y_up.gltf"}).out, Not(HasSubstr("on its side")));
-    EXPECT_THAT(sceneOf(folder, "y_up.gltf")["bounds"]["max"], ElementsAre(20, 15, -1));
+    EXPECT_THAT(makeScene(folder, "y_up.gltf")["bounds"]["max"], ElementsAre(20, 15, -1));
 }
 
 TEST(SceneCommandTest, ARunWarnsOfASceneOnItsSideUnlessItIsPlacedUpright) {
@@ -94,13 +94,13 @@ TEST(SceneCommandTest, TheDeliveredScenesAreUpright) {
     const TestFolder folder;
     for (const char* name : {"harbour.glb", "tank.glb", "two_vehicles.world", "wall.glb"})
         for (const json& warning :
-             sceneOf(folder, fs::path(insonify::test::source_dir) / "deploy/scenes" / name)["warnings"])
+             makeScene(folder, fs::path(insonify::test::source_dir) / "deploy/scenes" / name)["warnings"])
             EXPECT_THAT(warning.get<std::string>(), Not(HasSubstr("on its side"))) << name;
 }
 
 TEST(SceneCommandTest, ReportsTheDefaultOfAMaterialWithoutAcoustics) {
     const WallFolder folder;
-    const json scene = sceneOf(folder, "wall.gltf");
+    const json scene = makeScene(folder, "wall.gltf");
     EXPECT_EQ(scene["materials"].at(0)["source"], "default");
     EXPECT_NEAR(scene["materials"].at(0)["lambert_db"], -16.7, 1e-3);
     EXPECT_THAT(scene["warnings"].at(0).get<std::string>(), HasSubstr("sound like medium sand"));
@@ -113,7 +113,7 @@ TEST(SceneCommandTest, RecognisesMaterialsByNameAndListsThemByObject) {
     gltf["materials"] = json::array({{{"name", "Steel.001"}}});
     gltf["meshes"][0]["primitives"][0]["material"] = 0;
     writeFile(folder / "steel.gltf", gltf.dump());
-    const json scene = sceneOf(folder, "steel.gltf");
+    const json scene = makeScene(folder, "steel.gltf");
     EXPECT_EQ(scene["materials"].at(0)["source"], "name");
     EXPECT_EQ(scene["materials"].at(0)["matter"], "steel");
     EXPECT_THAT(scene["objects"].at(0)["materials"], ElementsAre("Steel.001"));
@@ -128,7 +128,7 @@ TEST(SceneCommandTest, ListsOmittedParts) {
     const TestFolder folder;
     writeFile(folder / "walls.sdf", R"(<sdf version="1.7"><model name="m"><link name="l"><visual name="v"><geometry>
         <mesh><uri>model://nowhere/wall.dae</uri></mesh></geometry></visual></link></model></sdf>)");
-    const json scene = sceneOf(folder, "walls.sdf");
+    const json scene = makeScene(folder, "walls.sdf");
     ASSERT_FALSE(scene["not_understood"].empty());
     EXPECT_THAT(scene["not_understood"].at(0).get<std::string>(), HasSubstr("nowhere/wall.dae"));
     EXPECT_TRUE(scene["bounds"].is_null());

@@ -44,10 +44,10 @@ private:
             low = glm::min(low, turned.back());
             high = glm::max(high, turned.back());
         }
-        const size_t positions = accessor(bytesOf(turned), turned.size(), 5126, "VEC3");
+        const size_t positions = accessor(toBytes(turned), turned.size(), 5126, "VEC3");
         gltf_["accessors"].back()["min"] = {low.x, low.y, low.z};
         gltf_["accessors"].back()["max"] = {high.x, high.y, high.z};
-        const size_t indices = accessor(bytesOf(mesh.indices), mesh.indices.size(), 5125, "SCALAR");
+        const size_t indices = accessor(toBytes(mesh.indices), mesh.indices.size(), 5125, "SCALAR");
         const json primitive = {{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", 0}};
         gltf_["meshes"].push_back({{"primitives", {primitive}}});
     }

@@ -22,7 +22,7 @@ struct SchemaTest : testing::Test {
         schema_ = json::parse(outcome.out);
     }
     /** Returns the validator's errors, one per line. */
-    std::string diagnosticsOf(std::vector<std::string> files) {
+    std::string findDiagnostics(std::vector<std::string> files) {
         files.insert(files.begin(),
                      {"/usr/bin/python3", fs::path(insonify::test::source_dir) / "tests/deployer/check_schema.py",
                       "schema.json"});
@@ -33,7 +33,7 @@ struct SchemaTest : testing::Test {
     /** Returns the errors of the wall's deployment with a text replaced. */
     std::string diagnosticsWith(const std::string& from, const std::string& to) {
         writeFile(folder_ / "other.yml", replaced(wall_deployment, from, to));
-        return diagnosticsOf({"other.yml"});
+        return findDiagnostics({"other.yml"});
     }
     const json& property(const std::string& type, const std::string& name) const {
         return schema_["$defs"][type]["properties"][name];
@@ -55,7 +55,7 @@ TEST_F(SchemaTest, EveryDeliveredDeploymentIsValid) {
         ASSERT_EQ(callInsonify(folder_, {"init", sonar, "--sonar", sonar}).code, 0);
         files.push_back(std::string(sonar) + "/" + sonar + ".yml");
     }
-    EXPECT_EQ(diagnosticsOf(files), "");
+    EXPECT_EQ(findDiagnostics(files), "");
 }
 
 TEST_F(SchemaTest, RefusesWrongValuesAtTheSamePlaceAsTheCommand) {
@@ -116,5 +116,5 @@ TEST_F(SchemaTest, AliasesAndLibrariesAllowOtherPropertiesAndTypes) {
     EXPECT_EQ(diagnosticsWith("schedule: lockstep", "libraries: [mine.so]\nschedule: lockstep"), "");
     writeFile(folder_ / "other.yml", replaced(replaced(wall_deployment, "noise::NoiseTask", "my::Task"),
                                               "schedule: lockstep", "libraries: [mine.so]"));
-    EXPECT_EQ(diagnosticsOf({"other.yml"}), "");
+    EXPECT_EQ(findDiagnostics({"other.yml"}), "");
 }

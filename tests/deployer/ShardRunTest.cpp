@@ -138,7 +138,7 @@ void expectSame(const std::map<std::string, std::string>& shards, const std::map
     }
 }
 
-json manifestOf(const fs::path& shard) { return json::parse(readFile(shard / "manifest.json")); }
+json readManifest(const fs::path& shard) { return json::parse(readFile(shard / "manifest.json")); }
 
 TEST(ShardRunTest, JoinedShardsAreTheWholeRunByteForByte) {
     const Shards folder(movingWall());
@@ -148,15 +148,15 @@ TEST(ShardRunTest, JoinedShardsAreTheWholeRunByteForByte) {
     expectSame(folder.joined(), folder.whole(limit));
     std::vector<int> first, pings;
     for (const fs::path& shard : folder.shards()) {
-        first.push_back(manifestOf(shard)["first_ping"]);
-        pings.push_back(manifestOf(shard)["pings"]);
+        first.push_back(readManifest(shard)["first_ping"]);
+        pings.push_back(readManifest(shard)["pings"]);
     }
     EXPECT_THAT(first, testing::ElementsAre(0, 3, 6));
     EXPECT_THAT(pings, testing::ElementsAre(3, 3, 4));
 }
 
 TEST(ShardRunTest, TracesRaysOnAnyDeviceUnlessVisibilityIsSet) {
-    const auto deviceOf = [](const std::string& visibility) {
+    const auto getDevice = [](const std::string& visibility) {
         const Shards folder(replaced(wall_deployment, "range: 20", "range: 20" + visibility));
         std::vector<std::string> words = {"env", "INSONIFY_EGL_DEVICE=software"};
         std::ranges::copy(insonifyWords({"run", "wall.yml", "--out", "shards", "--pings", "2", "--shard", "1/2"}),
@@ -168,11 +168,11 @@ TEST(ShardRunTest, TracesRaysOnAnyDeviceUnlessVisibilityIsSet) {
         EXPECT_NE(device, plan.npos) << plan;
         return plan.substr(device, plan.find(',', device) - device);
     };
-    const std::string rays = deviceOf("\n      visibility: cpu"), rasterised = deviceOf("\n      visibility: gl");
+    const std::string rays = getDevice("\n      visibility: cpu"), rasterised = getDevice("\n      visibility: gl");
     EXPECT_NE(rays, rasterised);
-    EXPECT_EQ(deviceOf(""), rays);
-    EXPECT_EQ(deviceOf("\n      visibility: auto"), rays);
-    EXPECT_EQ(deviceOf("\n      deposit: gpu"), rasterised) << "which needs rasterisation";
+    EXPECT_EQ(getDevice(""), rays);
+    EXPECT_EQ(getDevice("\n      visibility: auto"), rays);
+    EXPECT_EQ(getDevice("\n      deposit: gpu"), rasterised) << "which needs rasterisation";
 }
 
 TEST(ShardRunTest, HeadsAndNodesContinueAtTheirPlacesOfTheWholeRun) {
@@ -186,7 +186,7 @@ TEST(ShardRunTest, CutsRunsLimitedByTheirTrajectoryOrATime) {
         const Shards folder(movingWall());
         folder.makeAll(3);
         ASSERT_EQ(folder.shards().size(), 3u);
-        EXPECT_EQ(manifestOf(folder.shards().front())["pings_of_run"], 20);
+        EXPECT_EQ(readManifest(folder.shards().front())["pings_of_run"], 20);
         expectSame(folder.joined(), folder.whole());
     }
     const Shards folder(scanning_deployment);
@@ -211,7 +211,7 @@ TEST(ShardRunTest, TheManifestHasEveryFileWithItsHashAndNothingOfTheMachine) {
     folder.makeAll(1, {"--pings", "4"});
     ASSERT_EQ(folder.shards().size(), 1u);
     const fs::path shard = folder.shards().front();
-    const json manifest = manifestOf(shard);
+    const json manifest = readManifest(shard);
     EXPECT_EQ(manifest["shard"], "0/1");
     EXPECT_EQ(manifest["run"]["pings"], 4);
     EXPECT_EQ(manifest["run"]["deployment"], "wall.yml");
@@ -284,7 +284,7 @@ TEST(ShardRunTest, ShardsOfTwoSimultaneousRunsAreNotMixed) {
 }
 
 /** Returns the name of a file that a shard is writing; empty: there is none. */
-std::string partOf(const fs::path& out) {
+std::string getPart(const fs::path& out) {
     if (!fs::exists(out)) return "";
     for (const auto& entry : fs::directory_iterator(out))
         if (entry.path().filename().string().starts_with(".shard_")) return entry.path();
@@ -294,7 +294,7 @@ std::string partOf(const fs::path& out) {
 /** Waits until a shard has written a picture. */
 void awaitPicture(const fs::path& out) {
     ASSERT_TRUE(insonify::test::becomesTrue([&] {
-        const std::string part = partOf(out);
+        const std::string part = getPart(out);
         return !part.empty() && fs::exists(part + "/fan_003.png");
     }));
 }

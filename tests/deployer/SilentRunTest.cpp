@@ -82,9 +82,9 @@ TEST(SilentRunTest, NamesATargetBehindTheWall) {
 TEST(SilentRunTest, WarnsOnceOfASonarInsideAClosedMesh) {
     const WallFolder folder;
     writeFile(folder / "wall.gltf",
-              gltfOf({-2, -2, -2, 2, -2, -2, 2, 2, -2, -2, 2, -2, -2, -2, 2, 2, -2, 2, 2, 2, 2, -2, 2, 2},
-                     {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
-                      1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7}));
+              makeGltf({-2, -2, -2, 2, -2, -2, 2, 2, -2, -2, 2, -2, -2, -2, 2, 2, -2, 2, 2, 2, 2, -2, 2, 2},
+                       {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                        1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7}));
     const std::string text = folder.run({"--pings", "3"}).err;
     EXPECT_EQ(count(text,
                     "warning: sonar: is inside of wall, which has its faces outward: the sonar is at [0, 0, 0], its "

@@ -24,7 +24,7 @@ struct RestartTest : testing::TestWithParam<Restarted> {
         return {test::sourceFile(std::string("deploy/") + GetParam().deployment), options};
     }
     /** Two pings, apart in place and direction. */
-    static std::vector<SteppedPing> pingsOf(Simulation& simulation, double x, double yaw) {
+    static std::vector<SteppedPing> getPings(Simulation& simulation, double x, double yaw) {
         std::vector<SteppedPing> all;
         for (int step = 0; step < 2; ++step) {
             std::map<std::string, types::Pose> at;
@@ -41,10 +41,10 @@ struct RestartTest : testing::TestWithParam<Restarted> {
 TEST_P(RestartTest, ItsPingsEqualThoseOfANewSimulation) {
     Simulation kept = made(), fresh = made();
     for (const double x : {4.0, 18.0, 11.0}) {
-        pingsOf(kept, x, -0.4);
+        getPings(kept, x, -0.4);
         kept.reset({});
     }
-    const auto again = pingsOf(kept, 9, 0.2), first = pingsOf(fresh, 9, 0.2);
+    const auto again = getPings(kept, 9, 0.2), first = getPings(fresh, 9, 0.2);
     ASSERT_EQ(again.size(), first.size());
     size_t received = 0;
     for (size_t i = 0; i < first.size(); ++i) {

@@ -96,7 +96,7 @@ std::string answerTo(uint16_t port, const std::string& request = "GET /healthz H
     return answer;
 }
 
-json bodyOf(const std::string& answer) { return json::parse(answer.substr(answer.find("\r\n\r\n") + 4)); }
+json getBody(const std::string& answer) { return json::parse(answer.substr(answer.find("\r\n\r\n") + 4)); }
 
 std::atomic<bool> is_held{false}, is_ill{false};
 
@@ -202,10 +202,10 @@ TEST(SupervisionTest, APortAnswersWhetherTheRunIsHealthy) {
     const uint16_t port = freePort();
     Supervised run(std::to_string(port));
     ASSERT_TRUE(test::becomesTrue([&] { return answerTo(port).starts_with("HTTP/1.1 200 OK\r\n"); }));
-    EXPECT_EQ(bodyOf(answerTo(port))["state"], "running");
-    EXPECT_EQ(bodyOf(answerTo(port))["healthy"], true);
+    EXPECT_EQ(getBody(answerTo(port))["state"], "running");
+    EXPECT_EQ(getBody(answerTo(port))["healthy"], true);
     is_ill = true;
-    EXPECT_TRUE(test::becomesTrue([&] { return bodyOf(answerTo(port))["errors"]["slug"] == "has a cold"; }));
+    EXPECT_TRUE(test::becomesTrue([&] { return getBody(answerTo(port))["errors"]["slug"] == "has a cold"; }));
     is_ill = false;
     for (const std::string& request :
          {std::string("x"), std::string(20'000, 'x'), std::string("POST / HTTP/1.1\r\n\r\n"), std::string("\r\n"),
@@ -224,9 +224,9 @@ TEST(SupervisionTest, APortAnswersWhetherTheRunIsHealthy) {
 
     is_held = true;
     EXPECT_TRUE(test::becomesTrue([&] { return answerTo(port).starts_with("HTTP/1.1 503 Service Unavailable\r\n"); }));
-    EXPECT_EQ(bodyOf(answerTo(port))["state"], "hanging");
+    EXPECT_EQ(getBody(answerTo(port))["state"], "hanging");
     run.stop();
-    EXPECT_TRUE(test::becomesTrue([&] { return bodyOf(answerTo(port))["state"] == "stopping"; }));
+    EXPECT_TRUE(test::becomesTrue([&] { return getBody(answerTo(port))["state"] == "stopping"; }));
     is_held = false;
     run.end();
     EXPECT_EQ(answerTo(port), "") << "nobody listens any more";

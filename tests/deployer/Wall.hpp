@@ -10,13 +10,13 @@
 namespace insonify::deployer {
 
 template <class T>
-std::string bytesOf(const std::vector<T>& values) {
-    return test::bytesOf(std::span(values));
+std::string toBytes(const std::vector<T>& values) {
+    return test::toBytes(std::span(values));
 }
 
 /** A glTF file of one mesh; positions are x, y, z in glTF's own axes (y up). */
-inline std::string gltfOf(const std::vector<float>& positions, const std::vector<uint16_t>& indices) {
-    const std::string data = bytesOf(positions) + bytesOf(indices);
+inline std::string makeGltf(const std::vector<float>& positions, const std::vector<uint16_t>& indices) {
+    const std::string data = toBytes(positions) + toBytes(indices);
     const size_t split = positions.size() * sizeof(float);
     return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "name": "wall"}],
 "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
@@ -34,7 +34,7 @@ inline std::string gltfOf(const std::vector<float>& positions, const std::vector
 
 /** 40 m x 40 m, square to the x axis at x = 10 m. */
 inline std::string wallGltf() {
-    return gltfOf({10, -20, 20, 10, -20, -20, 10, 20, -20, 10, 20, 20}, {0, 1, 2, 0, 2, 3});
+    return makeGltf({10, -20, 20, 10, -20, -20, 10, 20, -20, 10, 20, 20}, {0, 1, 2, 0, 2, 3});
 }
 
 inline const std::string wall_deployment = R"(schedule: lockstep

@@ -5,7 +5,7 @@
 
 namespace insonify::device {
 
-inline Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
+inline Bytes toBytes(const std::string& text) { return {text.begin(), text.end()}; }
 
 inline Bytes operator+(Bytes a, const Bytes& b) {
     a.insert(a.end(), b.begin(), b.end());

@@ -56,7 +56,7 @@ sonar::SonarConfig narrowBeam(const Case& each) {
 }
 
 types::Snapshot wallAt(double range) {
-    return test::snapshotOf(test::sceneOf({test::quad({range, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
+    return test::makeSnapshot(test::makeScene({test::quad({range, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
 }
 
 /** Returns the ping of a sonar that takes a request, in codes: the largest where there is an echo.
@@ -77,7 +77,7 @@ std::shared_ptr<types::Sonar> answerTo(const types::SonarSettings& asked, double
 }
 
 /** Returns the middle of the first byte above 0 [bytes]. */
-double firstOf(const Bytes& bytes) {
+double findFirst(const Bytes& bytes) {
     return static_cast<double>(std::ranges::find_if(bytes, [](uint8_t byte) { return byte > 0; }) - bytes.begin()) +
            0.5;
 }
@@ -107,7 +107,7 @@ TEST(DriverRangeTest, ThePing360sDriverFindsTheEchoByItsSamplePeriod) {
         const types::SonarSettings asked = answered(device, bench, each, each.target);
         const double bin = period * 25e-9 * each.speed / 2, target = each.target * samples * bin;
         EXPECT_NEAR(asked.range, samples * bin, 1e-6 * asked.range) << "at the water's speed";
-        EXPECT_NEAR(firstOf(bench.only<Ping360DeviceData>().data) * bin, target, each.tolerance(bin, target))
+        EXPECT_NEAR(findFirst(bench.only<Ping360DeviceData>().data) * bin, target, each.tolerance(bin, target))
             << target << " of " << each.reach << " m at " << each.speed << " m/s, " << each.is_exact;
     }
 }
@@ -132,7 +132,7 @@ TEST(DriverRangeTest, ThePing1dReportsTheDistanceAndItsProfileHasIt) {
         EXPECT_NEAR(profile.measurement.distance * 1e-3, target, each.tolerance(bin, target) + 0.51e-3)
             << start << " to " << end << " mm";
         ASSERT_EQ(profile.data.size(), 200u);
-        EXPECT_NEAR(1e-3 * start + firstOf(profile.data) * sample, target, bin + 1.1e-6 * each.speed + 2e-5 * target)
+        EXPECT_NEAR(1e-3 * start + findFirst(profile.data) * sample, target, bin + 1.1e-6 * each.speed + 2e-5 * target)
             << start << " to " << end << " mm";
     }
 }
@@ -155,13 +155,13 @@ TEST(DriverRangeTest, TheOculussDriverFindsTheEchoByTheRangeResolution) {
             fire.flags &= static_cast<uint8_t>(~OculusFire::range_in_metres);
             fire.range = std::min(100.0, 10 * each.reach);  // [%]
         }
-        device.received(1, bytesOf(fire));
+        device.received(1, toBytes(fire));
         const auto asked = device.tick(now).ask;
         ASSERT_TRUE(asked);
         const double target = std::max(0.05, each.target * asked->range);
         const auto result = oculusResult(device.ping(*answerTo(*asked, target, each)));
         ASSERT_TRUE(result);
-        const OculusPing ping = pingOf(*result);
+        const OculusPing ping = makePing(*result);
         const auto first = std::ranges::find_if(ping.codes, [](uint32_t code) { return code > 0; });
         const double bin = ping.range_resolution;
         EXPECT_LE(std::abs(bin * asked->bin_count - asked->range), asked->bin_count * 1e-6 * ping.speed_of_sound);
@@ -201,7 +201,7 @@ TEST(DriverRangeTest, TheMicronsDriverFindsTheEchoByTheSamplingInterval) {
         device.tick(now + types::Time::fromSeconds(1));
         const auto beam = driver.beam();
         const double bin = beam.sampling_interval * each.speed / 2;
-        EXPECT_NEAR(firstOf(beam.bins) * bin, target, each.tolerance(bin, target))
+        EXPECT_NEAR(findFirst(beam.bins) * bin, target, each.tolerance(bin, target))
             << each.reach << " m by " << resolution << " m at " << each.speed << " m/s, " << each.is_exact;
     }
 }

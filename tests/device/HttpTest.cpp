@@ -10,7 +10,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-std::string textOf(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+std::string toText(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
 const std::string post =
     "POST /api/v1/x?a=b HTTP/1.1\r\nHost: s\r\nContent-Type: application/json\r\nContent-Length: 4\r\n\r\ntrue";
@@ -20,7 +20,7 @@ TEST(HttpTest, ReadsCompleteRequestsFromAnyPieces) {
     const std::string all = post + "GET /about HTTP/1.1\r\nHost: s\r\nConnection: close\r\n\r\n";
     std::vector<HttpRequest> requests;
     for (const char c : all) {
-        reader.add(bytesOf(std::string{c}));
+        reader.add(toBytes(std::string{c}));
         while (auto request = reader.next()) requests.push_back(*request);
     }
     ASSERT_EQ(requests.size(), 2u);
@@ -30,7 +30,7 @@ TEST(HttpTest, ReadsCompleteRequestsFromAnyPieces) {
     EXPECT_TRUE(requests[0].keep_alive);
     EXPECT_EQ(requests[1].path, "/about");
     EXPECT_FALSE(requests[1].keep_alive);
-    reader.add(bytesOf(all));
+    reader.add(toBytes(all));
     EXPECT_TRUE(reader.next() && reader.next() && !reader.next()) << "and at once";
 }
 
@@ -41,27 +41,27 @@ TEST(HttpTest, ReadsItsOwnRequests) {
     ASSERT_TRUE(request);
     EXPECT_EQ(request->body, "{\"min\": 1}");
     EXPECT_FALSE(request->keep_alive);
-    EXPECT_THAT(textOf(httpBytes(HttpReply{200, "1.5"}, true)), StartsWith("HTTP/1.1 200 OK\r\n"));
-    EXPECT_THAT(textOf(httpBytes(HttpReply{200, "1.5"}, true)), HasSubstr("Content-Length: 3\r\n\r\n1.5"));
-    EXPECT_THAT(textOf(httpBytes(HttpReply{}, false)), StartsWith("HTTP/1.1 204 No Content\r\n"));
+    EXPECT_THAT(toText(httpBytes(HttpReply{200, "1.5"}, true)), StartsWith("HTTP/1.1 200 OK\r\n"));
+    EXPECT_THAT(toText(httpBytes(HttpReply{200, "1.5"}, true)), HasSubstr("Content-Length: 3\r\n\r\n1.5"));
+    EXPECT_THAT(toText(httpBytes(HttpReply{}, false)), StartsWith("HTTP/1.1 204 No Content\r\n"));
     EXPECT_EQ(httpError(400, "what \xFF is").body, "{\"error\":\"what \xEF\xBF\xBD is\"}");
 }
 
 TEST(HttpTest, RefusesInvalidRequestsOnce) {
-    const auto statusOf = [](const std::string& text) {
+    const auto getStatus = [](const std::string& text) {
         HttpReader reader;
-        reader.add(bytesOf(text));
+        reader.add(toBytes(text));
         EXPECT_FALSE(reader.next());
-        reader.add(bytesOf(post));
+        reader.add(toBytes(post));
         EXPECT_FALSE(reader.refusal() && reader.next()) << "reads nothing after a refusal";
         return reader.refusal() ? reader.refusal()->status : 0;
     };
-    EXPECT_EQ(statusOf("@0008\x08 not HTTP at all\r\n\r\n"), 400);
-    EXPECT_EQ(statusOf("GET / HTTP/9.9\r\n\r\n"), 400);
-    EXPECT_EQ(statusOf("POST / HTTP/1.1\r\nContent-Length: -4\r\n\r\n"), 400);
-    EXPECT_EQ(statusOf("POST / HTTP/1.1\r\nContent-Length: 65537\r\n\r\n"), 413);
-    EXPECT_EQ(statusOf("GET / HTTP/1.1\r\nA: " + std::string(20000, 'a')), 431);
-    EXPECT_EQ(statusOf("POST / HTTP/1.1\r\nContent-Length: 40\r\n\r\ntrue"), 0) << "may still become complete";
+    EXPECT_EQ(getStatus("@0008\x08 not HTTP at all\r\n\r\n"), 400);
+    EXPECT_EQ(getStatus("GET / HTTP/9.9\r\n\r\n"), 400);
+    EXPECT_EQ(getStatus("POST / HTTP/1.1\r\nContent-Length: -4\r\n\r\n"), 400);
+    EXPECT_EQ(getStatus("POST / HTTP/1.1\r\nContent-Length: 65537\r\n\r\n"), 413);
+    EXPECT_EQ(getStatus("GET / HTTP/1.1\r\nA: " + std::string(20000, 'a')), 431);
+    EXPECT_EQ(getStatus("POST / HTTP/1.1\r\nContent-Length: 40\r\n\r\ntrue"), 0) << "may still become complete";
 }
 
 TEST(HttpTest, ReadsTimesInAnyZone) {

@@ -53,7 +53,7 @@ struct MicronEmulatorTest : ::testing::Test {
         return {[this, whom](const Bytes& bytes) { emulator_.received(whom, bytes, now_); },
                 [this, whom] { return readFor(whom); }};
     }
-    static types::Sonar pingOf(std::vector<float> bins) {
+    static types::Sonar makePing(std::vector<float> bins) {
         types::Sonar ping;
         ping.bins = std::move(bins);
         return ping;
@@ -65,7 +65,7 @@ struct MicronEmulatorTest : ::testing::Test {
     std::vector<types::SonarSettings> asked_, all_asked_;
     std::vector<std::string> warnings_;
     bool answers_ = true;
-    types::Sonar ping_ = pingOf(std::vector<float>(200, 65535));
+    types::Sonar ping_ = makePing(std::vector<float>(200, 65535));
     MicronEmulator emulator_{
         {.centring_time = 0},
         {[this](const types::SonarSettings& settings) {
@@ -184,10 +184,10 @@ TEST_F(MicronEmulatorTest, ASectorAcrossTheSternIsEnteredAtItsLimit) {
 TEST_F(MicronEmulatorTest, FourBitsShowTheCommandedSpan) {
     driver_.configure({.resolution = 0.1, .max_distance = 0.8, .low_resolution = true});
     const auto code = [](double of_255) { return static_cast<float>(65535 * of_255 / 255); };
-    ping_ = pingOf({0, code(8), code(8 + 81 / 15.0), code(48.5), code(89), code(255), NAN});
+    ping_ = makePing({0, code(8), code(8 + 81 / 15.0), code(48.5), code(89), code(255), NAN});
     driver_.request();
     EXPECT_THAT(driver_.beam().bins, ElementsAre(0, 0, 17, 8 * 17, 255, 255, 0, 0));
-    ping_ = pingOf({code(9), code(10)});
+    ping_ = makePing({code(9), code(10)});
     driver_.configure({.resolution = 0.1, .max_distance = 0.4});
     driver_.request();
     EXPECT_THAT(driver_.beam().bins, ElementsAre(9, 10, 0, 0)) << "8 bits: 255 for 80 dB; a bin that was not made is 0";

@@ -84,7 +84,7 @@ TEST_F(NetworkTest, TransfersBytesByConnectionDatagramAndLine) {
     const Folder folder;
     const End tcp = network_.listenTcp("127.0.0.1", 0), udp = network_.listenUdp("127.0.0.1", 0);
     network_.openSerial(folder / "line");
-    const Peer a(SOCK_STREAM, network_.portOf(tcp)), b(SOCK_DGRAM, network_.portOf(udp)), c(folder / "line");
+    const Peer a(SOCK_STREAM, network_.getPort(tcp)), b(SOCK_DGRAM, network_.getPort(udp)), c(folder / "line");
     for (const Peer* peer : {&a, &b, &c}) {
         peer->say({1, 2, 3});
         const NetworkEvent got = await(Kind::Received).back();
@@ -141,7 +141,7 @@ TEST_F(NetworkTest, AThousandReconnectsLeakNoClientAndNoFile) {
     const auto before = openFiles();
     std::vector<NetworkEvent> all;
     for (int i = 0; i < 1000; ++i) {
-        const Peer peer(SOCK_STREAM, network_.portOf(end));
+        const Peer peer(SOCK_STREAM, network_.getPort(end));
         peer.say({1});
         for (NetworkEvent& event : await(Kind::Received)) all.push_back(std::move(event));
     }
@@ -155,9 +155,9 @@ TEST_F(NetworkTest, AThousandReconnectsLeakNoClientAndNoFile) {
 
 TEST_F(NetworkTest, AClientThatDoesNotReadLosesStreamedMessagesAndDelaysNoOther) {
     const End end = network_.listenTcp("127.0.0.1", 0);
-    const Peer deaf(SOCK_STREAM, network_.portOf(end));
+    const Peer deaf(SOCK_STREAM, network_.getPort(end));
     const Client never = await(Kind::Opened).back().client;
-    const Peer other(SOCK_STREAM, network_.portOf(end));
+    const Peer other(SOCK_STREAM, network_.getPort(end));
     const Client reads = await(Kind::Opened).back().client;
     for (int i = 0; i < 200; ++i) network_.send(never, Bytes(1 << 20, 7), Network::Kind::Stream);
     network_.send(reads, {5});
@@ -170,7 +170,7 @@ TEST_F(NetworkTest, AClientThatDoesNotReadLosesStreamedMessagesAndDelaysNoOther)
 
 TEST_F(NetworkTest, AnEndlessSenderIsReadAtTheSpeedOfTheTask) {
     const End end = network_.listenTcp("127.0.0.1", 0);
-    const Peer peer(SOCK_STREAM, network_.portOf(end));
+    const Peer peer(SOCK_STREAM, network_.getPort(end));
     std::thread sender([&] { peer.say(Bytes(size_t{16} << 20, 3)); });
     std::this_thread::sleep_for(200ms);
     size_t maximum = 0, total = 0;
@@ -190,7 +190,7 @@ TEST_F(NetworkTest, AnEndlessSenderIsReadAtTheSpeedOfTheTask) {
 
 TEST_F(NetworkTest, AClosedClientReceivesEarlierMessages) {
     const End end = network_.listenTcp("127.0.0.1", 0);
-    const Peer peer(SOCK_STREAM, network_.portOf(end));
+    const Peer peer(SOCK_STREAM, network_.getPort(end));
     const Client client = await(Kind::Opened).back().client;
     network_.send(client, Bytes(100'000, 4));
     network_.close(client);
@@ -204,13 +204,13 @@ TEST_F(NetworkTest, ANewConnectionReplacesTheOneSilentForLongest) {
     std::vector<std::unique_ptr<Peer>> peers;
     std::vector<Client> clients;
     for (size_t i = 0; i < Network::max_clients; ++i) {
-        peers.push_back(std::make_unique<Peer>(SOCK_STREAM, network_.portOf(end)));
+        peers.push_back(std::make_unique<Peer>(SOCK_STREAM, network_.getPort(end)));
         clients.push_back(await(Kind::Opened).back().client);
         if (i == 5) continue;
         peers.back()->say({1});
         await(Kind::Received);
     }
-    const Peer newer(SOCK_STREAM, network_.portOf(end));
+    const Peer newer(SOCK_STREAM, network_.getPort(end));
     const auto events = await(Kind::Opened);
     ASSERT_GE(events.size(), 2u);
     EXPECT_EQ(events.front().kind, Kind::Closed);
@@ -229,7 +229,7 @@ TEST_F(NetworkTest, CountsAFailureOfTheThreadAndContinues) {
         if (fails.exchange(false)) throw std::bad_alloc();
     });
     const End streams = network.listenTcp("127.0.0.1", 0), datagrams = network.listenUdp("127.0.0.1", 0);
-    const Peer stream(SOCK_STREAM, network.portOf(streams)), datagram(SOCK_DGRAM, network.portOf(datagrams));
+    const Peer stream(SOCK_STREAM, network.getPort(streams)), datagram(SOCK_DGRAM, network.getPort(datagrams));
     await(network, Kind::Opened);
     for (const Peer* peer : {&stream, &datagram})
         for (int i = 0; i < 3; ++i) {
@@ -238,19 +238,19 @@ TEST_F(NetworkTest, CountsAFailureOfTheThreadAndContinues) {
             EXPECT_FALSE(await(network, Kind::Received).empty());
         }
     fails = true;
-    const Peer second(SOCK_STREAM, network.portOf(streams)), third(SOCK_STREAM, network.portOf(streams));
+    const Peer second(SOCK_STREAM, network.getPort(streams)), third(SOCK_STREAM, network.getPort(streams));
     EXPECT_EQ(await(network, Kind::Opened, 2).size(), 2u);
     EXPECT_EQ(network.failures(), 3u);
 }
 
 TEST_F(NetworkTest, DatagramsReachTheirReceiver) {
     const End end = network_.listenUdp("127.0.0.1", 0);
-    network_.sendTo("127.0.0.1", network_.portOf(end), {6, 6});
+    network_.sendTo("127.0.0.1", network_.getPort(end), {6, 6});
     EXPECT_THAT(await(Kind::Received).back().bytes, testing::ElementsAre(6, 6));
 }
 
 TEST_F(NetworkTest, ForgetsTheDatagramClientSilentForLongest) {
-    const uint16_t port = network_.portOf(network_.listenUdp("127.0.0.1", 0));
+    const uint16_t port = network_.getPort(network_.listenUdp("127.0.0.1", 0));
     const Peer talks(SOCK_DGRAM, port);
     talks.say({1});
     const Client stays = await(Kind::Received).back().client;
@@ -270,7 +270,7 @@ TEST_F(NetworkTest, ForgetsTheDatagramClientSilentForLongest) {
 }
 
 TEST_F(NetworkTest, EmptyDatagramsAreBounded) {
-    const Peer peer(SOCK_DGRAM, network_.portOf(network_.listenUdp("127.0.0.1", 0)));
+    const Peer peer(SOCK_DGRAM, network_.getPort(network_.listenUdp("127.0.0.1", 0)));
     const auto end = std::chrono::steady_clock::now() + 60s;
     while (network_.dropped() == 0 && std::chrono::steady_clock::now() < end) {
         for (int i = 0; i < 100; ++i) peer.say({});
@@ -281,10 +281,10 @@ TEST_F(NetworkTest, EmptyDatagramsAreBounded) {
 }
 
 TEST_F(NetworkTest, ConnectionsUseKeepAlive) {
-    const uint16_t port = network_.portOf(network_.listenTcp("127.0.0.1", 0));
+    const uint16_t port = network_.getPort(network_.listenTcp("127.0.0.1", 0));
     const Peer peer(SOCK_STREAM, port);
     await(Kind::Opened);
-    const auto optionOf = [](int file, int level, int option) {
+    const auto getOption = [](int file, int level, int option) {
         int value = 0;
         socklen_t size = sizeof value;
         getsockopt(file, level, option, &value, &size);
@@ -299,10 +299,10 @@ TEST_F(NetworkTest, ConnectionsUseKeepAlive) {
             getpeername(file, reinterpret_cast<sockaddr*>(&other), &other_size) != 0)
             continue;
         ++found;
-        EXPECT_EQ(optionOf(file, SOL_SOCKET, SO_KEEPALIVE), 1);
-        EXPECT_EQ(optionOf(file, IPPROTO_TCP, TCP_KEEPIDLE), 10);
-        EXPECT_EQ(optionOf(file, IPPROTO_TCP, TCP_KEEPINTVL), 5);
-        EXPECT_EQ(optionOf(file, IPPROTO_TCP, TCP_KEEPCNT), 3);
+        EXPECT_EQ(getOption(file, SOL_SOCKET, SO_KEEPALIVE), 1);
+        EXPECT_EQ(getOption(file, IPPROTO_TCP, TCP_KEEPIDLE), 10);
+        EXPECT_EQ(getOption(file, IPPROTO_TCP, TCP_KEEPINTVL), 5);
+        EXPECT_EQ(getOption(file, IPPROTO_TCP, TCP_KEEPCNT), 3);
     }
     EXPECT_EQ(found, 1);
 }
@@ -317,8 +317,8 @@ TEST_F(NetworkTest, WakesAtTheGivenTime) {
 }
 
 TEST_F(NetworkTest, ReportsWhyAnEndCannotBeOpened) {
-    const uint16_t taken = network_.portOf(network_.listenTcp("127.0.0.1", 0));
-    const auto whyOf = [](auto&& open) -> std::string {
+    const uint16_t taken = network_.getPort(network_.listenTcp("127.0.0.1", 0));
+    const auto getWhy = [](auto&& open) -> std::string {
         try {
             open();
         } catch (const NetworkError& error) {
@@ -326,13 +326,13 @@ TEST_F(NetworkTest, ReportsWhyAnEndCannotBeOpened) {
         }
         return "";
     };
-    EXPECT_EQ(whyOf([&] { network_.listenTcp("127.0.0.1", taken); }),
+    EXPECT_EQ(getWhy([&] { network_.listenTcp("127.0.0.1", taken); }),
               "port: is 127.0.0.1:" + std::to_string(taken) + ", where it cannot listen: Address already in use");
-    EXPECT_EQ(whyOf([&] { network_.listenUdp("sonar", 1); }),
+    EXPECT_EQ(getWhy([&] { network_.listenUdp("sonar", 1); }),
               "address: is sonar, which is no address; write one as 127.0.0.1 or ::1");
-    EXPECT_THAT(whyOf([&] { network_.openSerial("/nowhere/line"); }),
+    EXPECT_THAT(getWhy([&] { network_.openSerial("/nowhere/line"); }),
                 testing::StartsWith("serial: is /nowhere/line, which cannot be made: "));
-    EXPECT_THAT(whyOf([&] { network_.sendTo("", 1, {}); }), testing::HasSubstr("no address"));
+    EXPECT_THAT(getWhy([&] { network_.sendTo("", 1, {}); }), testing::HasSubstr("no address"));
 }
 
 TEST(NetworkSerialTest, LeavesALinkThatIsNoLineAndAnAbsentFolderAsTheyAre) {

@@ -27,7 +27,7 @@ struct OculusEmulatorTest : ::testing::Test {
         return emulator_.tick(now_);
     }
     void connect() { emulator_.opened(1); }
-    void fire(const OculusFire& settings) { emulator_.received(1, bytesOf(settings)); }
+    void fire(const OculusFire& settings) { emulator_.received(1, toBytes(settings)); }
     /** Returns the sonar's answer to a request. */
     types::Sonar echoes(const types::SonarSettings& asked) const {
         types::Sonar ping;
@@ -72,13 +72,13 @@ TEST_F(OculusEmulatorTest, AStatusIsSentEachSecondWithTheSourceOfThePings) {
 }
 
 TEST_F(OculusEmulatorTest, TheStatusHasTheAddress) {
-    const auto addressOf = [&](const std::string& text) {
+    const auto findAddress = [&](const std::string& text) {
         OculusEmulator emulator({.device_address = text}, now_);
         return oculusStatus(emulator.tick(now_).status).value().address;
     };
-    EXPECT_EQ(addressOf("192.168.2.3"), (std::array<uint8_t, 4>{192, 168, 2, 3}));
+    EXPECT_EQ(findAddress("192.168.2.3"), (std::array<uint8_t, 4>{192, 168, 2, 3}));
     for (const char* wrong : {"", "192.168.2", "192.168.2.300", "192.168.2.3.", "host", "1.2.3.4x"})
-        EXPECT_EQ(addressOf(wrong), (std::array<uint8_t, 4>{})) << wrong;
+        EXPECT_EQ(findAddress(wrong), (std::array<uint8_t, 4>{})) << wrong;
 }
 
 TEST_F(OculusEmulatorTest, IsInStandbyUntilAFireMessageAndOnRequest) {
@@ -171,7 +171,7 @@ TEST_F(OculusEmulatorTest, ClampsValuesAndReportsTheClampedValues) {
         none.*number = std::nan("");
         fire(none);
     }
-    EXPECT_EQ(bytesOf(emulator_.fire()), bytesOf(before)) << "values that are not numbers change nothing";
+    EXPECT_EQ(toBytes(emulator_.fire()), toBytes(before)) << "values that are not numbers change nothing";
     EXPECT_EQ(emulator_.refused(), 4u);
 }
 
@@ -191,7 +191,7 @@ TEST_F(OculusEmulatorTest, APingHasTheSettingsThatItWasMadeWith) {
         EXPECT_NEAR(result.range_resolution, 7.123e-3, 1e-12);
         EXPECT_EQ(result.frequency_hz, 750e3);
         EXPECT_EQ(result.speed_of_sound, 1480);
-        EXPECT_EQ(result.message_size, bytesOf(result).size());
+        EXPECT_EQ(result.message_size, toBytes(result).size());
         EXPECT_EQ(result.fixedSize(), version == 2 ? 202u : 122u);
         EXPECT_EQ(result.bearings.front(), -6487) << "port first, degrees positive to starboard";
     }
@@ -254,11 +254,11 @@ TEST_F(OculusEmulatorTest, AClientThatLeavesDuringAPingLeavesNoState) {
     const types::SonarSettings ask = asked(metres(5));
     emulator_.closed(1);
     EXPECT_TRUE(emulator_.ping(echoes(ask)).empty());
-    emulator_.received(1, bytesOf(metres(5)));
+    emulator_.received(1, toBytes(metres(5)));
     EXPECT_TRUE(emulator_.inStandby()) << "bytes of a client that is gone";
     for (int i = 0; i < 1000; ++i) {
         emulator_.opened(static_cast<uint64_t>(i));
-        emulator_.received(static_cast<uint64_t>(i), bytesOf(metres(5)));
+        emulator_.received(static_cast<uint64_t>(i), toBytes(metres(5)));
         emulator_.closed(static_cast<uint64_t>(i));
     }
     EXPECT_FALSE(after(1).ask);
@@ -268,22 +268,22 @@ TEST_F(OculusEmulatorTest, TheLastFireMessageOfAllClientsApplies) {
     connect();
     emulator_.opened(2);
     fire(metres(5));
-    emulator_.received(2, bytesOf(metres(8)));
+    emulator_.received(2, toBytes(metres(8)));
     EXPECT_EQ(after(1).ask.value().range, 8);
     emulator_.closed(2);
     EXPECT_FALSE(emulator_.inStandby()) << "the other is still connected";
-    Bytes half = bytesOf(metres(9)), rest(half.begin() + 20, half.end());
+    Bytes half = toBytes(metres(9)), rest(half.begin() + 20, half.end());
     half.resize(20);
     emulator_.received(1, half);
     emulator_.opened(3);
-    emulator_.received(3, bytesOf(metres(11)));
+    emulator_.received(3, toBytes(metres(11)));
     emulator_.received(1, rest);
     EXPECT_EQ(emulator_.fire().range, 9) << "bytes of clients do not mix";
 }
 
 TEST_F(OculusEmulatorTest, NetworkSettingsAreNotCountedAsRefused) {
     connect();
-    emulator_.received(1, bytesOf(OculusUserConfig{.address = {192, 168, 2, 4}}));
+    emulator_.received(1, toBytes(OculusUserConfig{.address = {192, 168, 2, 4}}));
     EXPECT_EQ(emulator_.refused(), 0u);
     emulator_.received(1, oculusDummy(1, 1032));
     EXPECT_EQ(emulator_.refused(), 1u) << "which is neither";

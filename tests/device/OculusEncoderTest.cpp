@@ -33,12 +33,12 @@ OculusPing sent(const types::Sonar& ping, const OculusFire& fire) {
     encoder.encode(ping, result);
     result.settle();
     std::string diagnostic;
-    const auto read = oculusResult(bytesOf(result), &diagnostic);
+    const auto read = oculusResult(toBytes(result), &diagnostic);
     EXPECT_EQ(diagnostic, "");
-    return pingOf(read.value());
+    return makePing(read.value());
 }
 
-OculusFire fireOf(int bits, uint8_t flags = 0) {
+OculusFire makeFire(int bits, uint8_t flags = 0) {
     OculusFire fire{.flags = flags};
     if (bits == 16) fire.flags |= OculusFire::wide_16;
     if (bits == 32) {
@@ -50,7 +50,7 @@ OculusFire fireOf(int bits, uint8_t flags = 0) {
 
 TEST(OculusEncoderTest, CodesOfEveryWidthAreTheSameFractionOfTheMax) {
     for (const int bits : {8, 16, 32}) {
-        const OculusPing ping = sent(codes(), fireOf(bits));
+        const OculusPing ping = sent(codes(), makeFire(bits));
         EXPECT_EQ(ping.bits, bits);
         EXPECT_NEAR(ping.bearings[0], types::radians(30), 1e-9) << "port is first";
         const double shares[] = {0.25, 0.5, 1 / 65535., 0, 0.1, 1};
@@ -64,11 +64,11 @@ TEST(OculusEncoderTest, BearingsOfARandomFanAscendAndBeamsAreReadBackWithTheirCo
         types::Sonar ping = fan.ping;
         for (float& bin : ping.bins) bin = std::floor(65535 * bin);
         OculusResult result;
-        result.fire = fireOf(16);
+        result.fire = makeFire(16);
         OculusEncoder encoder;
         encoder.encode(ping, result);
         EXPECT_TRUE(std::ranges::is_sorted(result.bearings)) << fan.name;
-        const types::Sonar back = sonarOf(sent(ping, fireOf(16)), {});
+        const types::Sonar back = getSonar(sent(ping, makeFire(16)), {});
         ASSERT_EQ(back.beam_count, ping.beam_count);
         for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
             uint32_t found = 0;
@@ -85,14 +85,14 @@ TEST(OculusEncoderTest, BearingsOfARandomFanAscendAndBeamsAreReadBackWithTheirCo
 TEST(OculusEncoderTest, BeamsOfUnknownBearingAreNotSent) {
     types::Sonar ping = codes();
     ping.bearings[0] = {};
-    const OculusPing read = sent(ping, fireOf(16));
+    const OculusPing read = sent(ping, makeFire(16));
     ASSERT_EQ(read.beamCount(), 1u);
     EXPECT_NEAR(types::degrees(read.bearings[0]), 30, 1e-9);
     EXPECT_THAT(read.codes, ElementsAre(16384, 32768, 1));
 }
 
 TEST(OculusEncoderTest, GammaBrightensWeakEchoes) {
-    OculusFire fire = fireOf(16);
+    OculusFire fire = makeFire(16);
     fire.gamma = 127;
     const OculusPing ping = sent(codes(), fire);
     EXPECT_NEAR(ping.codes[0] / 65535., std::pow(0.25, 127 / 255.), 1e-4);
@@ -101,7 +101,7 @@ TEST(OculusEncoderTest, GammaBrightensWeakEchoes) {
 }
 
 TEST(OculusEncoderTest, ARowDividedByTheRootOfItsGainIsTheSameButFiner) {
-    const OculusPing ping = sent(codes(), fireOf(8, OculusFire::row_gains));
+    const OculusPing ping = sent(codes(), makeFire(8, OculusFire::row_gains));
     ASSERT_EQ(ping.row_gains.size(), 3u);
     EXPECT_THAT(ping.row_gains, ElementsAre(15, 3, 1)) << "(65535 / 16384)^2, (1 / 0.5)^2 - rounding, 1";
     const auto amplitude = [&](size_t beam, size_t bin) {
@@ -115,10 +115,10 @@ TEST(OculusEncoderTest, ARowDividedByTheRootOfItsGainIsTheSameButFiner) {
 TEST(OculusEncoderTest, SilentAndUnknownBinsAreCodeZero) {
     types::Sonar ping = codes();
     ping.bins = {0, -5, std::nanf(""), 1e9f, 65535, 65535};
-    const OculusPing plain = sent(ping, fireOf(8)), gained = sent(ping, fireOf(32, OculusFire::row_gains));
+    const OculusPing plain = sent(ping, makeFire(8)), gained = sent(ping, makeFire(32, OculusFire::row_gains));
     EXPECT_THAT(plain.codes, ElementsAre(255, 255, 255, 0, 0, 0));
     ping.bins.assign(6, 0);
-    const OculusPing silent = sent(ping, fireOf(16, OculusFire::row_gains));
+    const OculusPing silent = sent(ping, makeFire(16, OculusFire::row_gains));
     EXPECT_THAT(silent.codes, Each(0u));
     EXPECT_THAT(silent.row_gains, Each(4294967295u));
     EXPECT_THAT(gained.row_gains, Each(1u));

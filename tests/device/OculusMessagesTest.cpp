@@ -44,13 +44,13 @@ Bytes joined(std::initializer_list<Bytes> parts) {
 }
 
 Bytes recording(const char* name) {
-    const std::vector<char> bytes = insonify::bytesOf(std::filesystem::path(test::sharedFile("sonar/oculus")) / name);
+    const std::vector<char> bytes = insonify::toBytes(std::filesystem::path(test::sharedFile("sonar/oculus")) / name);
     return {bytes.begin(), bytes.end()};
 }
 
 TEST(OculusMessagesTest, AFireMessageHasItsFieldsAtTheOffsetsOfDrivers) {
     for (const uint16_t version : {1, 2}) {
-        const Bytes bytes = bytesOf(fireOfVersion(version));
+        const Bytes bytes = toBytes(fireOfVersion(version));
         ASSERT_EQ(bytes.size(), version == 2 ? 89u : 53u);
         EXPECT_EQ(read<uint16_t>(bytes, 0), 0x4F53);
         EXPECT_EQ(read<uint16_t>(bytes, 6), 0x15);
@@ -62,12 +62,12 @@ TEST(OculusMessagesTest, AFireMessageHasItsFieldsAtTheOffsetsOfDrivers) {
         EXPECT_EQ(read<double>(bytes, 45), 34);
         const auto fire = oculusFire(bytes);
         ASSERT_TRUE(fire);
-        EXPECT_EQ(bytesOf(*fire), bytes);
+        EXPECT_EQ(toBytes(*fire), bytes);
         EXPECT_EQ(fire->codeBytes(), version == 2 ? 4u : 2u) << "32 bits are requested in version 2 only";
         EXPECT_EQ(fire->rateHz(), 5);
         EXPECT_NEAR(fire->gammaExponent(), 0.5, 0.002);
     }
-    EXPECT_EQ(read<uint32_t>(bytesOf(fireOfVersion(2)), 53), 0x200u);
+    EXPECT_EQ(read<uint32_t>(toBytes(fireOfVersion(2)), 53), 0x200u);
 }
 
 TEST(OculusMessagesTest, RatesAreThoseOfTheDevice) {
@@ -79,7 +79,7 @@ TEST(OculusMessagesTest, RatesAreThoseOfTheDevice) {
 
 TEST(OculusMessagesTest, AFireMessageOfPayloadSizeZeroIsAsLongAsItsVersion) {
     for (const uint16_t version : {0, 1, 2}) {
-        Bytes bytes = bytesOf(fireOfVersion(version));
+        Bytes bytes = toBytes(fireOfVersion(version));
         write<uint32_t>(bytes, 10, 0);
         const auto messages = framed(joined({bytes, bytes}), 1);
         ASSERT_THAT(messages, SizeIs(2)) << version;
@@ -89,7 +89,7 @@ TEST(OculusMessagesTest, AFireMessageOfPayloadSizeZeroIsAsLongAsItsVersion) {
 }
 
 TEST(OculusMessagesTest, ShortAndLongFireMessagesAreRead) {
-    const Bytes whole = bytesOf(fireOfVersion(2));
+    const Bytes whole = toBytes(fireOfVersion(2));
     for (size_t size = 0; size < 53; ++size) EXPECT_FALSE(oculusFire(std::span(whole).first(size))) << size;
     EXPECT_EQ(oculusFire(std::span(whole).first(53))->extended_flags, 0u);
     EXPECT_EQ(oculusFire(joined({whole, Bytes(100, 0xEE)}))->salinity, 34);
@@ -104,7 +104,7 @@ TEST(OculusMessagesTest, PingsOfEveryVersionAndWidthAreEncodedAsTheyWereRead) {
                     test::OculusMessage{.version = version, .code_bytes = width, .gains = gains}.bytes();
                 const auto result = oculusResult(bytes);
                 ASSERT_TRUE(result);
-                EXPECT_EQ(bytesOf(*result), bytes);
+                EXPECT_EQ(toBytes(*result), bytes);
                 OculusResult settled = *result;
                 settled.settle();
                 EXPECT_EQ(settled.image_offset, result->image_offset);
@@ -128,7 +128,7 @@ TEST(OculusMessagesTest, RealPingsAreEncodedByteForByte) {
             EXPECT_EQ(result->before_image.size(), 1414u) << "the device leaves old bytes there";
             EXPECT_EQ(result->fire.rate, 0xC3) << "the device does not echo the rate";
             EXPECT_EQ(result->fire.range, 2);
-            again = joined({again, bytesOf(*result)});
+            again = joined({again, toBytes(*result)});
         }
         EXPECT_EQ(again, bytes);
     }
@@ -137,7 +137,7 @@ TEST(OculusMessagesTest, RealPingsAreEncodedByteForByte) {
 TEST(OculusMessagesTest, AStatusHas142BytesWithFieldsAtTheOffsetsOfListeners) {
     OculusStatus status{.device_id = 7892, .part = 1042, .address = {192, 168, 2, 3}, .pressure_bar = 1.5};
     status.header.source = 7892;
-    const Bytes bytes = bytesOf(status);
+    const Bytes bytes = toBytes(status);
     ASSERT_EQ(bytes.size(), 142u);
     EXPECT_EQ(read<uint16_t>(bytes, 2), 7892);
     EXPECT_EQ(read<uint32_t>(bytes, 16), 7892u);
@@ -146,16 +146,16 @@ TEST(OculusMessagesTest, AStatusHas142BytesWithFieldsAtTheOffsetsOfListeners) {
     EXPECT_EQ(read<uint32_t>(bytes, 24) & 7, 3u);
     EXPECT_THAT(Bytes(bytes.begin() + 52, bytes.begin() + 56), ElementsAre(192, 168, 2, 3));
     EXPECT_EQ(read<double>(bytes, 134), 1.5);
-    EXPECT_EQ(bytesOf(oculusStatus(bytes).value()), bytes);
+    EXPECT_EQ(toBytes(oculusStatus(bytes).value()), bytes);
     EXPECT_FALSE(oculusStatus(std::span(bytes).first(141)));
     EXPECT_FALSE(oculusStatus(joined({bytes, {0}})));
 }
 
 TEST(OculusMessagesTest, UserConfigDummyAndLogAreMessages) {
     OculusUserConfig config{.address = {10, 0, 0, 2}, .mask = {255, 255, 255, 0}, .dhcp = 1};
-    const Bytes bytes = bytesOf(config);
+    const Bytes bytes = toBytes(config);
     ASSERT_EQ(bytes.size(), 28u);
-    EXPECT_EQ(bytesOf(oculusUserConfig(bytes).value()), bytes);
+    EXPECT_EQ(toBytes(oculusUserConfig(bytes).value()), bytes);
     EXPECT_FALSE(oculusUserConfig(std::span(bytes).first(27)));
     EXPECT_EQ(oculusDummy(5, 1032).size(), 16u);
     EXPECT_TRUE(oculusHeader(oculusDummy(5, 1032))->is(OculusId::Dummy));
@@ -165,7 +165,7 @@ TEST(OculusMessagesTest, UserConfigDummyAndLogAreMessages) {
 }
 
 TEST(OculusMessagesTest, AStreamContinuesAfterInvalidBytes) {
-    const Bytes fire = bytesOf(fireOfVersion(1)), noise = {'S', 'O', 0, 'S', 0xFF, 'S', 'O'};
+    const Bytes fire = toBytes(fireOfVersion(1)), noise = {'S', 'O', 0, 'S', 0xFF, 'S', 'O'};
     for (const size_t step : {1, 7, 1000})
         EXPECT_THAT(framed(joined({noise, fire, noise, noise, fire, Bytes(40, 'S'), fire}), step),
                     ElementsAre(fire, fire, fire));
@@ -183,7 +183,7 @@ TEST(OculusMessagesTest, AStreamContinuesAfterInvalidBytes) {
 }
 
 TEST(OculusMessagesTest, ATruncatedStreamGivesItsCompleteMessages) {
-    const Bytes fire = bytesOf(fireOfVersion(2)), two = joined({fire, fire});
+    const Bytes fire = toBytes(fireOfVersion(2)), two = joined({fire, fire});
     for (size_t size = 0; size < two.size(); ++size)
         EXPECT_EQ(framed(std::span(two).first(size), 16).size(), size / fire.size());
     OculusFramer framer(4096);

@@ -30,7 +30,7 @@ std::vector<OculusPing> pingsIn(std::span<const uint8_t> bytes, std::vector<std:
         if (!oculusHeader(message)->is(OculusId::PingResult)) continue;
         std::string diagnostic;
         const auto result = oculusResult(message, &diagnostic);
-        if (result) pings.push_back(pingOf(*result));
+        if (result) pings.push_back(makePing(*result));
         if (!result && diagnostics) diagnostics->push_back(diagnostic);
     }
     return pings;
@@ -62,7 +62,7 @@ TEST(OculusPingTest, APingIsReadInEveryVersionAndWidth) {
 TEST(OculusPingTest, AMissingSpeedOfSoundIs1500) {
     OculusPing ping = pingsIn(Sent{}.bytes()).at(0);
     ping.speed_of_sound = 0;
-    const types::Sonar sonar = sonarOf(ping, {});
+    const types::Sonar sonar = getSonar(ping, {});
     EXPECT_EQ(sonar.speed_of_sound, 1500);
     EXPECT_EQ(sonar.bin_duration.microseconds, 167) << "0.25 m";
 }
@@ -71,7 +71,7 @@ TEST(OculusPingTest, RangesAreThoseOfTheRangeResolution) {
     OculusPing ping = pingsIn(Sent{}.bytes()).at(0);
     for (const double resolution : {0.0015, 0.002, 0.0025, 0.01}) {
         ping.range_resolution = resolution;
-        const types::Sonar sonar = sonarOf(ping, {});
+        const types::Sonar sonar = getSonar(ping, {});
         EXPECT_NEAR(sonar.binStart(1600), 1600 * resolution, 2e-6 * 1600 * resolution);
         EXPECT_EQ(sonar.speed_of_sound, 1490.5f) << "of the water";
     }
@@ -115,17 +115,17 @@ TEST(OculusPingTest, RejectsPingsThatContradictThemselves) {
 
 TEST(OculusPingTest, AFileWithoutAPingIsRefusedWithTheReason) {
     const Folder folder;
-    const auto messageOf = [&](const Bytes& bytes) -> std::string {
+    const auto makeMessage = [&](const Bytes& bytes) -> std::string {
         std::ofstream(folder / "a.raw", std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-        return test::errorOf<types::ConfigError>([&] { OculusReader(folder / "a.raw").next(); });
+        return test::computeError<types::ConfigError>([&] { OculusReader(folder / "a.raw").next(); });
     };
-    EXPECT_THAT(messageOf({1, 2, 3}), HasSubstr("a.raw: holds no ping of an Oculus"));
+    EXPECT_THAT(makeMessage({1, 2, 3}), HasSubstr("a.raw: holds no ping of an Oculus"));
     Bytes cut = Sent{}.bytes();
     cut.resize(100);
-    EXPECT_THAT(messageOf(cut), HasSubstr("holds no ping of an Oculus, and does not begin as a .xtf, "));
-    EXPECT_THAT(messageOf(cut), HasSubstr("; the message at byte 0 is longer than the file"));
-    EXPECT_EQ(messageOf(Sent{}.bytes()), "");
+    EXPECT_THAT(makeMessage(cut), HasSubstr("holds no ping of an Oculus, and does not begin as a .xtf, "));
+    EXPECT_THAT(makeMessage(cut), HasSubstr("; the message at byte 0 is longer than the file"));
+    EXPECT_EQ(makeMessage(Sent{}.bytes()), "");
     EXPECT_THROW(OculusReader(folder / "missing.raw"), types::ConfigError);
     EXPECT_THROW(OculusReader(folder / "."), types::ConfigError);
 }

@@ -24,7 +24,7 @@ Bytes pingBytes(uint32_t number) { return test::OculusMessage{.number = number}.
 
 /** Returns the messages of the three real pings; none without the recording. */
 std::vector<Bytes> realPings() {
-    const std::vector<char> bytes = insonify::bytesOf(test::sharedFile("sonar/oculus/three_pings_8bit.raw"));
+    const std::vector<char> bytes = insonify::toBytes(test::sharedFile("sonar/oculus/three_pings_8bit.raw"));
     OculusFramer framer;
     framer.add({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
     std::vector<Bytes> messages;
@@ -46,7 +46,7 @@ struct OculusRecordingTest : ::testing::Test {
         return found;
     }
     void damage(size_t at, std::initializer_list<char> by) const {
-        std::vector<char> bytes = insonify::bytesOf(file_);
+        std::vector<char> bytes = insonify::toBytes(file_);
         std::ranges::copy(by, bytes.begin() + static_cast<std::ptrdiff_t>(at));
         writeBytes(file_, bytes);
     }
@@ -57,7 +57,7 @@ struct OculusRecordingTest : ::testing::Test {
 
 TEST_F(OculusRecordingTest, FieldsAreAtTheOffsetsOfOtherReaders) {
     record();
-    const std::vector<char> chars = insonify::bytesOf(file_);
+    const std::vector<char> chars = insonify::toBytes(file_);
     const Bytes bytes(chars.begin(), chars.end());
     EXPECT_EQ(read<uint32_t>(bytes, 0), 0x11223344u);
     EXPECT_EQ(read<uint32_t>(bytes, 4), 48u);
@@ -89,7 +89,7 @@ TEST_F(OculusRecordingTest, ReadItemsAreWrittenByteForByte) {
     OculusRecording again(folder_ / "copy.oculus");
     for (OculusItem& item : items) item = again.next().value();
     copy(folder_ / "again.oculus");
-    EXPECT_EQ(insonify::bytesOf(folder_ / "again.oculus"), insonify::bytesOf(folder_ / "copy.oculus"));
+    EXPECT_EQ(insonify::toBytes(folder_ / "again.oculus"), insonify::toBytes(folder_ / "copy.oculus"));
     EXPECT_EQ(items[1].unused_a, 7u);
     EXPECT_FALSE(again.next());
     EXPECT_THAT(again.diagnostic(), IsEmpty());
@@ -107,7 +107,7 @@ TEST_F(OculusRecordingTest, RealPingsAreRecordedAndPlayedByteForByte) {
         const auto recorded = pings.next();
         ASSERT_TRUE(recorded);
         EXPECT_DOUBLE_EQ(recorded->time, 100 + 0.1 * static_cast<double>(i));
-        EXPECT_EQ(bytesOf(recorded->ping), messages[i]);
+        EXPECT_EQ(toBytes(recorded->ping), messages[i]);
     }
     EXPECT_FALSE(pings.next());
     size_t read = 0;
@@ -127,13 +127,13 @@ TEST_F(OculusRecordingTest, TheTimeOfACaptureNeverRunsBackwards) {
     for (const uint32_t ticks : {4294900000u, 61'432'704u, 123'932'704u}) {
         OculusResult ping = oculusResult(pingBytes(1)).value();
         ping.start_ticks = ticks;
-        const Bytes bytes = bytesOf(ping);
+        const Bytes bytes = toBytes(ping);
         all.insert(all.end(), bytes.begin(), bytes.end());
     }
     for (const double start : {50.0, 50.5, 3.0, std::nan("")}) {
         OculusResult ping = oculusResult(test::OculusMessage{.version = 2}.bytes()).value();
         ping.start_s = start;
-        const Bytes bytes = bytesOf(ping);
+        const Bytes bytes = toBytes(ping);
         all.insert(all.end(), bytes.begin(), bytes.end());
     }
     writeBytes(folder_ / "clock.raw", all);
@@ -187,7 +187,7 @@ TEST_F(OculusRecordingTest, DamageCostsOnlyTheDamagedItems) {
     EXPECT_THAT(numbers(&diagnostic), ElementsAre(2, 3));
     EXPECT_THAT(diagnostic, HasSubstr("ping 1 has an image of 9 bytes"));
     record();
-    const std::vector<char> whole = insonify::bytesOf(file_);
+    const std::vector<char> whole = insonify::toBytes(file_);
     for (size_t size = 48; size < whole.size(); size += 13) {
         writeBytes(file_, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
         EXPECT_EQ(numbers().size(), (size - 48) / item) << size;
@@ -215,14 +215,14 @@ TEST_F(OculusRecordingTest, AnIncompleteMessageAtTheEndOfACaptureCostsNoOther) {
 }
 
 TEST_F(OculusRecordingTest, RefusesOtherFiles) {
-    const auto messageOf = [](const auto& make) -> std::string {
-        return test::errorOf<types::ConfigError>([&] { make(); });
+    const auto makeMessage = [](const auto& make) -> std::string {
+        return test::computeError<types::ConfigError>([&] { make(); });
     };
     writeBytes(file_, std::vector<char>(100, 'S'));
-    EXPECT_THAT(messageOf([&] { OculusRecording recording(file_); }), HasSubstr("does not begin as a recording"));
-    EXPECT_THAT(messageOf([&] { OculusRecording recording(folder_ / "no"); }), HasSubstr("cannot be read"));
-    EXPECT_THAT(messageOf([&] { OculusPings pings(folder_.path()); }), HasSubstr("cannot be read"));
-    EXPECT_THAT(messageOf([&] { OculusRecorder recorder(folder_ / "no/a.oculus", {}); }),
+    EXPECT_THAT(makeMessage([&] { OculusRecording recording(file_); }), HasSubstr("does not begin as a recording"));
+    EXPECT_THAT(makeMessage([&] { OculusRecording recording(folder_ / "no"); }), HasSubstr("cannot be read"));
+    EXPECT_THAT(makeMessage([&] { OculusPings pings(folder_.path()); }), HasSubstr("cannot be read"));
+    EXPECT_THAT(makeMessage([&] { OculusRecorder recorder(folder_ / "no/a.oculus", {}); }),
                 HasSubstr("cannot be written"));
     EXPECT_THAT(numbers(), IsEmpty());
 }

@@ -80,7 +80,7 @@ connections:
         if (thread_.joinable()) thread_.join();
     }
     OculusTask& task() const { return dynamic_cast<OculusTask&>(*deployment_->task("device")); }
-    std::string noticeOf(const std::string& part) const {
+    std::string makeNotice(const std::string& part) const {
         for (const std::string& notice : types::lines(task().notices()))
             if (notice.find(part) != std::string::npos) return notice;
         return "";
@@ -151,8 +151,8 @@ TEST_F(OculusTaskTest, RecordsSentPings) {
     std::vector<Bytes> echoes;
     {
         OculusDriver driver(port_);
-        driver.send(bytesOf({.rate = 2, .range = 10}));
-        for (int i = 0; i < 3; ++i) echoes.push_back(bytesOf(driver.nextPing()));
+        driver.send(toBytes({.rate = 2, .range = 10}));
+        for (int i = 0; i < 3; ++i) echoes.push_back(toBytes(driver.nextPing()));
     }
     stop_ = true;
     thread_.join();
@@ -160,7 +160,7 @@ TEST_F(OculusTaskTest, RecordsSentPings) {
     std::vector<Bytes> recorded;
     while (const auto ping = pings.next()) {
         EXPECT_GT(ping->time, 1.6e9) << "since the epoch";
-        recorded.push_back(bytesOf(ping->ping));
+        recorded.push_back(toBytes(ping->ping));
     }
     EXPECT_EQ(pings.diagnostic(), "");
     for (const Bytes& ping : echoes) EXPECT_THAT(recorded, ::testing::Contains(ping));
@@ -171,11 +171,11 @@ TEST_F(OculusTaskTest, AFullDiskEndsTheRecordingAndNotThePings) {
     std::filesystem::create_symlink("/dev/full", folder / "dive.oculus");
     start({"device.record=" + (folder / "dive.oculus").string()});
     OculusDriver driver(port_);
-    driver.send(bytesOf({.rate = 2, .range = 10}));
+    driver.send(toBytes({.rate = 2, .range = 10}));
     for (int i = 0; i < 10; ++i) EXPECT_GT(driver.nextPing().bin_count, 0);
     EXPECT_EQ(task().state(), framework::TaskState::RunTimeError);
     EXPECT_THAT(task().lastError(), HasSubstr("the recording ends here"));
-    EXPECT_THAT(noticeOf("pings are not in"), HasSubstr("dive.oculus"));
+    EXPECT_THAT(makeNotice("pings are not in"), HasSubstr("dive.oculus"));
     stop_ = true;
     thread_.join();
     EXPECT_EQ(task().state(), framework::TaskState::Stopped);
@@ -190,14 +190,14 @@ TEST_F(OculusTaskTest, NoticesOfAFullDiskHaveTheirReasonFromTheFirst) {
     std::atomic<int> found{0}, bare{0};
     std::thread reader([&] {
         while (!done) {
-            const std::string notice = noticeOf("pings are not in");
+            const std::string notice = makeNotice("pings are not in");
             if (notice.empty()) continue;
             ++found;
             bare += notice.ends_with("dive.oculus: ") ? 1 : 0;
         }
     });
     OculusDriver driver(port_);
-    driver.send(bytesOf({.rate = 2, .range = 10}));
+    driver.send(toBytes({.rate = 2, .range = 10}));
     for (int i = 0; i < 10; ++i) driver.nextPing();
     EXPECT_TRUE(test::becomesTrue([&] { return found > 0; }));
     done = true;
@@ -209,8 +209,8 @@ TEST_F(OculusTaskTest, AClientThatDoesNotReadDelaysNoOther) {
     start();
     OculusDriver deaf(port_), driver(port_);
     OculusFire fire{.rate = 2, .flags = 0x4B, .range = 10};
-    driver.send(bytesOf(fire));
-    deaf.send(bytesOf(fire));
+    driver.send(toBytes(fire));
+    deaf.send(toBytes(fire));
     uint32_t last = 0;
     for (int i = 0; i < 40; ++i) {  // of a megabyte each
         const uint32_t number = driver.nextPing().number;
@@ -223,7 +223,7 @@ TEST_F(OculusTaskTest, AClientThatDoesNotReadDelaysNoOther) {
 TEST_F(OculusTaskTest, DamagedBytesCostNoOtherMessage) {
     start();
     OculusDriver driver(port_);
-    const Bytes fire = bytesOf({.rate = 2, .range = 4});
+    const Bytes fire = toBytes({.rate = 2, .range = 4});
     driver.send({'G', 'E', 'T', ' ', '/', 'S', 'O', 0, 1, 2});
     Bytes wrong = fire;
     write<uint32_t>(wrong, 10, 0xFFFFFFFF);
@@ -234,11 +234,11 @@ TEST_F(OculusTaskTest, DamagedBytesCostNoOtherMessage) {
 
 TEST_F(OculusTaskTest, SurvivesAThousandDriversThatLeaveDuringAPing) {
     start();
-    for (int i = 0; i < 1000; ++i) OculusDriver(port_).send(bytesOf({.rate = 2, .range = 100}));
+    for (int i = 0; i < 1000; ++i) OculusDriver(port_).send(toBytes({.rate = 2, .range = 100}));
     const auto pings = [&] {
         try {
             OculusDriver driver(port_);
-            driver.send(bytesOf({.rate = 2, .range = 6}));
+            driver.send(toBytes({.rate = 2, .range = 6}));
             for (int i = 0; i < 10; ++i)
                 if (driver.nextPing().fire.range == 6) return true;
         } catch (const std::runtime_error&) {
@@ -250,7 +250,7 @@ TEST_F(OculusTaskTest, SurvivesAThousandDriversThatLeaveDuringAPing) {
 }
 
 TEST_F(OculusTaskTest, RefusesImpossiblePropertiesWithTheirKeys) {
-    const auto messageOf = [&](const std::string& set) -> std::string {
+    const auto makeMessage = [&](const std::string& set) -> std::string {
         try {
             start({set});
         } catch (const types::ConfigError& error) {
@@ -260,18 +260,19 @@ TEST_F(OculusTaskTest, RefusesImpossiblePropertiesWithTheirKeys) {
         }
         return "";
     };
-    EXPECT_THAT(messageOf("device.address=nowhere"), HasSubstr("tasks.device.properties.address: is nowhere"));
-    EXPECT_THAT(messageOf("device.status_address=nowhere"), HasSubstr("properties.status_address: is nowhere"));
+    EXPECT_THAT(makeMessage("device.address=nowhere"), HasSubstr("tasks.device.properties.address: is nowhere"));
+    EXPECT_THAT(makeMessage("device.status_address=nowhere"), HasSubstr("properties.status_address: is nowhere"));
     for (const char* every : {"0.0.0.0", "'::'", "'::1'"})
-        EXPECT_THAT(messageOf(std::string("device.address=") + every), HasSubstr("device_address: is empty")) << every;
+        EXPECT_THAT(makeMessage(std::string("device.address=") + every), HasSubstr("device_address: is empty"))
+            << every;
     for (const char* wrong : {"host", "192.168.2", "192.168.2.300", "0.0.0.0", "'::1'"})
-        EXPECT_THAT(messageOf(std::string("device.device_address=") + wrong), HasSubstr("must be an IPv4 address"))
+        EXPECT_THAT(makeMessage(std::string("device.device_address=") + wrong), HasSubstr("must be an IPv4 address"))
             << wrong;
-    EXPECT_THAT(messageOf("device.record=/nowhere/a.oculus"),
+    EXPECT_THAT(makeMessage("device.record=/nowhere/a.oculus"),
                 HasSubstr("properties.record: is /nowhere/a.oculus, which"));
-    EXPECT_THAT(messageOf("device.model=m900"), HasSubstr("m900"));
-    EXPECT_THAT(messageOf("device.gain_min_db=90"), HasSubstr("properties.gain_min_db: is above gain_max_db"));
-    EXPECT_THAT(messageOf("device.port=70000"), HasSubstr("properties.port: is 70000"));
+    EXPECT_THAT(makeMessage("device.model=m900"), HasSubstr("m900"));
+    EXPECT_THAT(makeMessage("device.gain_min_db=90"), HasSubstr("properties.gain_min_db: is above gain_max_db"));
+    EXPECT_THAT(makeMessage("device.port=70000"), HasSubstr("properties.port: is 70000"));
 }
 
 }  // namespace

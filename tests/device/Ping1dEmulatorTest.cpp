@@ -99,7 +99,7 @@ TEST_F(Ping1dEmulatorTest, TheRangeIsSetInManualModeOnly) {
         const Ping1dRange before = request<Ping1dRange>();
         EXPECT_TRUE(succeeds(Ping1dSetModeAuto{1}));
         EXPECT_FALSE(succeeds(Ping1dSetRange{100, 2000}));
-        EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{100, 2000}),
+        EXPECT_EQ(bench_.getRefusal(Ping1dSetRange{100, 2000}),
                   "mode_auto is 1, so the device sets the range; set mode_auto to 0");
         EXPECT_EQ(request<Ping1dRange>().length, before.length);
         EXPECT_TRUE(succeeds(Ping1dSetGain{1})) << "the firmware refuses nothing else";
@@ -114,17 +114,18 @@ TEST_F(Ping1dEmulatorTest, TheRangeIsSetInManualModeOnly) {
 
 TEST_F(Ping1dEmulatorTest, RefusesValuesOutOfBoundsWithNameAndBounds) {
     set(Ping1dSetModeAuto{0});
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{0, 999}), "scan_length is 999; must be 1000 to 100000");
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{99'500, 1000}), "scan_start is 99500; must be 0 to 99000");
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{50'000, 50'001}), "scan_length is 50001; must be 1000 to 50000");
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{UINT32_MAX, UINT32_MAX}), "scan_start is 4294967295; must be 0 to 99000");
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetSpeedOfSound{0}), "speed_of_sound is 0; must be 100000 to 10000000");
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetModeAuto{2}), "mode_auto is 2; must be 0 to 1");
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetPingInterval{0}), "ping_interval is 0; must be 1 to 65535");
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetGain{7}), "gain_setting is 7; must be 0 to 6");
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetPingEnable{2}), "ping_enabled is 2; must be 0 to 1");
-    EXPECT_EQ(bench_.refusalOf(Ping1dSetDeviceId{255}), "id is 255; must be 0 to 254");
-    EXPECT_EQ(bench_.refusalOf(Ping1dContinuousStart{6}), "message 6 is not sent continuously");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetRange{0, 999}), "scan_length is 999; must be 1000 to 100000");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetRange{99'500, 1000}), "scan_start is 99500; must be 0 to 99000");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetRange{50'000, 50'001}), "scan_length is 50001; must be 1000 to 50000");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetRange{UINT32_MAX, UINT32_MAX}),
+              "scan_start is 4294967295; must be 0 to 99000");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetSpeedOfSound{0}), "speed_of_sound is 0; must be 100000 to 10000000");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetModeAuto{2}), "mode_auto is 2; must be 0 to 1");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetPingInterval{0}), "ping_interval is 0; must be 1 to 65535");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetGain{7}), "gain_setting is 7; must be 0 to 6");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetPingEnable{2}), "ping_enabled is 2; must be 0 to 1");
+    EXPECT_EQ(bench_.getRefusal(Ping1dSetDeviceId{255}), "id is 255; must be 0 to 254");
+    EXPECT_EQ(bench_.getRefusal(Ping1dContinuousStart{6}), "message 6 is not sent continuously");
     bench_.give(PingFrame{Ping1dSetRange::message, 0, 0, Bytes(7)}.bytes());
     EXPECT_EQ(bench_.only<PingNack>().text, "the payload is too short");
     bench_.give(PingFrame{1100, 0, 0, {}}.bytes());

@@ -16,7 +16,7 @@ Ping360Transducer transmitAt(uint16_t angle) { return {1, angle, acoustics, 1, 0
 
 struct Ping360EmulatorTest : ::testing::Test {
     /** Returns the angles of a scan's next pings. */
-    std::vector<int> anglesOf(int pings) {
+    std::vector<int> computeAngles(int pings) {
         std::vector<int> angles;
         for (int i = 0; i < 4 * pings && static_cast<int>(angles.size()) < pings; ++i) {
             if (const auto asked = bench_.asked()) bench_.answer(*asked);
@@ -26,9 +26,9 @@ struct Ping360EmulatorTest : ::testing::Test {
         }
         return angles;
     }
-    std::vector<int> scanOf(const Ping360Sector& sector, int pings) {
+    std::vector<int> makeScan(const Ping360Sector& sector, int pings) {
         bench_.say(Ping360AutoTransmit{1, acoustics, sector});
-        const auto angles = anglesOf(pings);
+        const auto angles = computeAngles(pings);
         bench_.say(Ping360MotorOff{});
         bench_.received();
         return angles;
@@ -133,7 +133,7 @@ TEST_F(Ping360EmulatorTest, RefusesValuesOutOfBoundsWithNameAndBounds) {
     const auto refusal = [&](auto change) {
         Ping360Transducer asked = transmitAt(0);
         change(asked);
-        return bench_.refusalOf(asked);
+        return bench_.getRefusal(asked);
     };
     EXPECT_EQ(refusal([](auto& m) { m.angle = 400; }), "angle is 400; must be 0 to 399");
     EXPECT_EQ(refusal([](auto& m) { m.mode = 2; }), "mode is 2; must be 0 to 1");
@@ -146,14 +146,14 @@ TEST_F(Ping360EmulatorTest, RefusesValuesOutOfBoundsWithNameAndBounds) {
     EXPECT_EQ(refusal([](auto& m) { m.acoustics.samples = 1201; }), "number_of_samples is 1201; must be 200 to 1200");
     EXPECT_FALSE(bench_.asked());
     const auto scan = [&](const Ping360Sector& sector) {
-        return bench_.refusalOf(Ping360AutoTransmit{1, acoustics, sector});
+        return bench_.getRefusal(Ping360AutoTransmit{1, acoustics, sector});
     };
     EXPECT_EQ(scan({400, 0, 1, 0}), "start_angle is 400; must be 0 to 399");
     EXPECT_EQ(scan({0, 400, 1, 0}), "stop_angle is 400; must be 0 to 399");
     EXPECT_EQ(scan({0, 399, 0, 0}), "num_steps is 0; must be 1 to 10");
     EXPECT_EQ(scan({0, 399, 1, 101}), "delay is 101; must be 0 to 100");
-    EXPECT_EQ(bench_.refusalOf(Ping360SetDeviceId{0, 0}), "id is 0; must be 1 to 254");
-    EXPECT_EQ(bench_.refusalOf(Ping360SetDeviceId{255, 0}), "id is 255; must be 1 to 254");
+    EXPECT_EQ(bench_.getRefusal(Ping360SetDeviceId{0, 0}), "id is 0; must be 1 to 254");
+    EXPECT_EQ(bench_.getRefusal(Ping360SetDeviceId{255, 0}), "id is 255; must be 1 to 254");
     bench_.give(PingFrame{Ping360Transducer::message, 0, 0, Bytes(5)}.bytes());
     EXPECT_EQ(bench_.only<PingNack>().text, "the payload is too short");
     bench_.give(PingFrame{4711, 0, 0, {}}.bytes());
@@ -170,19 +170,19 @@ TEST_F(Ping360EmulatorTest, AcceptsTheBounds) {
 }
 
 TEST_F(Ping360EmulatorTest, AScanAllRoundContinues) {
-    EXPECT_THAT(scanOf({398, 397, 1, 0}, 4), ElementsAre(398, 399, 0, 1));
-    EXPECT_THAT(scanOf({0, 399, 10, 0}, 42).back(), 10);
+    EXPECT_THAT(makeScan({398, 397, 1, 0}, 4), ElementsAre(398, 399, 0, 1));
+    EXPECT_THAT(makeScan({0, 399, 10, 0}, 42).back(), 10);
 }
 
 TEST_F(Ping360EmulatorTest, AScanOfAtMostHalfATurnReverses) {
-    EXPECT_THAT(scanOf({390, 10, 10, 0}, 6), ElementsAre(390, 0, 10, 0, 390, 0));
-    EXPECT_THAT(scanOf({100, 100, 1, 0}, 2), ElementsAre(100, 100));
+    EXPECT_THAT(makeScan({390, 10, 10, 0}, 6), ElementsAre(390, 0, 10, 0, 390, 0));
+    EXPECT_THAT(makeScan({100, 100, 1, 0}, 2), ElementsAre(100, 100));
 }
 
 TEST_F(Ping360EmulatorTest, AScanOfMoreThanHalfATurnRestarts) {
-    EXPECT_THAT(scanOf({0, 210, 10, 0}, 23).at(21), 210);
-    EXPECT_THAT(scanOf({0, 205, 10, 0}, 22), ::testing::Contains(200));
-    EXPECT_THAT(scanOf({0, 205, 10, 0}, 22).at(21), 0);
+    EXPECT_THAT(makeScan({0, 210, 10, 0}, 23).at(21), 210);
+    EXPECT_THAT(makeScan({0, 205, 10, 0}, 22), ::testing::Contains(200));
+    EXPECT_THAT(makeScan({0, 205, 10, 0}, 22).at(21), 0);
 }
 
 TEST_F(Ping360EmulatorTest, AScanReportsItsSectorAndKeepsItsDelay) {
@@ -214,7 +214,7 @@ TEST_F(Ping360EmulatorTest, ANewScanReplacesOneDuringAPing) {
     bench_.say(Ping360AutoTransmit{1, acoustics, {0, 399, 1, 0}});
     bench_.answer(*bench_.asked());
     bench_.say(Ping360AutoTransmit{1, acoustics, {100, 150, 10, 0}});
-    EXPECT_THAT(anglesOf(2), ElementsAre(100, 110)) << "the ping of the old scan is sent to no client";
+    EXPECT_THAT(computeAngles(2), ElementsAre(100, 110)) << "the ping of the old scan is sent to no client";
     bench_.say(transmitAt(0));
     EXPECT_FALSE(device_.scans()) << "a command by itself ends a scan";
 }
@@ -240,7 +240,7 @@ TEST_F(Ping360EmulatorTest, TwoClientsGetTheirOwnAnswersOneAfterTheOther) {
 TEST_F(Ping360EmulatorTest, RefusesTooManyCommands) {
     for (int i = 0; i < 16; ++i) bench_.say(transmitAt(0));
     EXPECT_THAT(bench_.received(), IsEmpty());
-    EXPECT_EQ(bench_.refusalOf(transmitAt(0)), "too many commands wait already");
+    EXPECT_EQ(bench_.getRefusal(transmitAt(0)), "too many commands wait already");
 }
 
 TEST_F(Ping360EmulatorTest, ADisconnectDuringAPingLeavesNoState) {
@@ -350,9 +350,9 @@ TEST_F(Ping360EmulatorTest, DiscoveryHasTheTextOfFinders) {
 
 TEST_F(Ping360EmulatorTest, RequiresThreeGains) {
     Ping360Config config;
-    EXPECT_THAT(test::refusalsOf(config), IsEmpty());
+    EXPECT_THAT(test::countRefusals(config), IsEmpty());
     config.gain_db = {1, 2};
-    EXPECT_THAT(test::refusalsOf(config), testing::SizeIs(1));
+    EXPECT_THAT(test::countRefusals(config), testing::SizeIs(1));
 }
 
 }  // namespace

@@ -56,9 +56,9 @@ struct Ping360TaskTest : ::testing::Test {
         pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(4));
         ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
-    DriverLine udp() const { return DriverLine::udp("127.0.0.1", task_.portOf(PingDeviceTask::udp)); }
+    DriverLine udp() const { return DriverLine::udp("127.0.0.1", task_.getPort(PingDeviceTask::udp)); }
     DriverLine tcp() const {
-        return DriverLine::tcp("127.0.0.1", task_.portOf(PingDeviceTask::tcp), std::chrono::seconds(10));
+        return DriverLine::tcp("127.0.0.1", task_.getPort(PingDeviceTask::tcp), std::chrono::seconds(10));
     }
     DriverLine serial() const { return DriverLine::serial(folder_ / "line"); }
     /** Runs a cycle of the task and of a sonar that answers at once. */
@@ -82,7 +82,7 @@ struct Ping360TaskTest : ::testing::Test {
         })) << Message::message;
         return found.value_or(Message{});
     }
-    uint8_t echoOf(const Ping360DeviceData& data) { return data.data.empty() ? 0 : data.data[0]; }
+    uint8_t getEcho(const Ping360DeviceData& data) { return data.data.empty() ? 0 : data.data[0]; }
 
     Folder folder_;
     Ping360Task task_{"ping360"};
@@ -99,7 +99,7 @@ TEST_F(Ping360TaskTest, AnswersByDatagramConnectionAndLine) {
         const auto data = next<Ping360DeviceData>(driver);
         EXPECT_EQ(data.angle, 250);
         EXPECT_EQ(data.data.size(), 600u);
-        EXPECT_EQ(echoOf(data), 45) << "the sonar's echo there";
+        EXPECT_EQ(getEcho(data), 45) << "the sonar's echo there";
         driver.say(Ping360Transducer{0, 400, own_acoustics, 1, 0});
         EXPECT_EQ(next<PingNack>(driver).text, "angle is 400; must be 0 to 399");
     }
@@ -110,8 +110,8 @@ TEST_F(Ping360TaskTest, TwoDriversGetTheirOwnEchoes) {
     for (int i = 0; i < 20; ++i) {
         a.say(Ping360Transducer{1, 250, own_acoustics, 1, 0});
         b.say(Ping360Transducer{1, 300, own_acoustics, 1, 0});
-        EXPECT_EQ(echoOf(next<Ping360DeviceData>(a)), 45);
-        EXPECT_EQ(echoOf(next<Ping360DeviceData>(b)), 90);
+        EXPECT_EQ(getEcho(next<Ping360DeviceData>(a)), 45);
+        EXPECT_EQ(getEcho(next<Ping360DeviceData>(b)), 90);
     }
 }
 
@@ -123,7 +123,7 @@ TEST_F(Ping360TaskTest, ADriverThatLeavesDuringAPingHarmsNoOther) {
     }
     Driver stays(tcp());
     stays.say(Ping360Transducer{1, 250, own_acoustics, 1, 0});
-    EXPECT_EQ(echoOf(next<Ping360DeviceData>(stays)), 45);
+    EXPECT_EQ(getEcho(next<Ping360DeviceData>(stays)), 45);
 }
 
 TEST_F(Ping360TaskTest, ANoisyLineLosesNoIntactFrame) {
@@ -151,7 +151,7 @@ TEST_F(Ping360TaskTest, ADriverThatDoesNotReadDelaysNoOther) {
 }
 
 TEST_F(Ping360TaskTest, AnswersDiscovery) {
-    const DriverLine finder = DriverLine::udp("127.0.0.1", task_.portOf(3));
+    const DriverLine finder = DriverLine::udp("127.0.0.1", task_.getPort(3));
     const std::string question = "Discovery";
     finder.send({reinterpret_cast<const uint8_t*>(question.data()), question.size()});
     Bytes answer;
@@ -168,12 +168,12 @@ TEST_F(Ping360TaskTest, AnswersDiscovery) {
 TEST_F(Ping360TaskTest, EndsThatCannotBeOpenedAreOneClearDiagnostic) {
     Ping360Task second("second");
     Ping360TaskConfig config;
-    config.ends.port = task_.portOf(PingDeviceTask::udp);
+    config.ends.port = task_.getPort(PingDeviceTask::udp);
     second.config.set(config);
     EXPECT_FALSE(second.configure());
     ASSERT_NE(second.configError(), nullptr);
     EXPECT_THAT(second.configError()->what(), HasSubstr("second.port: is 127.0.0.1:"));
-    EXPECT_THAT(test::refusalsOf(Ping360Discovery{30303, "300.1.2.3", "02-00"}),
+    EXPECT_THAT(test::countRefusals(Ping360Discovery{30303, "300.1.2.3", "02-00"}),
                 testing::ElementsAre("ip: is '300.1.2.3'; write it as 192.168.2.10",
                                      "mac: is '02-00'; write it as 02-00-00-00-03-60"));
 }
@@ -184,7 +184,7 @@ TEST_F(Ping360TaskTest, TheCommandRecognisesIt) {
     std::thread asking([&] {
         ProbeAddress address;
         address.host = "127.0.0.1";
-        address.port = task_.portOf(PingDeviceTask::udp);
+        address.port = task_.getPort(PingDeviceTask::udp);
         outcomes = probe(address, std::chrono::seconds(20));
         done = true;
     });
@@ -203,7 +203,7 @@ TEST(Ping1dTaskTest, AnswersByDatagram) {
     config.ends.port = 0;
     task.config.set(config);
     ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
-    Driver driver(DriverLine::udp("127.0.0.1", task.portOf(PingDeviceTask::udp)));
+    Driver driver(DriverLine::udp("127.0.0.1", task.getPort(PingDeviceTask::udp)));
     driver.say(PingGeneralRequest{PingDeviceInformation::message});
     std::optional<PingDeviceInformation> about;
     EXPECT_TRUE(test::becomesTrue([&] {

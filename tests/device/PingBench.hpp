@@ -69,7 +69,7 @@ public:
         return message.value_or(Message{});
     }
     template <class Message>
-    std::string refusalOf(const Message& message) {
+    std::string getRefusal(const Message& message) {
         say(message);
         const PingNack nack = only<PingNack>();
         EXPECT_EQ(nack.nacked, Message::message);

@@ -28,7 +28,7 @@ Bytes randomEchoes(Draw& draw, size_t count) {
     return data;
 }
 
-Ping360AutoDeviceData scanOf(Draw& draw) {
+Ping360AutoDeviceData makeScan(Draw& draw) {
     Ping360AutoDeviceData data;
     data.angle = static_cast<uint16_t>(draw.upTo(400));
     data.acoustics = {static_cast<uint8_t>(draw.upTo(3)), 32, static_cast<uint16_t>(80 + draw.upTo(39'921)),
@@ -37,7 +37,7 @@ Ping360AutoDeviceData scanOf(Draw& draw) {
     return data;
 }
 
-Ping1dProfile profileOf(Draw& draw) {
+Ping1dProfile makeProfile(Draw& draw) {
     Ping1dProfile profile;
     profile.measurement = {static_cast<uint32_t>(500 + draw.upTo(60'000)),
                            static_cast<uint16_t>(draw.upTo(101)),
@@ -96,7 +96,7 @@ TEST_F(PingViewerLogTest, ScansAreReadBackHoweverTheirBytesArrive) {
         std::vector<double> times;
         Bytes line;
         for (double seconds = draw.between(0, 5); sent.size() < 8; seconds += draw.between(0.01, 3)) {
-            const Ping360AutoDeviceData data = scanOf(draw);
+            const Ping360AutoDeviceData data = makeScan(draw);
             const Bytes bytes = draw.once(2) ? pingBytes(data, 2)
                                              : pingBytes(Ping360DeviceData{1, data.angle, data.acoustics, data.data});
             line.insert(line.end(), bytes.begin(), bytes.end());
@@ -141,7 +141,7 @@ TEST_F(PingViewerLogTest, ProfilesAreReadBackByTheReportedSpeedOfSound) {
         if (speed != 1500) parts.push_back(pingViewerRecord("00:00:00.100", pingBytes(reported)));
         std::vector<Ping1dProfile> sent;
         for (int i = 0; i < 5; ++i) {
-            sent.push_back(profileOf(draw));
+            sent.push_back(makeProfile(draw));
             parts.push_back(pingViewerRecord(pingViewerTime(1 + i), pingBytes(sent.back(), 1)));
         }
         const auto pings = read(parts);
@@ -166,7 +166,7 @@ TEST_F(PingViewerLogTest, ProfilesAreReadBackByTheReportedSpeedOfSound) {
 
 TEST_F(PingViewerLogTest, TimesAreSinceTheDateInTheNameAndGoOnAfterMidnight) {
     Draw draw(1);
-    const Bytes scan = pingBytes(scanOf(draw));
+    const Bytes scan = pingBytes(makeScan(draw));
     const std::vector<RecordedBytes> parts{pingViewerHeader(),
                                            pingViewerRecord("00:00:03.250", scan),
                                            pingViewerRecord("13:00:00.000", scan),
@@ -194,16 +194,16 @@ TEST_F(PingViewerLogTest, TimesAreSinceTheDateInTheNameAndGoOnAfterMidnight) {
 
 TEST_F(PingViewerLogTest, OtherAndOddMessagesAreOmittedAndCounted) {
     Draw draw(2);
-    Ping360AutoDeviceData odd = scanOf(draw), silent = scanOf(draw);
+    Ping360AutoDeviceData odd = makeScan(draw), silent = makeScan(draw);
     odd.angle = 400;
     silent.data.clear();
-    Bytes damaged = pingBytes(scanOf(draw));
+    Bytes damaged = pingBytes(makeScan(draw));
     damaged[30] ^= 0x10;
-    const Bytes good = pingBytes(scanOf(draw)), noise{1, 'B', 2, 3};
+    const Bytes good = pingBytes(makeScan(draw)), noise{1, 'B', 2, 3};
     std::vector<RecordedBytes> parts{pingViewerHeader()};
     size_t second = 0;
     for (const Bytes& bytes : {pingBytes(PingText{"hello"}), damaged, good, pingBytes(odd), pingBytes(silent), noise,
-                               pingBytes(profileOf(draw)), damaged, good})
+                               pingBytes(makeProfile(draw)), damaged, good})
         parts.push_back(pingViewerRecord(pingViewerTime(static_cast<double>(++second)), bytes));
     EXPECT_THAT(read(parts), SizeIs(2));
     EXPECT_TRUE(isNoticed("2 messages have a wrong checksum and are omitted; the first: in the record at byte "));
@@ -213,12 +213,12 @@ TEST_F(PingViewerLogTest, OtherAndOddMessagesAreOmittedAndCounted) {
     EXPECT_TRUE(isNoticed("4 bytes between messages are omitted"));
     EXPECT_TRUE(isNoticed("1 messages 3 are omitted"));
     EXPECT_TRUE(isNoticed("1 messages 1300 are omitted")) << "those of the other device";
-    Ping1dProfile no_length = profileOf(draw), far = profileOf(draw);
+    Ping1dProfile no_length = makeProfile(draw), far = makeProfile(draw);
     no_length.measurement.length = 0;
     far.measurement.start = 4'000'000'000;
     EXPECT_THAT(read({pingViewerHeader(), pingViewerRecord("00:00:01.000", pingBytes(no_length)),
                       pingViewerRecord("00:00:02.000", pingBytes(far)),
-                      pingViewerRecord("00:00:03.000", pingBytes(profileOf(draw)))}),
+                      pingViewerRecord("00:00:03.000", pingBytes(makeProfile(draw)))}),
                 SizeIs(1));
     EXPECT_TRUE(isNoticed("2 messages contradict themselves")) << testing::PrintToString(notices_);
 }
@@ -227,7 +227,7 @@ TEST_F(PingViewerLogTest, ATruncatedFileHasTheWholeRecordsBefore) {
     Draw draw(3);
     std::vector<RecordedBytes> parts{pingViewerHeader()};
     for (int i = 0; i < 3; ++i) {
-        Ping360AutoDeviceData data = scanOf(draw);
+        Ping360AutoDeviceData data = makeScan(draw);
         data.data.resize(20);
         parts.push_back(pingViewerRecord(pingViewerTime(i), pingBytes(data)));
     }
@@ -242,7 +242,7 @@ TEST_F(PingViewerLogTest, ATruncatedFileHasTheWholeRecordsBefore) {
             is_between = is_between || size == end;
         }
         if (size < parts[0].size()) {
-            EXPECT_THAT(errorOf<types::ConfigError>([&] { read({cut}); }), HasSubstr("dive.bin: byte ")) << size;
+            EXPECT_THAT(computeError<types::ConfigError>([&] { read({cut}); }), HasSubstr("dive.bin: byte ")) << size;
             continue;
         }
         EXPECT_THAT(read({cut}), SizeIs(whole)) << size;
@@ -254,7 +254,7 @@ TEST_F(PingViewerLogTest, DamageCostsOnlyTheDamagedRecords) {
     Draw draw(4);
     std::vector<RecordedBytes> parts{pingViewerHeader()};
     for (int i = 0; i < 6; ++i) {
-        Ping360AutoDeviceData data = scanOf(draw);
+        Ping360AutoDeviceData data = makeScan(draw);
         data.data.resize(20);
         parts.push_back(pingViewerRecord(pingViewerTime(i), pingBytes(data)));
     }
@@ -275,7 +275,7 @@ TEST_F(PingViewerLogTest, DamageCostsOnlyTheDamagedRecords) {
 
 TEST_F(PingViewerLogTest, AFileThatIsNoLogIsOneErrorWithItsPlace) {
     const auto refusal = [&](const RecordedBytes& bytes) {
-        return errorOf<types::ConfigError>([&] { read({bytes}); });
+        return computeError<types::ConfigError>([&] { read({bytes}); });
     };
     EXPECT_THAT(refusal(pingViewerText("PingViewer other file", PingViewerTexts::Wide)),
                 HasSubstr("dive.bin: byte 0: does not begin with the text 'PingViewer sensor log file', nor as another "
@@ -286,7 +286,7 @@ TEST_F(PingViewerLogTest, AFileThatIsNoLogIsOneErrorWithItsPlace) {
     EXPECT_THAT(refusal(bigEndian(1'000'000)), HasSubstr("dive.bin: byte 0: is no text"));
     EXPECT_THAT(read({pingViewerHeader()}), IsEmpty());
     PingViewerReader empty(folder_ / "dive.bin");
-    EXPECT_THAT(errorOf<types::ConfigError>([&] { empty.next(); }),
+    EXPECT_THAT(computeError<types::ConfigError>([&] { empty.next(); }),
                 HasSubstr("holds no ping of a Ping360 or a Ping1D"));
 }
 

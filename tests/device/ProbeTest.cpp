@@ -35,7 +35,7 @@ TEST(ProbeTest, AnAddressIsAHostAPortOrALine) {
     EXPECT_EQ(probeAddress("::1").host, "::1");
     EXPECT_EQ(probeAddress("/dev/ttyUSB0").serial, "/dev/ttyUSB0");
     const auto why = [](const std::string& text) -> std::string {
-        return test::errorOf<types::ConfigError>([&] { probeAddress(text); });
+        return test::computeError<types::ConfigError>([&] { probeAddress(text); });
     };
     EXPECT_THAT(why(""), HasSubstr("names no host"));
     EXPECT_THAT(why(":5"), HasSubstr("names no host"));
@@ -51,20 +51,20 @@ TEST(ProbeTest, DevicesAreIdentified) {
               "Blue Robotics Ping1D, id 7, revision 2, firmware 3.29.0, protocol 1.0.0");
     EXPECT_FALSE(pingDeviceIn(information)) << "the rest has not arrived";
     EXPECT_THAT(*pingDeviceIn(pingBytes(PingDeviceInformation{9, 0, 0, 0, 0, 0}) + version), HasSubstr("of type 9"));
-    EXPECT_EQ(ping360DiscoveryIn(bytesOf("SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 02-00\r\n")),
+    EXPECT_EQ(ping360DiscoveryIn(toBytes("SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 02-00\r\n")),
               "SONAR PING360, Blue Robotics, MAC Address:- 02-00");
     OculusStatus status{.part = 1032, .address = {192, 168, 2, 3}};
-    EXPECT_EQ(oculusIn(bytesOf(status)), "Blueprint Subsea Oculus M750d, at 192.168.2.3, running");
+    EXPECT_EQ(oculusIn(toBytes(status)), "Blueprint Subsea Oculus M750d, at 192.168.2.3, running");
     status.status = 1;
-    EXPECT_THAT(*oculusIn(bytesOf(status)), HasSubstr("not ready"));
+    EXPECT_THAT(*oculusIn(toBytes(status)), HasSubstr("not ready"));
     status.part = 9;
-    EXPECT_THAT(*oculusIn(bytesOf(status)), HasSubstr("Oculus of part 9,"));
+    EXPECT_THAT(*oculusIn(toBytes(status)), HasSubstr("Oculus of part 9,"));
     EXPECT_EQ(oculusIn(oculusDummy(1, 1032)), "Blueprint Subsea Oculus M750d, alive");
     EXPECT_EQ(oculusIn(oculusLog(1, 1032, "")), "Blueprint Subsea Oculus M750d, message 0x80");
     EXPECT_EQ(seaNetIn(SeaNetAlive{}.message().packet()), "Tritech SeaNet device, node 2, alive");
     EXPECT_EQ(seaNetIn(Bytes{'@', '0'} + SeaNetVersion{.software = 3, .serial = 1234}.message().packet()),
               "Tritech SeaNet device, node 2, software 3, serial number 1234");
-    EXPECT_EQ(sonar3dIn(bytesOf("HTTP/1.1 200 OK\r\n\r\n{\"version_short\": \"1.7.1\"}")),
+    EXPECT_EQ(sonar3dIn(toBytes("HTTP/1.1 200 OK\r\n\r\n{\"version_short\": \"1.7.1\"}")),
               "Water Linked Sonar 3D-15, version 1.7.1");
 }
 
@@ -81,8 +81,8 @@ TEST(ProbeTest, RejectsBytesThatOnlyResembleSeaNet) {
 }
 
 TEST(ProbeTest, ForeignBytesAreNotADevice) {
-    for (const Bytes& bytes : {Bytes{}, Bytes{0}, Bytes(200, 'B'), bytesOf("HTTP/1.1 404 Not Found\r\n\r\n{}"),
-                               bytesOf("SONAR"), bytesOf("SONAR PING360\x01"), Bytes(200, '@')}) {
+    for (const Bytes& bytes : {Bytes{}, Bytes{0}, Bytes(200, 'B'), toBytes("HTTP/1.1 404 Not Found\r\n\r\n{}"),
+                               toBytes("SONAR"), toBytes("SONAR PING360\x01"), Bytes(200, '@')}) {
         EXPECT_FALSE(pingDeviceIn(bytes));
         EXPECT_FALSE(ping360DiscoveryIn(bytes));
         EXPECT_FALSE(oculusIn(bytes));
@@ -94,7 +94,7 @@ TEST(ProbeTest, ForeignBytesAreNotADevice) {
 TEST(ProbeTest, ReportsNoAnswerWithPossibleCauses) {
     Network network([] {});
     const End end = network.listenTcp("127.0.0.1", 0);
-    ProbeAddress address{"127.0.0.1", "", network.portOf(end)};
+    ProbeAddress address{"127.0.0.1", "", network.getPort(end)};
     for (const ProbeOutcome& outcome : probe(address, std::chrono::milliseconds(20))) {
         EXPECT_EQ(outcome.device, "");
         EXPECT_NE(outcome.failure, "") << outcome.asked;
@@ -112,7 +112,7 @@ public:
     StatusSender(const char* from, uint16_t port, const OculusStatus& status) {
         const sockaddr_in here = test::Socket::address(inet_addr(from), 0);
         EXPECT_EQ(bind(socket_.file(), reinterpret_cast<const sockaddr*>(&here), sizeof here), 0);
-        thread_ = std::thread([this, port, bytes = bytesOf(status)] {
+        thread_ = std::thread([this, port, bytes = toBytes(status)] {
             const sockaddr_in to = test::Socket::address(htonl(INADDR_LOOPBACK), port);
             while (!stop_) {
                 sendto(socket_.file(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
@@ -135,18 +135,18 @@ private:
 TEST(ProbeTest, AcceptsBroadcastsOfTheProbedDeviceOnly) {
     const uint16_t port = test::OculusListener().port();
     const Probe question{"Oculus status", Probe::Line::Broadcast, port, {}, oculusIn, "silence"};
-    const auto receivedOf = [&](const char* host, int patience_ms) {
+    const auto computeReceived = [&](const char* host, int patience_ms) {
         return ask(question, {host, "", 0}, std::chrono::milliseconds(patience_ms)).device;
     };
     const StatusSender other("127.0.0.2", port, {.part = 1042, .address = {192, 168, 2, 3}});
-    EXPECT_THAT(receivedOf("127.0.0.2", 10000), HasSubstr("M1200d")) << "by its sender";
-    EXPECT_THAT(receivedOf("192.168.2.3", 10000), HasSubstr("M1200d")) << "by its own address";
-    EXPECT_EQ(receivedOf("127.0.0.1", 100), "");
-    EXPECT_EQ(receivedOf("::1", 100), "");
-    EXPECT_EQ(receivedOf("192.168.2.4", 100), "");
+    EXPECT_THAT(computeReceived("127.0.0.2", 10000), HasSubstr("M1200d")) << "by its sender";
+    EXPECT_THAT(computeReceived("192.168.2.3", 10000), HasSubstr("M1200d")) << "by its own address";
+    EXPECT_EQ(computeReceived("127.0.0.1", 100), "");
+    EXPECT_EQ(computeReceived("::1", 100), "");
+    EXPECT_EQ(computeReceived("192.168.2.4", 100), "");
     const StatusSender own("127.0.0.1", port, {.part = 1032});
-    EXPECT_THAT(receivedOf("127.0.0.1", 10000), HasSubstr("M750d"));
-    EXPECT_THAT(receivedOf("::1", 10000), HasSubstr("M750d"));
+    EXPECT_THAT(computeReceived("127.0.0.1", 10000), HasSubstr("M750d"));
+    EXPECT_THAT(computeReceived("::1", 10000), HasSubstr("M750d"));
 }
 
 TEST(ProbeTest, ANegativePatienceDoesNotWait) {

@@ -48,7 +48,7 @@ void expectSameFrame(const RipImage& got, const RipImage& sent) {
     EXPECT_EQ(got.vertical_opening_deg, sent.vertical_opening_deg);
 }
 
-std::string diagnosticOf(const Bytes& bytes) {
+std::string findDiagnostic(const Bytes& bytes) {
     std::vector<std::string> diagnostics;
     EXPECT_THAT(ripMessages(bytes, &diagnostics), IsEmpty());
     return diagnostics.empty() ? "" : diagnostics.front();
@@ -137,17 +137,17 @@ TEST(Rip2Test, FindsPacketsAmongOtherBytes) {
 TEST(Rip2Test, RejectsShortLongAndDamagedPackets) {
     const Bytes whole = ripPacket(someRanges());
     for (size_t length = 4; length < whole.size(); ++length)
-        EXPECT_THAT(diagnosticOf({whole.begin(), whole.begin() + static_cast<long>(length)}), HasSubstr("is cut off"))
+        EXPECT_THAT(findDiagnostic({whole.begin(), whole.begin() + static_cast<long>(length)}), HasSubstr("is cut off"))
             << length;
     for (size_t at = 8; at < whole.size(); ++at) {
         Bytes changed = whole;
         changed[at] ^= 0x10;
-        EXPECT_THAT(diagnosticOf(changed), HasSubstr("has a wrong checksum")) << at;
+        EXPECT_THAT(findDiagnostic(changed), HasSubstr("has a wrong checksum")) << at;
     }
     for (const uint32_t length : {0u, 11u, 65508u, 0xFFFFFFFFu}) {
         Bytes changed = whole;
         write(changed, 4, length);
-        EXPECT_THAT(diagnosticOf(changed), HasSubstr("may have 12 to 65507")) << length;
+        EXPECT_THAT(findDiagnostic(changed), HasSubstr("may have 12 to 65507")) << length;
     }
     Bytes longer = whole;
     longer.insert(longer.end(), 9, 0);
@@ -157,32 +157,32 @@ TEST(Rip2Test, RejectsShortLongAndDamagedPackets) {
 TEST(Rip2Test, ReportsContradictionsWithTheirNumbers) {
     RangePixels fewer = someRanges();
     fewer.pixels.pop_back();
-    EXPECT_THAT(diagnosticOf(ripPacket(fewer)), HasSubstr("has 5 pixels, but its header has 3 x 2"));
+    EXPECT_THAT(findDiagnostic(ripPacket(fewer)), HasSubstr("has 5 pixels, but its header has 3 x 2"));
     RangePixels large = someRanges();
     large.pixels[3] = 65536;
-    EXPECT_THAT(diagnosticOf(ripPacket(large)), HasSubstr("has a pixel of 65536"));
+    EXPECT_THAT(findDiagnostic(ripPacket(large)), HasSubstr("has a pixel of 65536"));
     RangePixels unscaled = someRanges();
     unscaled.pixel_scale = NAN;
-    EXPECT_THAT(diagnosticOf(ripPacket(unscaled)), HasSubstr("has a pixel scale of nan"));
+    EXPECT_THAT(findDiagnostic(ripPacket(unscaled)), HasSubstr("has a pixel scale of nan"));
     StrengthPixels endless = someStrengths();
     endless.range = INFINITY;
-    EXPECT_THAT(diagnosticOf(ripPacket(endless)), HasSubstr("has a value of inf"));
+    EXPECT_THAT(findDiagnostic(ripPacket(endless)), HasSubstr("has a value of inf"));
     StrengthPixels missing = someStrengths();
     missing.height = 4;
-    EXPECT_THAT(diagnosticOf(ripPacket(missing)), HasSubstr("has 6 pixels, but its header has 3 x 4"));
-    EXPECT_THAT(diagnosticOf(packed({0x0A, 5, 1})), HasSubstr("holds no message"));
-    EXPECT_THAT(diagnosticOf(packed({})), HasSubstr("holds no message"));
+    EXPECT_THAT(findDiagnostic(ripPacket(missing)), HasSubstr("has 6 pixels, but its header has 3 x 4"));
+    EXPECT_THAT(findDiagnostic(packed({0x0A, 5, 1})), HasSubstr("holds no message"));
+    EXPECT_THAT(findDiagnostic(packed({})), HasSubstr("holds no message"));
     const std::string type = "type.googleapis.com/waterlinked.sonar.protocol.RangeImage";
-    EXPECT_THAT(diagnosticOf(wrapped(type, {0x52, 2, 0x80, 0x80})), HasSubstr("has pixels that are cut off"));
-    EXPECT_THAT(diagnosticOf(wrapped(type, {0x28})), HasSubstr("holds a range image that is cut off"));
-    EXPECT_THAT(diagnosticOf(wrapped(type, {0x0A, 4, 0x0A, 2, 0x10, 0xFF})), HasSubstr("has a stamp that is none"));
+    EXPECT_THAT(findDiagnostic(wrapped(type, {0x52, 2, 0x80, 0x80})), HasSubstr("has pixels that are cut off"));
+    EXPECT_THAT(findDiagnostic(wrapped(type, {0x28})), HasSubstr("holds a range image that is cut off"));
+    EXPECT_THAT(findDiagnostic(wrapped(type, {0x0A, 4, 0x0A, 2, 0x10, 0xFF})), HasSubstr("has a stamp that is none"));
 }
 
 TEST(Rip2Test, RejectsAPayloadThatIsNotSnappy) {
     Bytes changed = packed({0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 1, 2, 3});  // says that it has 32 GB
     changed[3] = '2';
     changed.resize(changed.size() - 4);
-    EXPECT_THAT(diagnosticOf(withSum(changed)), HasSubstr("is compressed by something else than snappy"));
+    EXPECT_THAT(findDiagnostic(withSum(changed)), HasSubstr("is compressed by something else than snappy"));
 }
 
 /** Pixels one by one, in another order and with unknown fields, as other writers may send them. */

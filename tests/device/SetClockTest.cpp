@@ -94,7 +94,7 @@ protected:
     Bench bench_{GetParam().steps, GetParam().sonar_refuses};
 };
 
-types::Sonar pingOf(const types::SonarSettings& asked, Time stamp, uint32_t beams) {
+types::Sonar makePing(const types::SonarSettings& asked, Time stamp, uint32_t beams) {
     types::Sonar ping;
     ping.time = stamp;
     ping.speed_of_sound = 1500;
@@ -115,7 +115,7 @@ TEST_P(SetClockTest, OculusPingsAtItsRateSendsItsStatusAndItsClockNeverGoesBack)
     device.opened(1);
     OculusFire fire{.range = 5};
     fire.header.version = 2;
-    device.received(1, bytesOf(fire));
+    device.received(1, toBytes(fire));
     bench_.tick = [&](Time clock) {
         const auto due = device.tick(clock);
         if (due.ask) bench_.ask(*due.ask);
@@ -124,7 +124,7 @@ TEST_P(SetClockTest, OculusPingsAtItsRateSendsItsStatusAndItsClockNeverGoesBack)
     };
     bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time) {
         device.follow(bench_.clock());
-        const Bytes message = device.ping(pingOf(asked, stamp, asked.beam_count));
+        const Bytes message = device.ping(makePing(asked, stamp, asked.beam_count));
         if (message.empty()) return;
         pings.push_back(bench_.now());
         const double start_s = oculusResult(message).value().start_s;
@@ -153,7 +153,7 @@ TEST_P(SetClockTest, Ping1dStreamsAndAnswersRequests) {
         return device.wakeAt();
     };
     bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time clock) {
-        device.setPing(std::make_shared<types::Sonar>(pingOf(asked, stamp, 1)), clock);
+        device.setPing(std::make_shared<types::Sonar>(makePing(asked, stamp, 1)), clock);
     };
     device.receive(1, pingBytes(Ping1dSetModeAuto{0}, 0, 0), true, bench_.clock());
     device.receive(1, pingBytes(Ping1dSetRange{0, 5000}, 0, 0), true, bench_.clock());
@@ -177,7 +177,7 @@ TEST_P(SetClockTest, Ping360ScansItsSector) {
         return device.wakeAt();
     };
     bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time clock) {
-        device.setPing(std::make_shared<types::Sonar>(pingOf(asked, stamp, 1)), clock);
+        device.setPing(std::make_shared<types::Sonar>(makePing(asked, stamp, 1)), clock);
     };
     const Ping360Acoustics acoustics{1, 50, 100, 750, 600};
     device.receive(1, pingBytes(Ping360AutoTransmit{1, acoustics, {0, 399, 4, 20}}, 0, 0), true, bench_.clock());
@@ -207,7 +207,7 @@ TEST_P(SetClockTest, MicronScansLineAfterLine) {
     bench_.tick = [&](Time clock) { return device.tick(clock); };
     bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time) {
         device.follow(bench_.clock());
-        device.setPing(pingOf(asked, stamp, 1));
+        device.setPing(makePing(asked, stamp, 1));
     };
     device.opened(client);
     test::MicronDriver driver(

@@ -211,8 +211,8 @@ using Seeds = std::vector<uint64_t>;
 
 /** Returns the seeds of sources a and b, with these properties of b, keys of the document, seed of the run, and
  *  --set. */
-Seeds seedsOf(const std::string& of_b, const std::string& document = "", uint64_t seed = 0,
-              const std::string& set = "") {
+Seeds readSeeds(const std::string& of_b, const std::string& document = "", uint64_t seed = 0,
+                const std::string& set = "") {
     Registry registry = test::testRegistry();
     DeploymentSpec spec = DeploymentSpec::parse(document +
                                                     "tasks:\n  a: {type: test::Source, activity: {period: 1}}\n"
@@ -228,21 +228,22 @@ Seeds seedsOf(const std::string& of_b, const std::string& document = "", uint64_
 }
 
 TEST(DeploymentRunTest, TaskSeedsDeriveFromTheDeploymentsSeedAndTheTasksName) {
-    EXPECT_EQ(seedsOf(""), (Seeds{seedOf(1, "a"), seedOf(1, "b")}));
-    EXPECT_NE(seedOf(1, "a"), seedOf(1, "b"));
-    EXPECT_EQ(seedsOf("", "seed: 1\n"), seedsOf(""));
-    EXPECT_EQ(seedsOf("", "seed: 5\n"), (Seeds{seedOf(5, "a"), seedOf(5, "b")}));
-    EXPECT_EQ(seedsOf("", "seed: 0\n"), (Seeds{seedOf(0, "a"), seedOf(0, "b")}));
-    EXPECT_EQ(seedsOf("last: 2"), seedsOf("")) << "other properties change nothing";
-    EXPECT_THAT(test::refused([&] { seedsOf("", "seed: many\n"); }),
+    EXPECT_EQ(readSeeds(""), (Seeds{computeSeed(1, "a"), computeSeed(1, "b")}));
+    EXPECT_NE(computeSeed(1, "a"), computeSeed(1, "b"));
+    EXPECT_EQ(readSeeds("", "seed: 1\n"), readSeeds(""));
+    EXPECT_EQ(readSeeds("", "seed: 5\n"), (Seeds{computeSeed(5, "a"), computeSeed(5, "b")}));
+    EXPECT_EQ(readSeeds("", "seed: 0\n"), (Seeds{computeSeed(0, "a"), computeSeed(0, "b")}));
+    EXPECT_EQ(readSeeds("last: 2"), readSeeds("")) << "other properties change nothing";
+    EXPECT_THAT(test::refused([&] { readSeeds("", "seed: many\n"); }),
                 testing::Contains(testing::StartsWith("a.yml:1:7: seed: ")));
 }
 
 TEST(DeploymentRunTest, KeepsAWrittenSeed) {
-    EXPECT_EQ(seedsOf("seed: 7"), (Seeds{seedOf(1, "a"), 7}));
-    EXPECT_EQ(seedsOf("seed: 1", "seed: 5\n"), (Seeds{seedOf(5, "a"), 1})) << "the struct's default, but written";
-    EXPECT_EQ(seedsOf("", "", 0, "b.seed=7"), (Seeds{seedOf(1, "a"), 7}));
-    EXPECT_EQ(seedsOf("seed: 7", "", 0, "b.seed=null"), seedsOf("")) << "removed again";
+    EXPECT_EQ(readSeeds("seed: 7"), (Seeds{computeSeed(1, "a"), 7}));
+    EXPECT_EQ(readSeeds("seed: 1", "seed: 5\n"), (Seeds{computeSeed(5, "a"), 1}))
+        << "the struct's default, but written";
+    EXPECT_EQ(readSeeds("", "", 0, "b.seed=7"), (Seeds{computeSeed(1, "a"), 7}));
+    EXPECT_EQ(readSeeds("seed: 7", "", 0, "b.seed=null"), readSeeds("")) << "removed again";
 }
 
 struct PlacedConfig {
@@ -255,7 +256,7 @@ struct Placed : TaskContext {
 };
 
 /** Returns the datum of tasks a and b of a deployment with these keys of the document and properties, as texts. */
-std::string datumsOf(const std::string& document, const std::string& of_a = "", const std::string& of_b = "") {
+std::string readDatums(const std::string& document, const std::string& of_a = "", const std::string& of_b = "") {
     Registry registry = test::testRegistry();
     registry.add<Placed>("test::Placed", "is somewhere");
     const auto task = [](const std::string& properties) {
@@ -273,22 +274,22 @@ std::string datumsOf(const std::string& document, const std::string& of_a = "", 
 
 TEST(DeploymentRunTest, ADatumOfTheDeploymentIsThatOfAllTasksThatHaveOne) {
     const std::string kiel = "{latitude_deg: 54.5, longitude_deg: 10.25, height_m: 40}";
-    EXPECT_EQ(datumsOf(""), "none none ");
-    EXPECT_EQ(datumsOf("datum: " + kiel + "\n"), kiel + " " + kiel + " ");
-    EXPECT_EQ(datumsOf("datum: " + kiel + "\n", "datum: " + kiel), kiel + " " + kiel + " ");
-    EXPECT_EQ(datumsOf("", "datum: " + kiel), kiel + " none ");
-    EXPECT_EQ(datumsOf("datum: {latitude_deg: -90, longitude_deg: 360}\n").substr(0, 60),
+    EXPECT_EQ(readDatums(""), "none none ");
+    EXPECT_EQ(readDatums("datum: " + kiel + "\n"), kiel + " " + kiel + " ");
+    EXPECT_EQ(readDatums("datum: " + kiel + "\n", "datum: " + kiel), kiel + " " + kiel + " ");
+    EXPECT_EQ(readDatums("", "datum: " + kiel), kiel + " none ");
+    EXPECT_EQ(readDatums("datum: {latitude_deg: -90, longitude_deg: 360}\n").substr(0, 60),
               "{latitude_deg: -90, longitude_deg: 360, height_m: 0} {latitu");
 }
 
 TEST(DeploymentRunTest, TasksWithOtherDatumsAreRefused) {
     const std::string kiel = "{latitude_deg: 54.5, longitude_deg: 10.25, height_m: 40}",
                       faro = "{latitude_deg: 37, longitude_deg: -8, height_m: 50}";
-    EXPECT_THAT(test::refused([&] { datumsOf("datum: " + kiel + "\n", "", "datum: " + faro); }),
+    EXPECT_THAT(test::refused([&] { readDatums("datum: " + kiel + "\n", "", "datum: " + faro); }),
                 testing::ElementsAre(AllOf(testing::StartsWith("a.yml:4:"),
                                            HasSubstr("tasks.b.properties.datum: is " + faro + ", and datum is " + kiel),
                                            HasSubstr("a world has one origin"))));
-    EXPECT_THAT(test::refused([&] { datumsOf("", "datum: " + kiel, "datum: " + faro); }),
+    EXPECT_THAT(test::refused([&] { readDatums("", "datum: " + kiel, "datum: " + faro); }),
                 testing::ElementsAre(
                     HasSubstr("tasks.b.properties.datum: is " + faro + ", and tasks.a.properties.datum is " + kiel)));
 }
@@ -313,17 +314,17 @@ TEST(DeploymentRunTest, ADatumThatIsNoPlaceIsRefused) {
         {"{latitude_deg: 54 N, longitude_deg: 10}", "datum.latitude_deg: is 54 N"},
         {"{latitude_deg: [54], longitude_deg: 10}", "datum.latitude_deg: "}};
     for (const auto& [datum, words] : all) {
-        const auto whole = test::refused([&, given = datum] { datumsOf(std::string("datum: ") + given + "\n"); });
+        const auto whole = test::refused([&, given = datum] { readDatums(std::string("datum: ") + given + "\n"); });
         EXPECT_THAT(whole, testing::Contains(AllOf(testing::StartsWith("a.yml:1:"), HasSubstr(words)))) << datum;
-        const auto own = test::refused([&, given = datum] { datumsOf("", std::string("datum: ") + given); });
+        const auto own = test::refused([&, given = datum] { readDatums("", std::string("datum: ") + given); });
         EXPECT_THAT(own, testing::Contains(HasSubstr(words))) << datum;
     }
 }
 
 TEST(DeploymentRunTest, TheRunsSeedReachesEveryTaskWithASeed) {
-    EXPECT_EQ(seedsOf("", "", 5), seedsOf("", "seed: 5\n"));
-    EXPECT_EQ(seedsOf("seed: 7", "seed: 9\n", 5), seedsOf("", "", 5)) << "for any written seed";
-    EXPECT_EQ(seedsOf("seed: 7", "", 5, "b.seed=8"), (Seeds{seedOf(5, "a"), 8})) << "except --set";
+    EXPECT_EQ(readSeeds("", "", 5), readSeeds("", "seed: 5\n"));
+    EXPECT_EQ(readSeeds("seed: 7", "seed: 9\n", 5), readSeeds("", "", 5)) << "for any written seed";
+    EXPECT_EQ(readSeeds("seed: 7", "", 5, "b.seed=8"), (Seeds{computeSeed(5, "a"), 8})) << "except --set";
 }
 
 /** Has a seed with too few bits for a hash. */

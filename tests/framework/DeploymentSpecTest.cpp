@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
 /** Returns every diagnostic of a deployment, as reported before anything starts. */
-std::vector<std::string> diagnosticsOf(const std::string& yaml, const std::vector<std::string>& sets = {}) {
+std::vector<std::string> findDiagnostics(const std::string& yaml, const std::vector<std::string>& sets = {}) {
     Registry registry = test::testRegistry();
     return test::refused([&] {
         DeploymentSpec spec = DeploymentSpec::parse(yaml, "a.yml");
@@ -42,7 +42,7 @@ TEST(DeploymentSpecTest, ReportsAllDiagnosticsOfAFileAtOnce) {
         "  - {from: relay.out, to: words.in}\n"
         "  - {from: relay.out, to: relay.extra, policy: {type: ring, size: 0}}\n";
     EXPECT_THAT(
-        diagnosticsOf(yaml),
+        findDiagnostics(yaml),
         UnorderedElementsAre(
             "a.yml:1:11: schedule: is sometimes; may be lockstep, realtime",
             HasSubstr("a.yml:2:1: color: is not a key here"),
@@ -74,7 +74,7 @@ TEST(DeploymentSpecTest, SchedulersPrioritiesAndProcessorsAreChecked) {
         "  c: {type: test::Source, activity: {period: 1, priority: 5}}\n"
         "  d: {type: test::Source, activity: {period: 1, scheduler: fifo, priority: 100, cpus: [1, 2000]}}\n";
     EXPECT_THAT(
-        diagnosticsOf(yaml),
+        findDiagnostics(yaml),
         UnorderedElementsAre(
             "a.yml:1:11: watchdog: is 0 s; may be 0.001 to 1000000 s", HasSubstr("a.yml:2:14: lock_memory: is maybe"),
             "a.yml:4:60: tasks.a.activity.scheduler: is rr; may be other, fifo",
@@ -86,12 +86,12 @@ TEST(DeploymentSpecTest, SchedulersPrioritiesAndProcessorsAreChecked) {
 
 TEST(DeploymentSpecTest, NamesAMissingPortAndTheExistingPorts) {
     EXPECT_THAT(
-        diagnosticsOf("tasks:\n"
-                      "  s: {type: test::Source, activity: {period: 1}}\n"
-                      "  r: {type: test::Relay}\n"
-                      "connections:\n"
-                      "  - {from: s.vlue, to: r.in}\n"
-                      "  - {from: s.value, to: r.inn}\n"),
+        findDiagnostics("tasks:\n"
+                        "  s: {type: test::Source, activity: {period: 1}}\n"
+                        "  r: {type: test::Relay}\n"
+                        "connections:\n"
+                        "  - {from: s.vlue, to: r.in}\n"
+                        "  - {from: s.value, to: r.inn}\n"),
         ElementsAre(
             "a.yml:5:12: connections[0].from: s has no output port vlue; did you mean value? known: state, value",
             "a.yml:6:25: connections[1].to: r has no input port inn; did you mean in? known: in, extra"));
@@ -106,42 +106,42 @@ TEST(DeploymentSpecTest, ALoopNeedsABuffer) {
         "connections:\n"
         "  - {from: s.value, to: a.in}\n"
         "  - {from: a.out, to: b.in}\n";
-    EXPECT_THAT(diagnosticsOf(head + "  - {from: b.out, to: a.extra}\n"),
+    EXPECT_THAT(findDiagnostics(head + "  - {from: b.out, to: a.extra}\n"),
                 testing::Contains(HasSubstr("closes a loop without a buffer")));
-    EXPECT_THAT(diagnosticsOf(head + "  - {from: b.out, to: a.extra, policy: {type: buffer, size: 1}}\n"),
+    EXPECT_THAT(findDiagnostics(head + "  - {from: b.out, to: a.extra, policy: {type: buffer, size: 1}}\n"),
                 testing::IsEmpty());
-    EXPECT_THAT(diagnosticsOf(head + "  - {from: b.out, to: b.extra, policy: {type: buffer, size: 1}}\n"),
+    EXPECT_THAT(findDiagnostics(head + "  - {from: b.out, to: b.extra, policy: {type: buffer, size: 1}}\n"),
                 ElementsAre("a.yml:8:5: connections[2]: connects b with itself"));
 }
 
 TEST(DeploymentSpecTest, RefusesATaskThatNothingRuns) {
-    EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source}}"),
+    EXPECT_THAT(findDiagnostics("tasks: {s: {type: test::Source}}"),
                 ElementsAre(HasSubstr("has nothing that would run it")));
-    EXPECT_THAT(diagnosticsOf("tasks: {d: {type: test::Doorbell}}"), testing::IsEmpty()) << "an Event runs it";
-    EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source, activity: {period: 1, trigger: [a]}}}"),
+    EXPECT_THAT(findDiagnostics("tasks: {d: {type: test::Doorbell}}"), testing::IsEmpty()) << "an Event runs it";
+    EXPECT_THAT(findDiagnostics("tasks: {s: {type: test::Source, activity: {period: 1, trigger: [a]}}}"),
                 testing::Contains(HasSubstr("both period and trigger")));
-    EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source, activity: {period: .nan}}}"),
+    EXPECT_THAT(findDiagnostics("tasks: {s: {type: test::Source, activity: {period: .nan}}}"),
                 testing::Contains(HasSubstr("must be a finite number")));
 }
 
 TEST(DeploymentSpecTest, RefusesATextThatIsNotADeployment) {
-    EXPECT_THAT(diagnosticsOf(""), ElementsAre("a.yml: is empty; a deployment needs tasks"));
-    EXPECT_THAT(diagnosticsOf("# nothing\n"), ElementsAre(HasSubstr("is empty")));
-    EXPECT_THAT(diagnosticsOf("tasks: {}"), ElementsAre("a.yml:1:8: tasks: is empty; a deployment needs a task"));
-    EXPECT_THAT(diagnosticsOf("hello"), ElementsAre("a.yml:1:1: is hello; must be a block of keys and values"));
-    EXPECT_THAT(diagnosticsOf("- 1\n"), ElementsAre(HasSubstr("is a list")));
-    EXPECT_THAT(diagnosticsOf("tasks:\n  a: [1\nb: 2\n"), ElementsAre(HasSubstr("a.yml:3:2: is not YAML")));
-    EXPECT_THAT(diagnosticsOf("tasks: {a: *nobody}"), ElementsAre(HasSubstr("is not YAML")));
-    EXPECT_THAT(diagnosticsOf("tasks: {}\n---\ntasks: {}\n"), ElementsAre(HasSubstr("several YAML documents")));
-    EXPECT_THAT(diagnosticsOf(std::string("\0\1\2\xff", 4)), ElementsAre(HasSubstr("is not text")));
-    EXPECT_THAT(diagnosticsOf("tasks: {[1, 2]: 3}"), testing::Contains(HasSubstr("has a key that is a list")));
-    EXPECT_THAT(diagnosticsOf("tasks: 3\nconnections: 4\nlibraries: {}\n"), testing::SizeIs(3));
+    EXPECT_THAT(findDiagnostics(""), ElementsAre("a.yml: is empty; a deployment needs tasks"));
+    EXPECT_THAT(findDiagnostics("# nothing\n"), ElementsAre(HasSubstr("is empty")));
+    EXPECT_THAT(findDiagnostics("tasks: {}"), ElementsAre("a.yml:1:8: tasks: is empty; a deployment needs a task"));
+    EXPECT_THAT(findDiagnostics("hello"), ElementsAre("a.yml:1:1: is hello; must be a block of keys and values"));
+    EXPECT_THAT(findDiagnostics("- 1\n"), ElementsAre(HasSubstr("is a list")));
+    EXPECT_THAT(findDiagnostics("tasks:\n  a: [1\nb: 2\n"), ElementsAre(HasSubstr("a.yml:3:2: is not YAML")));
+    EXPECT_THAT(findDiagnostics("tasks: {a: *nobody}"), ElementsAre(HasSubstr("is not YAML")));
+    EXPECT_THAT(findDiagnostics("tasks: {}\n---\ntasks: {}\n"), ElementsAre(HasSubstr("several YAML documents")));
+    EXPECT_THAT(findDiagnostics(std::string("\0\1\2\xff", 4)), ElementsAre(HasSubstr("is not text")));
+    EXPECT_THAT(findDiagnostics("tasks: {[1, 2]: 3}"), testing::Contains(HasSubstr("has a key that is a list")));
+    EXPECT_THAT(findDiagnostics("tasks: 3\nconnections: 4\nlibraries: {}\n"), testing::SizeIs(3));
 }
 
 TEST(DeploymentSpecTest, RefusesInvalidStartsOfValuesInsteadOfReadingForever) {
     for (const char* text : {",", "]", "}", ", 2.5, \"x\"]\nc: {d: .nan}\n", "--- a\n---\n,", "- a\n--- ]\n"})
-        EXPECT_THAT(diagnosticsOf(text), ElementsAre(HasSubstr("a.yml:"))) << text;
-    EXPECT_THAT(diagnosticsOf("tasks: {source: {type: test::Source}}\n", {"source.last=,"}),
+        EXPECT_THAT(findDiagnostics(text), ElementsAre(HasSubstr("a.yml:"))) << text;
+    EXPECT_THAT(findDiagnostics("tasks: {source: {type: test::Source}}\n", {"source.last=,"}),
                 testing::Contains(HasSubstr("this cannot begin a value")));
 }
 
@@ -149,7 +149,7 @@ TEST(DeploymentSpecTest, DeepNestingIsRefusedNotFatal) {
     for (const char* bracket : {"[", "{", "[a: ", "- ", "? "}) {
         std::string yaml = "tasks: ";
         for (int i = 0; i < 100000; ++i) yaml += bracket;
-        EXPECT_THAT(diagnosticsOf(yaml), testing::SizeIs(1)) << bracket;
+        EXPECT_THAT(findDiagnostics(yaml), testing::SizeIs(1)) << bracket;
     }
 }
 
@@ -183,8 +183,8 @@ TEST(DeploymentSpecTest, SettingsReachIntoBlocks) {
 }
 
 TEST(DeploymentSpecTest, NamesSettingsThatDoNotFit) {
-    EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source, activity: {period: 1}}}",
-                              {"s.last=many", "s.lost=1", "t.last=1", "s.last", "s=1", "s.seed=[", "s.last="}),
+    EXPECT_THAT(findDiagnostics("tasks: {s: {type: test::Source, activity: {period: 1}}}",
+                                {"s.last=many", "s.lost=1", "t.last=1", "s.last", "s=1", "s.seed=[", "s.last="}),
                 UnorderedElementsAre("--set: tasks.s.properties.last: is many; must be a whole number",
                                      HasSubstr("--set: tasks.s.properties.lost: is not a key here; did you mean last?"),
                                      HasSubstr("--set: t.last=1: there is no task t; known: s"),

@@ -295,7 +295,7 @@ TEST(LifeCycleTest, WithoutAThreadATransitionIsRefusedAndCanBeRepeated) {
 }
 
 /** Returns how a run ends with a limited number of threads. */
-std::string endOf(const std::string& yaml, int threads) try {
+std::string findEnd(const std::string& yaml, int threads) try {
     Registry registry = test::testRegistry();
     const test::ThreadLimit limit(threads);
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
@@ -317,8 +317,8 @@ connections: [{from: source.value, to: relay.in, policy: {type: buffer, size: 4}
 )";
         const int needed = 2 + (std::string(schedule) == "realtime" ? 1 : 0);  // tasks, and the watchdog
         for (int threads = 0; threads < needed; ++threads)
-            EXPECT_THAT(endOf(yaml, threads), testing::HasSubstr("no thread for ")) << schedule << ' ' << threads;
-        EXPECT_EQ(endOf(yaml, needed), "");
+            EXPECT_THAT(findEnd(yaml, threads), testing::HasSubstr("no thread for ")) << schedule << ' ' << threads;
+        EXPECT_EQ(findEnd(yaml, needed), "");
     }
 }
 

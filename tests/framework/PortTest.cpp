@@ -197,7 +197,7 @@ TEST(PortTest, AHookThatReadsNothingIsNotRepeatedForever) {
 }
 
 /** Returns the newest of samples with these stamps [s], in the order of their connections. */
-double newestOf(const std::vector<std::vector<double>>& stamps) {
+double findNewest(const std::vector<std::vector<double>>& stamps) {
     std::vector<std::unique_ptr<test::Writer<types::Pose>>> writers;
     test::Reader<types::Pose> reader;
     for (const auto& of_one : stamps) {
@@ -221,11 +221,11 @@ double newestOf(const std::vector<std::vector<double>>& stamps) {
 }
 
 TEST(PortTest, TheNewestOfSeveralConnectionsHasTheLatestStamp) {
-    EXPECT_EQ(newestOf({{2}, {1}}), 2);
-    EXPECT_EQ(newestOf({{1}, {2}}), 2);
-    EXPECT_EQ(newestOf({{1, 3}, {2}, {0.5, 1.5}}), 3);
-    EXPECT_EQ(newestOf({{10, 5, 6}, {4}}), 6) << "the last of one connection, whose clock was set back";
-    EXPECT_EQ(newestOf({{10, 5, 6}, {8}}), 8);
+    EXPECT_EQ(findNewest({{2}, {1}}), 2);
+    EXPECT_EQ(findNewest({{1}, {2}}), 2);
+    EXPECT_EQ(findNewest({{1, 3}, {2}, {0.5, 1.5}}), 3);
+    EXPECT_EQ(findNewest({{10, 5, 6}, {4}}), 6) << "the last of one connection, whose clock was set back";
+    EXPECT_EQ(findNewest({{10, 5, 6}, {8}}), 8);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ struct Task : framework::TaskContext {
     framework::Properties<Config> config{this};
 };
 
-std::vector<std::string> diagnosticsOf(Task& task, const std::string& yaml) {
+std::vector<std::string> findDiagnostics(Task& task, const std::string& yaml) {
     framework::ConfigReader reader("a.yml");
     task.config.load(reader, YAML::Load(yaml), "p");
     std::vector<std::string> texts;
@@ -98,7 +98,7 @@ layers: [{law: gaussian}]
 materials: {sand: {mean: 0.1}, rock: {mean: 0.2}}
 always: {mean: 2}
 )";
-    EXPECT_THAT(diagnosticsOf(task, yaml), testing::IsEmpty());
+    EXPECT_THAT(findDiagnostics(task, yaml), testing::IsEmpty());
     const Config& config = *task.config;
     EXPECT_EQ(config.range, 12.5);
     EXPECT_EQ(config.bins, 1000);
@@ -163,7 +163,7 @@ TEST(PropertiesTest, SettingsFromOutsideAndLiveAreEquivalent) {
     for (const auto& [name, value] : settings) {
         const std::string setting = std::string(name) + "=" + value;
         Task live("t"), set("t");
-        ASSERT_THAT(diagnosticsOf(live, written), testing::IsEmpty());
+        ASSERT_THAT(findDiagnostics(live, written), testing::IsEmpty());
         static_cast<framework::PropertiesBase&>(live.config).set(name, value);
         framework::DeploymentSpec spec =
             framework::DeploymentSpec::parse("tasks: {t: {type: t, properties: " + written + "}}", "a.yml");
@@ -177,7 +177,7 @@ TEST(PropertiesTest, SettingsFromOutsideAndLiveAreEquivalent) {
 
 TEST(PropertiesTest, NullRemovesAndUnnamedFieldsOfABlockStay) {
     Task task("t");
-    ASSERT_THAT(diagnosticsOf(task, "{range: 20, speckle: {law: gaussian, mean: 2}, gain: 3}"), testing::IsEmpty());
+    ASSERT_THAT(findDiagnostics(task, "{range: 20, speckle: {law: gaussian, mean: 2}, gain: 3}"), testing::IsEmpty());
     framework::PropertiesBase& properties = task.config;
     properties.set("speckle", "{mean: 5}");
     EXPECT_EQ(task.config->speckle->law, Law::Gaussian);
@@ -207,7 +207,7 @@ TEST(PropertiesTest, ReportsEveryDiagnosticAtItsPlaceAtOnce) {
         "materials: {sand: {mean: 11}}\n"
         "always: {mean: 1, mean: 2}\n";
     EXPECT_THAT(
-        diagnosticsOf(task, yaml),
+        findDiagnostics(task, yaml),
         testing::UnorderedElementsAre(
             "a.yml:1:1: p.rang: is not a key here; did you mean range? known: range, bins, seed, offset, loud, file, "
             "position, speckle, gain, bearings, layers, materials, always",
@@ -230,24 +230,24 @@ TEST(PropertiesTest, ReportsEveryDiagnosticAtItsPlaceAtOnce) {
 
 TEST(PropertiesTest, ReportsDiagnosticsOfSeveralFieldsAtTheBlock) {
     Task task("t");
-    EXPECT_THAT(diagnosticsOf(task, "range: 1\nloud: true\nlayers:\n  - {}\n  - {law: gaussian, mean: 3}\n"),
+    EXPECT_THAT(findDiagnostics(task, "range: 1\nloud: true\nlayers:\n  - {}\n  - {law: gaussian, mean: 3}\n"),
                 testing::ElementsAre("a.yml:2:7: p.loud: needs file", "a.yml:5:27: p.layers[1].mean: is one too many"));
 }
 
 TEST(PropertiesTest, OneBlockIsAListOfOne) {
     Task task("t");
-    EXPECT_THAT(diagnosticsOf(task, "layers: {law: gaussian}"), testing::IsEmpty());
+    EXPECT_THAT(findDiagnostics(task, "layers: {law: gaussian}"), testing::IsEmpty());
     ASSERT_EQ(task.config->layers.size(), 1u);
     EXPECT_EQ(task.config->layers[0].law, Law::Gaussian);
-    EXPECT_THAT(diagnosticsOf(task, "layers: {mean: 11}"),
+    EXPECT_THAT(findDiagnostics(task, "layers: {mean: 11}"),
                 testing::ElementsAre("a.yml:1:16: p.layers.mean: is 11; may be 0 to 10"));
 }
 
 TEST(PropertiesTest, RefusesInvalidNumbers) {
     for (const char* number : {".inf", "-.inf", "nan", "inf", "1e999", "0x10", "1_000", "1,5", "", "1m"}) {
         Task task("t");
-        EXPECT_EQ(diagnosticsOf(task, std::string("range: ") + number).size(), 1u) << number;
-        EXPECT_EQ(diagnosticsOf(task, std::string("bins: ") + number).size(), 1u) << number;
+        EXPECT_EQ(findDiagnostics(task, std::string("range: ") + number).size(), 1u) << number;
+        EXPECT_EQ(findDiagnostics(task, std::string("bins: ") + number).size(), 1u) << number;
         EXPECT_EQ(task.config->range, 50);
     }
 }

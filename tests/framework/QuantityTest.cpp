@@ -11,7 +11,7 @@ namespace {
 
 double inUnit(const char* text, const char* unit) {
     const auto quantity = Quantity::parse(text);
-    const auto wanted = unitOf(unit);
+    const auto wanted = findUnit(unit);
     return quantity && wanted ? quantity->in(*wanted).value_or(NAN) : NAN;
 }
 

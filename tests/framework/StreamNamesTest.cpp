@@ -34,8 +34,8 @@ TEST(StreamNamesTest, APortIsNamedByItsAliasElseByItsOwnName) {
 TEST(StreamNamesTest, AReplacingPortHasTheNameOfTheReplacedPort) {
     struct Replay : TaskContext, StandIn {
         Replay() : TaskContext("replay") {}
-        std::string streamOf(const std::string& port) const override { return "sonar." + port; }
-        std::string modelOf(const std::string&) const override { return "p::Task"; }
+        std::string getStream(const std::string& port) const override { return "sonar." + port; }
+        std::string getModel(const std::string&) const override { return "p::Task"; }
         OutputPort<double> ping{this, "ping", ""};
     } replay;
     EXPECT_EQ(streamName(replay.ping).path(), "sonar.ping");

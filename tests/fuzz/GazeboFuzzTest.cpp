@@ -12,7 +12,7 @@ namespace insonify::fuzz {
 namespace {
 
 void enterScene(const std::string& bytes, const std::filesystem::path& folder) try {
-    const gazebo::World world = gazebo::worldOf(bytes, folder);
+    const gazebo::World world = gazebo::getWorld(bytes, folder);
     scene::expectSound(*world.scene.geometry);
     for (const scene::Node& node : world.scene.nodes) EXPECT_TRUE(scene::isFinite(node.parent_from_node)) << node.name;
 } catch (const types::ConfigError& error) {

@@ -20,7 +20,7 @@ void readLog(const Input& input) {
         const auto log = log::openLog(input.file());
         for (const log::SampleRef& at : log->samples())
             allowed([&] {
-                EXPECT_LE(log->bytesOf(at).size(), size_t{1} << 30);
+                EXPECT_LE(log->toBytes(at).size(), size_t{1} << 30);
                 log->verify(at);
             });
     });

@@ -47,7 +47,7 @@ std::string frameText(const Bytes& bytes) { return {bytes.begin(), bytes.end()};
 
 template <class Message>
 std::string packed(const Message& message, int version) {
-    return frameText(mavlink::frameOf(message, 1, 1, 0, version).bytes(Message::kind.crc_extra));
+    return frameText(mavlink::getFrame(message, 1, 1, 0, version).bytes(Message::kind.crc_extra));
 }
 
 TEST(MavlinkFuzzTest, EveryDatagramIsPosesOrNone) {

@@ -41,10 +41,10 @@ void frame(const Input& input) {
     for (device::Bytes message = framer.next(); !message.empty(); message = framer.next()) {
         EXPECT_TRUE(device::oculusHeader(message));
         if (const auto ping = device::oculusResult(message)) {
-            EXPECT_EQ(bytesOf(*ping), message);
+            EXPECT_EQ(toBytes(*ping), message);
         }
         if (const auto fire = device::oculusFire(message)) {
-            EXPECT_EQ(bytesOf(*fire).size(), fire->size());
+            EXPECT_EQ(toBytes(*fire).size(), fire->size());
         }
         device::oculusUserConfig(message);
         device::oculusStatus(message);
@@ -77,7 +77,7 @@ void driveOculus(const Input& input) {
 void play(const Input& input) try {
     frame(input);
     device::OculusPings recording(input.file());
-    while (const auto recorded = recording.next()) expectSound(device::pingOf(recorded->ping));
+    while (const auto recorded = recording.next()) expectSound(device::makePing(recorded->ping));
     if (!device::OculusRecording::isOne(input.file())) return;
     device::OculusRecording items(input.file());
     while (const auto item = items.next()) item->content();

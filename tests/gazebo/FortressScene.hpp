@@ -27,7 +27,7 @@ namespace fortress {
 
 using ignition::msgs::Set;
 
-ignition::math::Pose3d poseOf(const auto& part) {
+ignition::math::Pose3d getPose(const auto& part) {
     ignition::math::Pose3d pose;
     if (!part.SemanticPose().Resolve(pose).empty()) throw std::runtime_error("a pose is not resolved");
     return pose;
@@ -69,17 +69,17 @@ inline void fill(const ::sdf::Geometry& shape, ignition::msgs::Geometry& message
 inline void fill(const ::sdf::Model& model, ignition::msgs::Model& message) {
     message.set_name(model.Name());
     message.set_is_static(model.Static());
-    Set(message.mutable_pose(), poseOf(model));
+    Set(message.mutable_pose(), getPose(model));
     for (uint64_t i = 0; i < model.LinkCount(); ++i) {
         const ::sdf::Link& link = *model.LinkByIndex(i);
         ignition::msgs::Link& below = *message.add_link();
         below.set_name(link.Name());
-        Set(below.mutable_pose(), poseOf(link));
+        Set(below.mutable_pose(), getPose(link));
         for (uint64_t k = 0; k < link.VisualCount(); ++k) {
             const ::sdf::Visual& visual = *link.VisualByIndex(k);
             ignition::msgs::Visual& shown = *below.add_visual();
             shown.set_name(visual.Name());
-            Set(shown.mutable_pose(), poseOf(visual));
+            Set(shown.mutable_pose(), getPose(visual));
             fill(*visual.Geom(), *shown.mutable_geometry());
         }
     }
@@ -88,7 +88,7 @@ inline void fill(const ::sdf::Model& model, ignition::msgs::Model& message) {
 
 }  // namespace fortress
 
-inline ignition::msgs::Scene sceneOf(const std::string& sdf_file) {
+inline ignition::msgs::Scene makeScene(const std::string& sdf_file) {
     ::sdf::Root root;
     const ::sdf::Errors errors = root.Load(sdf_file);
     if (!root.WorldByIndex(0)) throw std::runtime_error(errors.empty() ? "no world" : errors[0].Message());

@@ -66,7 +66,7 @@ TEST_F(FortressTest, TheModelsOfAWorldAreTakenFromItsService) {
 void expectSameScene(const scene::Scene& a, const scene::Scene& b) {
     ASSERT_EQ(a.nodes.size(), b.nodes.size());
     ASSERT_EQ(a.geometry->objects.size(), b.geometry->objects.size());
-    const auto differenceOf = [](const glm::dmat4& left, const glm::dmat4& right) {
+    const auto findDifference = [](const glm::dmat4& left, const glm::dmat4& right) {
         double maximum = 0;
         for (int c = 0; c < 4; ++c)
             for (int r = 0; r < 4; ++r) maximum = std::max(maximum, std::abs(left[c][r] - right[c][r]));
@@ -77,7 +77,7 @@ void expectSameScene(const scene::Scene& a, const scene::Scene& b) {
         const types::Object& object = a.geometry->objects[i];
         const auto other = std::ranges::find(b.geometry->objects, object.name, &types::Object::name);
         ASSERT_NE(other, b.geometry->objects.end()) << object.name;
-        EXPECT_LT(differenceOf(object.world_from_object, other->world_from_object), 1e-12) << object.name;
+        EXPECT_LT(findDifference(object.world_from_object, other->world_from_object), 1e-12) << object.name;
         EXPECT_EQ(a.geometry->meshes[size_t(object.mesh)].positions, b.geometry->meshes[size_t(other->mesh)].positions);
         const size_t k = size_t(other - b.geometry->objects.begin());
         EXPECT_EQ(a.nodes[size_t(a.object_nodes[i])].name, b.nodes[size_t(b.object_nodes[k])].name);
@@ -88,7 +88,7 @@ TEST_F(FortressTest, AWorldIsTheSameSceneByItsServiceAsByItsFile) {
     const std::string file = test::sourceFile("deploy/scenes/two_vehicles.world");
     FortressWorld world;
     ASSERT_TRUE(world.serve("/world/two_vehicles/scene/info",
-                            [&](ignition::msgs::Scene& scene) { return scene = sceneOf(file), true; }));
+                            [&](ignition::msgs::Scene& scene) { return scene = makeScene(file), true; }));
     expectSameScene(sdf::readSdf(file), readWorld({"two_vehicles", "", 30}, "/"));
 }
 

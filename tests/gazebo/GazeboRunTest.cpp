@@ -22,7 +22,7 @@ struct GazeboRunTest : gazebo::OwnPartition {
     std::unique_ptr<gazebo::FortressWorld> makeWorld() const {
         auto world = std::make_unique<gazebo::FortressWorld>("/world/two_vehicles/pose/info");
         world->serve("/world/two_vehicles/scene/info", [](ignition::msgs::Scene& scene) {
-            scene = gazebo::sceneOf(test::sourceFile("deploy/scenes/two_vehicles.world"));
+            scene = gazebo::makeScene(test::sourceFile("deploy/scenes/two_vehicles.world"));
             return true;
         });
         return world;

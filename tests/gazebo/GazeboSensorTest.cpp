@@ -97,7 +97,7 @@ double stamp(const auto& message) {
 struct GazeboSensorTest : gazebo::OwnPartition {
     GazeboSensorTest() {
         world.serve("/world/two_vehicles/scene/info", [this](ignition::msgs::Scene& scene) {
-            scene = gazebo::sceneOf(test::sourceFile("deploy/scenes/two_vehicles.world"));
+            scene = gazebo::makeScene(test::sourceFile("deploy/scenes/two_vehicles.world"));
             number(scene);
             const std::lock_guard lock(mutex);
             described = scene;

@@ -45,7 +45,7 @@ struct HarmonicTest : OwnPartition, protected test::Listening<PoseTask> {
         return message.SerializeAsString();
     }
     /** Returns the error of the scene's task. */
-    static std::string diagnosticOf(const scene::GazeboConfig& config) {
+    static std::string findDiagnostic(const scene::GazeboConfig& config) {
         scene::SceneTask task("scene");
         scene::SceneConfig scene;
         scene.gazebo = config;
@@ -88,6 +88,11 @@ TEST_F(HarmonicTest, TopicsHaveTheTypesOfTheGazeboThatIsThere) {
           std::pair("ignition.msgs.Pose_V", "ignition.msgs.LaserScan"), std::pair("", "gz.msgs.LaserScan")}) {
         SCOPED_TRACE(type);
         const Multicast listener(options, options.topic_port);
+        // The Gazebo of another partition is of another version, and speaks first.
+        HarmonicWorld::Settings other;
+        other.type = wanted == std::string("gz.msgs.LaserScan") ? "ignition.msgs.Pose_V" : "gz.msgs.Pose_V";
+        other.partition = partition + "-other";
+        const HarmonicWorld neighbour(other);
         std::unique_ptr<HarmonicWorld> world;
         if (*type) {
             HarmonicWorld::Settings settings;
@@ -233,32 +238,32 @@ TEST_F(HarmonicTest, TasksShareAWorld) {
 }
 
 TEST_F(HarmonicTest, TheErrorForAMissingWorldListsTheAvailableWorlds) {
-    EXPECT_THAT(diagnosticOf(world("sea", 0.3)),  // other tests may run on this machine
+    EXPECT_THAT(findDiagnostic(world("sea", 0.3)),  // other tests may run on this machine
                 testing::StartsWith("gazebo.world: is sea; its service /world/sea/scene/info is not offered in "
                                     "partition " +
                                     partition + " within 0.3 s (timeout); "));
     HarmonicWorld other({.world = "harbour"});
-    EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("/world/harbour/scene/info in partition " + partition));
+    EXPECT_THAT(findDiagnostic(world("sea", 2)), HasSubstr("/world/harbour/scene/info in partition " + partition));
     HarmonicWorld silent({.version = statistics_version});
-    EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("GZ_TRANSPORT_TOPIC_STATISTICS"));
+    EXPECT_THAT(findDiagnostic(world("sea", 2)), HasSubstr("GZ_TRANSPORT_TOPIC_STATISTICS"));
 }
 
 TEST_F(HarmonicTest, FailingSilentAndWrongServicesHaveTheirOwnErrors) {
     {
         HarmonicWorld gazebo({.succeeds = false});
-        EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("/world/sea/scene/info reports a failure"));
+        EXPECT_THAT(findDiagnostic(world("sea")), HasSubstr("/world/sea/scene/info reports a failure"));
     }
     {
         HarmonicWorld gazebo({.answers = false});
-        EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("/world/sea/scene/info is offered at tcp://127.0.0.1:"));
+        EXPECT_THAT(findDiagnostic(world("sea", 2)), HasSubstr("/world/sea/scene/info is offered at tcp://127.0.0.1:"));
     }
     {
         HarmonicWorld gazebo({.reply_type = "gz.msgs.StringMsg"});
-        EXPECT_THAT(diagnosticOf(world("sea", 2)),
+        EXPECT_THAT(findDiagnostic(world("sea", 2)),
                     HasSubstr("takes gz.msgs.Empty and returns gz.msgs.StringMsg, not Empty and Scene"));
     }
     HarmonicWorld gazebo({.scene = "no message"});
-    EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("gazebo.world: has a service that answers bytes"));
+    EXPECT_THAT(findDiagnostic(world("sea")), HasSubstr("gazebo.world: has a service that answers bytes"));
 }
 
 TEST_F(HarmonicTest, AFailureIsCachedUntilTheTaskIsConfigured) {
@@ -288,7 +293,7 @@ TEST_F(HarmonicTest, AWorldWithoutANameOrTogetherWithAFileIsAnError) {
     ASSERT_EQ(diagnostics.size(), 2u);
     EXPECT_EQ(diagnostics[0].text(), "world: is missing; give the name of a world that Gazebo runs");
     EXPECT_EQ(diagnostics[1].text(), "gazebo: is given, and file as well; give one of both, which holds the models");
-    EXPECT_THAT(diagnosticOf(world("two words")), HasSubstr("is two words, which Gazebo's transport does not take"));
+    EXPECT_THAT(findDiagnostic(world("two words")), HasSubstr("is two words, which Gazebo's transport does not take"));
 }
 
 TEST_F(HarmonicTest, AWorldThatSpawnsModelsAllTheTimeIsReportedOnceInTenSeconds) {

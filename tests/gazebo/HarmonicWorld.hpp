@@ -31,12 +31,13 @@ public:
         bool succeeds = true;
         bool answers = true;
         uint32_t version = discovery_version;
+        std::string partition = TransportOptions::fromEnvironment("").partition;
     };
 
     explicit HarmonicWorld(Settings settings)
         : settings_(std::move(settings)),
-          topic_("@/" + options_.partition + "@/world/" + settings_.world + "/pose/info"),
-          service_("@/" + options_.partition + "@/world/" + settings_.world + "/scene/info"),
+          topic_("@/" + settings_.partition + "@/world/" + settings_.world + "/pose/info"),
+          service_("@/" + settings_.partition + "@/world/" + settings_.world + "/scene/info"),
           topics_(options_, options_.topic_port),
           services_(options_, options_.service_port) {
         for (zmq::socket_t* socket : {&publisher_, &replier_}) {

@@ -239,5 +239,5 @@ TEST_F(PoseTaskTest, AnInvalidNameForTheTransportIsAnErrorOfItsProperty) {
 TEST_F(PoseTaskTest, LockstepIsRefusedWithAReason) {
     PoseTask other("other");
     other.environment().lockstep = true;
-    EXPECT_THAT(test::refusalsOf(other), testing::ElementsAre(HasSubstr("set schedule: realtime")));
+    EXPECT_THAT(test::countRefusals(other), testing::ElementsAre(HasSubstr("set schedule: realtime")));
 }

@@ -50,13 +50,14 @@ TEST_F(TransportTest, ThePropertyHasPrecedenceOverHarmonicsVariablesAndTheseOver
 }
 
 TEST_F(TransportTest, InvalidVariablesAreAnError) {
-    const auto diagnosticOf = [](const std::string& partition) -> std::string {
-        return test::errorOf<types::ConfigError>([&] { TransportOptions::fromEnvironment(partition); });
+    const auto findDiagnostic = [](const std::string& partition) -> std::string {
+        return test::computeError<types::ConfigError>([&] { TransportOptions::fromEnvironment(partition); });
     };
-    EXPECT_THAT(diagnosticOf("a@b"), HasSubstr("partition: is a@b, which Gazebo's transport does not take"));
+    EXPECT_THAT(findDiagnostic("a@b"), HasSubstr("partition: is a@b, which Gazebo's transport does not take"));
     for (const char* port : {"0", "65536", "x", "80x"}) {
         setenv("GZ_DISCOVERY_MSG_PORT", port, 1);
-        EXPECT_THAT(diagnosticOf(""), HasSubstr("DISCOVERY_MSG_PORT is \"" + std::string(port) + "\"; must be a port"));
+        EXPECT_THAT(findDiagnostic(""),
+                    HasSubstr("DISCOVERY_MSG_PORT is \"" + std::string(port) + "\"; must be a port"));
     }
 }
 

@@ -24,8 +24,8 @@ using testing::StartsWith;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct WorldTest : scene::SceneFiles {
-    World worldOf(const wire::Scene& message) const { return gazebo::worldOf(message.SerializeAsString(), folder_); }
-    types::Notices noticesOf(const wire::Scene& message) const { return worldOf(message).scene.geometry->notices; }
+    World getWorld(const wire::Scene& message) const { return gazebo::getWorld(message.SerializeAsString(), folder_); }
+    types::Notices getNotices(const wire::Scene& message) const { return getWorld(message).scene.geometry->notices; }
     static wire::Visual& addBox(wire::Model& model, const std::string& name, double side = 1) {
         wire::Link& link = *model.add_link();
         link.set_name(name);
@@ -43,12 +43,12 @@ struct WorldTest : scene::SceneFiles {
         vector.set_x(x), vector.set_y(y), vector.set_z(z);
     }
     /** Returns the box around the objects at and below a node. */
-    static scene::Bounds boundsOf(const scene::Scene& scene, const std::string& node) {
+    static scene::Bounds getBounds(const scene::Scene& scene, const std::string& node) {
         const int found = scene::findNode(scene, node);
         EXPECT_GE(found, 0) << node;
         scene::Bounds bounds;
         if (found < 0) return bounds;
-        for (const scene::Part& part : scene::partsOf(scene, found))
+        for (const scene::Part& part : scene::getParts(scene, found))
             for (const glm::dvec3 corner : scene::worldCorners(*scene.geometry, scene.geometry->objects[part.object]))
                 bounds.low = glm::min(bounds.low, corner), bounds.high = glm::max(bounds.high, corner);
         return bounds;
@@ -56,7 +56,7 @@ struct WorldTest : scene::SceneFiles {
 };
 
 TEST_F(WorldTest, AWorldOfHarmonicIsAScene) {
-    const World world = gazebo::worldOf(recording("scene"), folder_);
+    const World world = gazebo::getWorld(recording("scene"), folder_);
     const scene::Scene& scene = world.scene;
     std::vector<std::string> nodes;
     for (const scene::Node& node : scene.nodes) nodes.push_back(node.name);
@@ -64,13 +64,13 @@ TEST_F(WorldTest, AWorldOfHarmonicIsAScene) {
                                    "rig::leg", "rig::leg::pipe", "buoy", "buoy::part0", "buoy::part1", "buoy::part2",
                                    "rov", "rov::link", "hill", "hill::link"));
     scene::expectSound(*scene.geometry);
-    sdf::expectBounds(boundsOf(scene, "sea_floor"), {-50, -50, -10}, {50, 50, -10});
-    sdf::expectBounds(boundsOf(scene, "crate"), {-1, 1.5, -6}, {3, 3.5, 0});  // half a metre ahead, turned to port
-    sdf::expectBounds(boundsOf(scene, "ball"), {18, -2, -2}, {22, 2, 2});
-    sdf::expectBounds(boundsOf(scene, "rig"), {2.5, 29.5, -4}, {3.5, 30.5, 4});
-    sdf::expectBounds(boundsOf(scene, "buoy::part0"), {-20.5, -0.5, -1}, {-19.5, 0.5, 1});
-    sdf::expectBounds(boundsOf(scene, "buoy::part1"), {-21, -2, 3.5}, {-19, 2, 4.5});
-    sdf::expectBounds(boundsOf(scene, "buoy::part2"), {-21, -1, 6.5}, {-19, 1, 9.5});
+    sdf::expectBounds(getBounds(scene, "sea_floor"), {-50, -50, -10}, {50, 50, -10});
+    sdf::expectBounds(getBounds(scene, "crate"), {-1, 1.5, -6}, {3, 3.5, 0});  // half a metre ahead, turned to port
+    sdf::expectBounds(getBounds(scene, "ball"), {18, -2, -2}, {22, 2, 2});
+    sdf::expectBounds(getBounds(scene, "rig"), {2.5, 29.5, -4}, {3.5, 30.5, 4});
+    sdf::expectBounds(getBounds(scene, "buoy::part0"), {-20.5, -0.5, -1}, {-19.5, 0.5, 1});
+    sdf::expectBounds(getBounds(scene, "buoy::part1"), {-21, -2, 3.5}, {-19, 2, 4.5});
+    sdf::expectBounds(getBounds(scene, "buoy::part2"), {-21, -1, 6.5}, {-19, 1, 9.5});
     EXPECT_THAT(types::lines(scene.geometry->notices),
                 ElementsAre("visual rov::link::visual is omitted: file:///nowhere/models/rov/meshes/hull.obj is not "
                             "found",
@@ -80,7 +80,7 @@ TEST_F(WorldTest, AWorldOfHarmonicIsAScene) {
 }
 
 TEST_F(WorldTest, MaterialsAreOfTheMatterInTheNamesOfTheirScripts) {
-    const World world = gazebo::worldOf(recording("scene"), folder_);
+    const World world = gazebo::getWorld(recording("scene"), folder_);
     const auto named = scene::applyMaterialNames(world.scene.geometry);
     EXPECT_THAT(named->notices, Contains(HasSubstr("Gazebo/Steel")));
 }
@@ -92,7 +92,7 @@ TEST_F(WorldTest, WithoutScriptsTheMatterIsInTheNamesOfVisualsLinksAndModels) {
     addBox(model, "steel_ladder");
     addBox(addModel(message, "crate"), "link").set_name("wood");
     addBox(addModel(message, "thing"), "link");
-    const World world = worldOf(message);
+    const World world = getWorld(message);
     std::vector<std::string> materials;
     for (const types::Material& material : world.scene.geometry->materials) materials.push_back(material.name);
     EXPECT_THAT(materials, ElementsAre("concrete_pier", "steel_ladder", "wood", "default"));
@@ -104,9 +104,9 @@ TEST_F(WorldTest, TransparencyAndShadowsAreRead) {
     wire::Model& model = addModel(message, "m");
     addBox(model, "a").set_transparency(1);
     addBox(model, "b").set_transparency(0.25);
-    EXPECT_TRUE(worldOf(message).scene.drawings.at(1).casts_shadow) << "nobody sends shadows";
+    EXPECT_TRUE(getWorld(message).scene.drawings.at(1).casts_shadow) << "nobody sends shadows";
     addBox(model, "c").set_cast_shadows(true);
-    const World world = worldOf(message);
+    const World world = getWorld(message);
     ASSERT_EQ(world.scene.drawings.size(), 3u);
     EXPECT_EQ(world.scene.drawings[0].transparency, 1);
     EXPECT_EQ(world.scene.drawings[1].transparency, 0.25);
@@ -130,14 +130,14 @@ TEST_F(WorldTest, FindsAMeshOfAnotherMachineByTheEndOfItsPath) {
          {"/home/other/models/rov/meshes/hull.gltf", "file:///home/other/models/rov/meshes/hull.gltf",
           "model://rov/meshes/hull.gltf", "package://rov/meshes/hull.gltf"}) {
         visual.mutable_geometry()->mutable_mesh()->set_filename(place);
-        const World world = worldOf(message);
+        const World world = getWorld(message);
         EXPECT_THAT(world.scene.geometry->notices, IsEmpty()) << place;
         EXPECT_EQ(world.scene.geometry->objects.size(), 1u) << place;
     }
     visual.mutable_geometry()->mutable_mesh()->set_filename("/home/other/hull.gltf");
-    EXPECT_THAT(noticesOf(message), Contains(HasSubstr("/home/other/hull.gltf is not found")));
+    EXPECT_THAT(getNotices(message), Contains(HasSubstr("/home/other/hull.gltf is not found")));
     visual.mutable_geometry()->mutable_mesh()->set_filename("https://fuel.gazebosim.org/hull.gltf");
-    EXPECT_THAT(noticesOf(message), Contains(HasSubstr("https://fuel.gazebosim.org/hull.gltf is not found")));
+    EXPECT_THAT(getNotices(message), Contains(HasSubstr("https://fuel.gazebosim.org/hull.gltf is not found")));
 }
 
 TEST_F(WorldTest, OmitsAndReportsInvalidPosesAndSizes) {
@@ -167,7 +167,7 @@ TEST_F(WorldTest, OmitsAndReportsInvalidPosesAndSizes) {
     plane.mutable_plane()->mutable_size()->set_x(nan);
     addBox(bad, "empty").mutable_geometry()->set_type(wire::Geometry::EMPTY);
     EXPECT_THAT(
-        noticesOf(message),
+        getNotices(message),
         ElementsAre("model lost is omitted: its pose is not finite, or its orientation has no length",
                     "model unturned is omitted: its pose is not finite, or its orientation has no length",
                     "visual bad::negative::visual is omitted: its size is -1; must not be negative",
@@ -183,13 +183,13 @@ TEST_F(WorldTest, OmitsAndReportsInvalidPosesAndSizes) {
 }
 
 TEST_F(WorldTest, AWorldWithoutVisualsIsAnEmptySea) {
-    EXPECT_THAT(noticesOf({}), ElementsAre("the scene has no triangles: an empty sea"));
+    EXPECT_THAT(getNotices({}), ElementsAre("the scene has no triangles: an empty sea"));
 }
 
 TEST_F(WorldTest, ReportsDuplicateNames) {
     wire::Scene message;
     for (int i = 0; i < 2; ++i) addBox(addModel(message, "buoy"), "link");
-    const World world = worldOf(message);
+    const World world = getWorld(message);
     EXPECT_THAT(world.scene.geometry->notices,
                 ElementsAre("model buoy exists twice; the second is named buoy_2 here",
                             "link buoy::link exists twice; the second is named buoy::link_2 here"));
@@ -197,18 +197,19 @@ TEST_F(WorldTest, ReportsDuplicateNames) {
 }
 
 TEST_F(WorldTest, InvalidBytesAndTooLargeWorldsAreErrors) {
-    const auto diagnosticOf = [&](const std::string& bytes) -> std::string {
-        return test::errorOf<types::ConfigError>([&] { gazebo::worldOf(bytes, folder_); });
+    const auto findDiagnostic = [&](const std::string& bytes) -> std::string {
+        return test::computeError<types::ConfigError>([&] { gazebo::getWorld(bytes, folder_); });
     };
-    EXPECT_THAT(diagnosticOf("no message"), HasSubstr("world: has a service that answers bytes which are no message"));
+    EXPECT_THAT(findDiagnostic("no message"),
+                HasSubstr("world: has a service that answers bytes which are no message"));
     const std::string whole = recording("scene");
-    EXPECT_THAT(diagnosticOf(whole.substr(0, whole.size() - 1)), HasSubstr("bytes which are no message Scene"));
+    EXPECT_THAT(findDiagnostic(whole.substr(0, whole.size() - 1)), HasSubstr("bytes which are no message Scene"));
     wire::Scene message;
     for (int i = 0; i < 100'001; ++i) message.add_model();
-    EXPECT_THAT(diagnosticOf(message.SerializeAsString()), HasSubstr("more than 100000 models, links and visuals"));
+    EXPECT_THAT(findDiagnostic(message.SerializeAsString()), HasSubstr("more than 100000 models, links and visuals"));
 }
 
-PoseMessage posesOf(const std::vector<std::string>& names) {
+PoseMessage getPoses(const std::vector<std::string>& names) {
     PoseMessage message;
     for (const std::string& name : names) message.entities.push_back({name, {}});
     return message;
@@ -216,27 +217,27 @@ PoseMessage posesOf(const std::vector<std::string>& names) {
 
 TEST(WorldWatchTest, ReportsEntitiesThatAppearOrDisappearOnce) {
     WorldWatch watch(std::set<std::string>{"rov", "link", "buoy"});
-    WorldWatch::Change change = watch.take(posesOf({"rov", "link", "buoy", "crate"}));
+    WorldWatch::Change change = watch.take(getPoses({"rov", "link", "buoy", "crate"}));
     EXPECT_THAT(change.came, ElementsAre("crate")) << "it came before the first message";
     EXPECT_THAT(change.went, IsEmpty());
-    EXPECT_TRUE(watch.take(posesOf({"rov", "link", "buoy", "crate"})).isEmpty());
-    change = watch.take(posesOf({"rov", "link", "crate"}));
+    EXPECT_TRUE(watch.take(getPoses({"rov", "link", "buoy", "crate"})).isEmpty());
+    change = watch.take(getPoses({"rov", "link", "crate"}));
     EXPECT_THAT(change.went, ElementsAre("buoy"));
-    EXPECT_TRUE(watch.take(posesOf({"rov", "link"})).isEmpty()) << "the scene does not show the crate";
-    EXPECT_TRUE(watch.take(posesOf({"rov", "link", "buoy", "crate"})).isEmpty());
+    EXPECT_TRUE(watch.take(getPoses({"rov", "link"})).isEmpty()) << "the scene does not show the crate";
+    EXPECT_TRUE(watch.take(getPoses({"rov", "link", "buoy", "crate"})).isEmpty());
 }
 
 TEST(WorldWatchTest, ComparesWithTheFirstMessageWithoutASceneOfGazebo) {
     WorldWatch watch({});
-    EXPECT_TRUE(watch.take(posesOf({"rov", "link"})).isEmpty());
-    EXPECT_THAT(watch.take(posesOf({"rov", "link", "crate"})).came, ElementsAre("crate"));
+    EXPECT_TRUE(watch.take(getPoses({"rov", "link"})).isEmpty());
+    EXPECT_THAT(watch.take(getPoses({"rov", "link", "crate"})).came, ElementsAre("crate"));
 }
 
 TEST(WorldWatchTest, RemembersABoundedNumberOfNames) {
     WorldWatch watch(std::set<std::string>{"rov"});
     for (size_t i = 0; i < 10 * WorldWatch::max_reported; ++i) {
         const std::string bubble = "bubble_" + std::to_string(i);
-        ASSERT_THAT(watch.take(posesOf({"rov", bubble})).came, ElementsAre(bubble));
+        ASSERT_THAT(watch.take(getPoses({"rov", bubble})).came, ElementsAre(bubble));
         ASSERT_LE(watch.remembered(), WorldWatch::max_reported + 2);
     }
 }

@@ -19,10 +19,10 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/** Calls errorOf() on a separate thread. */
+/** Calls computeError() on a separate thread. */
 std::string errorElsewhere(const auto& job) {
     std::string text;
-    std::thread([&] { text = test::errorOf<GlError>(job); }).join();
+    std::thread([&] { text = test::computeError<GlError>(job); }).join();
     return text;
 }
 
@@ -54,14 +54,14 @@ TEST(EglContextTest, WithoutADeviceTheVariableChooses) {
 
 TEST(EglContextTest, AnUnknownDeviceIsReportedWithTheAllowedNames) {
     for (const char* device : {"quantum", "4000000000", "99999999999999999999", "-1", "0x", "1.5", " software", "Auto"})
-        EXPECT_THAT(test::errorOf<GlError>([&] { EglContext context(device); }),
+        EXPECT_THAT(test::computeError<GlError>([&] { EglContext context(device); }),
                     AllOf(HasSubstr("'" + std::string(device) + "'"), HasSubstr("auto, software or a number below ")));
 }
 
 TEST(EglContextTest, AnUnknownDeviceInTheVariableIsReportedToo) {
     for (const char* device : {"quantum", "4000000000"}) {
         const DeviceVariable variable(device);
-        EXPECT_THAT(test::errorOf<GlError>([] { EglContext context; }),
+        EXPECT_THAT(test::computeError<GlError>([] { EglContext context; }),
                     AllOf(HasSubstr("'" + std::string(device) + "'"), HasSubstr("auto, software or a number below ")));
     }
 }
@@ -80,34 +80,35 @@ TEST(EglContextTest, RejectsUseOnAnotherThread) {
     EglContext context("software");
     EXPECT_THAT(errorElsewhere([&] { context.requireThread(); }), HasSubstr("made on another thread"));
     EXPECT_THAT(errorElsewhere([&] { context.check(); }), HasSubstr("made on another thread"));
-    EXPECT_EQ(test::errorOf<GlError>([&] { context.check(); }), "") << "its own thread may go on";
+    EXPECT_EQ(test::computeError<GlError>([&] { context.check(); }), "") << "its own thread may go on";
 }
 
 TEST(EglContextTest, RejectsAContextThatIsNoLongerCurrent) {
     EglContext first("software");
     {
         EglContext second("software");
-        EXPECT_THAT(test::errorOf<GlError>([&] { first.requireThread(); }), HasSubstr("one at a time"));
-        EXPECT_EQ(test::errorOf<GlError>([&] { second.check(); }), "");
+        EXPECT_THAT(test::computeError<GlError>([&] { first.requireThread(); }), HasSubstr("one at a time"));
+        EXPECT_EQ(test::computeError<GlError>([&] { second.check(); }), "");
     }
-    EXPECT_THAT(test::errorOf<GlError>([&] { first.check(); }), HasSubstr("one at a time"));
+    EXPECT_THAT(test::computeError<GlError>([&] { first.check(); }), HasSubstr("one at a time"));
 }
 
 TEST(EglContextTest, TheNextCheckThrowsAnErrorOnceWithGlsTextIfTheVariableIsSet) {
     const DebugVariable debug("1");
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);  // not in the core profile
-    EXPECT_THAT(test::errorOf<GlError>([&] { context.check(); }), AllOf(HasSubstr("OpenGL: "), HasSubstr("glEnable")));
-    EXPECT_EQ(test::errorOf<GlError>([&] { context.check(); }), "");
+    EXPECT_THAT(test::computeError<GlError>([&] { context.check(); }),
+                AllOf(HasSubstr("OpenGL: "), HasSubstr("glEnable")));
+    EXPECT_EQ(test::computeError<GlError>([&] { context.check(); }), "");
 }
 
 TEST(EglContextTest, WithoutTheVariableAnErrorIsThrownWithItsNumberAndARemedy) {
     const DebugVariable debug("0");
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);
-    EXPECT_THAT(test::errorOf<GlError>([&] { context.check(); }),
+    EXPECT_THAT(test::computeError<GlError>([&] { context.check(); }),
                 AllOf(HasSubstr("OpenGL: error 1280"), HasSubstr("INSONIFY_GL_DEBUG=1")));
-    EXPECT_EQ(test::errorOf<GlError>([&] { context.check(); }), "");
+    EXPECT_EQ(test::computeError<GlError>([&] { context.check(); }), "");
 }
 
 TEST(EglContextTest, NamesTheDriver) { EXPECT_THAT(EglContext("software").driver(), HasSubstr("Mesa")); }
@@ -126,7 +127,7 @@ TEST(EglContextTest, ReportsTheFirstOfTwoErrors) {
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);
     glBindFramebuffer(GL_FRAMEBUFFER, 4711);
-    EXPECT_THAT(test::errorOf<GlError>([&] { context.check(); }), HasSubstr("glEnable"));
+    EXPECT_THAT(test::computeError<GlError>([&] { context.check(); }), HasSubstr("glEnable"));
 }
 
 TEST(EglContextTest, RecognisesSoftwareRenderersByTheirNames) {
@@ -157,7 +158,7 @@ TEST(EglContextTest, PrefersACardToADisplayChipOnTheProcessor) {
 TEST(EglContextTest, TheSearchForACardLeavesTheContextCurrent) {
     EglContext context("software");
     EglContext::hasCard();
-    EXPECT_EQ(test::errorOf<GlError>([&] { context.check(); }), "");
+    EXPECT_EQ(test::computeError<GlError>([&] { context.check(); }), "");
 }
 
 TEST(EglContextTest, ASecondContextOnAnotherThreadSharesTheBuffersOfTheFirst) {

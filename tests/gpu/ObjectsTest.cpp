@@ -15,7 +15,7 @@ struct ObjectsTest : testing::Test {
     EglContext context{"software"};
 };
 
-std::vector<uint8_t> bytesOf(const Buffer& buffer, size_t count) {
+std::vector<uint8_t> toBytes(const Buffer& buffer, size_t count) {
     std::vector<uint8_t> bytes(count);
     buffer.read(bytes.data(), count);
     return bytes;
@@ -30,7 +30,7 @@ std::vector<uint8_t> counted(size_t count) {
 TEST_F(ObjectsTest, ABufferOfAnySizeContainsItsInitialData) {
     for (size_t size : {1, 4, 15, 16, 17, 1000}) {
         const auto data = counted(size);
-        EXPECT_EQ(bytesOf(Buffer(size, data.data()), size), data) << size;
+        EXPECT_EQ(toBytes(Buffer(size, data.data()), size), data) << size;
     }
 }
 
@@ -56,7 +56,7 @@ TEST_F(ObjectsTest, ClearingMakesAllBytesZero) {
         const auto data = counted(size);
         Buffer buffer(size, data.data());
         buffer.clear();
-        EXPECT_EQ(bytesOf(buffer, size), std::vector<uint8_t>(size, 0)) << size;
+        EXPECT_EQ(toBytes(buffer, size), std::vector<uint8_t>(size, 0)) << size;
     }
 }
 

@@ -19,8 +19,8 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 TEST(ProgramTest, ReportsAnUnknownShaderFile) {
-    EXPECT_THAT(test::errorOf<GlError>([] { shaderFile("sonar.glsl"); }), HasSubstr("'sonar.glsl'"));
-    EXPECT_THAT(test::errorOf<GlError>([] { shaderSource("", {}); }), HasSubstr("''"));
+    EXPECT_THAT(test::computeError<GlError>([] { shaderFile("sonar.glsl"); }), HasSubstr("'sonar.glsl'"));
+    EXPECT_THAT(test::computeError<GlError>([] { shaderSource("", {}); }), HasSubstr("''"));
 }
 
 TEST(ProgramTest, AFileIsCompleteToTheLastLine) {
@@ -104,18 +104,19 @@ TEST(ProgramTest, AContextCompilesEachTextOnce) {
 
 TEST(ProgramTest, ReportsAnErrorInAShaderWithItsFileAndTheCompilersText) {
     EglContext context("software");
-    EXPECT_THAT(test::errorOf<GlError>([] { Program::compute("deposit.comp.glsl", {"image_size no_such_thing +"}); }),
-                AllOf(StartsWith("deposit.comp.glsl: "), HasSubstr("error")));
-    EXPECT_THAT(test::errorOf<GlError>(
+    EXPECT_THAT(
+        test::computeError<GlError>([] { Program::compute("deposit.comp.glsl", {"image_size no_such_thing +"}); }),
+        AllOf(StartsWith("deposit.comp.glsl: "), HasSubstr("error")));
+    EXPECT_THAT(test::computeError<GlError>(
                     [] { Program::raster("surface.vert.glsl", "surface.frag.glsl", {"gl_Position no_such_thing"}); }),
                 AllOf(StartsWith("surface.vert.glsl: "), HasSubstr("no_such_thing")));
 }
 
 TEST(ProgramTest, ReportsErrorsOfTheLinker) {
     EglContext context("software");
-    EXPECT_THAT(
-        test::errorOf<GlError>([] { Program::raster("surface.vert.glsl", "surface.frag.glsl", {"main not_main"}); }),
-        AllOf(StartsWith("linking: "), HasSubstr("main")));
+    EXPECT_THAT(test::computeError<GlError>(
+                    [] { Program::raster("surface.vert.glsl", "surface.frag.glsl", {"main not_main"}); }),
+                AllOf(StartsWith("linking: "), HasSubstr("main")));
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
     EXPECT_THAT(call(folder, {folder / "root/usr/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"}),
                 succeeds());
     const insonify::test::Page page = insonify::test::readPage("components/framework/README.md");
-    writeFile(folder / "CMakeLists.txt", codeOf(page, "cmake", "Use it from a project of your own"));
-    writeFile(folder / "mean_echo.cpp", codeOf(page, "cpp", "A component of your own"));
+    writeFile(folder / "CMakeLists.txt", getCode(page, "cmake", "Use it from a project of your own"));
+    writeFile(folder / "mean_echo.cpp", getCode(page, "cpp", "A component of your own"));
     EXPECT_THAT(buildOutside(folder, folder / "root/usr"), succeeds());
 }

@@ -20,7 +20,7 @@ std::string deploymentWith(const std::string& effects) {
 void buildEffect(const TestFolder& folder) {
     install(folder);
     const insonify::test::Page page = insonify::test::readPage("components/sonar/README.md");
-    writeFile(folder / "afterglow.cpp", codeOf(page, "cpp", "A new effect"));
+    writeFile(folder / "afterglow.cpp", getCode(page, "cpp", "A new effect"));
     writeFile(folder / "CMakeLists.txt", R"(cmake_minimum_required(VERSION 3.22)
 project(Afterglow CXX)
 find_package(Insonify REQUIRED)

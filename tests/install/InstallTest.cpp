@@ -25,8 +25,8 @@ TEST(InstallTest, AProjectOutsideBuildsAComponentThatTheInstalledCommandRuns) {
     const WallFolder folder(with_the_component);
     install(folder);
     const insonify::test::Page page = insonify::test::readPage("components/framework/README.md");
-    writeFile(folder / "CMakeLists.txt", codeOf(page, "cmake", "Use it from a project of your own"));
-    writeFile(folder / "mean_echo.cpp", codeOf(page, "cpp", "A component of your own"));
+    writeFile(folder / "CMakeLists.txt", getCode(page, "cmake", "Use it from a project of your own"));
+    writeFile(folder / "mean_echo.cpp", getCode(page, "cpp", "A component of your own"));
     ASSERT_THAT(buildOutside(folder, folder / "prefix"), succeeds());
 
     const std::string insonify = folder / "prefix/bin/insonify";

@@ -12,7 +12,7 @@ namespace {
 
 const fs::path unit = fs::path(insonify::test::source_dir) / "deploy/insonify.service";
 
-std::map<std::string, std::string> settingsOf(const std::string& text) {
+std::map<std::string, std::string> getSettings(const std::string& text) {
     std::map<std::string, std::string> settings;
     std::istringstream lines(text);
     std::string section;
@@ -32,7 +32,7 @@ std::map<std::string, std::string> settingsOf(const std::string& text) {
 }  // namespace
 
 TEST(ServiceTest, StopsWithSigintRestartsAfterAFailureAndMayUseRealtime) {
-    const auto settings = settingsOf(readFile(unit));
+    const auto settings = getSettings(readFile(unit));
     const std::map<std::string, std::string> expected = {{"[Service]Type", "notify"},
                                                          {"[Service]WatchdogSec", "30"},
                                                          {"[Service]KillSignal", "SIGINT"},

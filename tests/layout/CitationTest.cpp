@@ -45,17 +45,17 @@ Names matches(const std::string& text, const std::regex& pattern) {
     return found;
 }
 
-std::string nameOf(const std::string& path) { return fs::path(path).filename(); }
+std::string getName(const std::string& path) { return fs::path(path).filename(); }
 
 /** Existing Markdown files, and those that the programs of the project write. */
 std::set<std::string> knownMarkdown() {
     static const std::regex written(R"re("([\w./-]*\w\.md)")re");
     std::set<std::string> known;
-    for (const Source& source : markdownFiles()) known.insert(nameOf(source.path));
+    for (const Source& source : markdownFiles()) known.insert(getName(source.path));
     for (const char* folder : {"components", "scripts"})
         for (const Source& source : sourcesIn(folder, {".cpp", ".py"}))
             for (const std::string& line : source.lines)
-                for (const std::string& path : matches(line, written)) known.insert(nameOf(path));
+                for (const std::string& path : matches(line, written)) known.insert(getName(path));
     return known;
 }
 
@@ -65,12 +65,12 @@ Names missingFiles(const Source& source, const std::set<std::string>& known) {
     Names missing;
     for (const std::string& line : source.lines)
         for (const std::string& path : matches(line, cited))
-            if (!known.contains(nameOf(path))) missing.push_back(path);
+            if (!known.contains(getName(path))) missing.push_back(path);
     return missing;
 }
 
 /** The numbers of a reference's headings: "4.1". */
-std::set<std::string> sectionsOf(const Source& page) {
+std::set<std::string> getSections(const Source& page) {
     static const std::regex heading(R"(^##+ (\d+(\.\d+)*) .*)");
     std::set<std::string> sections;
     for (const std::string& line : page.lines)
@@ -93,7 +93,7 @@ Names missingSections(const Source& source, const std::set<std::string>& section
     return missing;
 }
 
-std::string textOf(const Source& source) {
+std::string toText(const Source& source) {
     std::string text;
     for (const std::string& line : source.lines) text += line + "\n";
     return text;
@@ -103,7 +103,7 @@ std::string textOf(const Source& source) {
 struct NamedTest {
     std::string file, suite, name;
     bool exists() const {
-        const std::string code = textOf(readSource(fs::path(insonify::test::source_dir) / file));
+        const std::string code = toText(readSource(fs::path(insonify::test::source_dir) / file));
         return std::regex_search(code, std::regex("TEST(_F|_P)?\\(" + suite + ",\\s*" + name + "\\)"));
     }
 };
@@ -123,11 +123,11 @@ std::vector<NamedTest> testsIn(const std::string& text) {
 }
 
 /** The text of each section and subsection, up to the next heading. */
-std::map<std::string, std::string> textsOf(const Source& page) {
+std::map<std::string, std::string> getTexts(const Source& page) {
     std::map<std::string, std::string> texts;
     std::string section;
     for (const std::string& line : page.lines) {
-        const std::set<std::string> numbers = sectionsOf({page.path, {line}});
+        const std::set<std::string> numbers = getSections({page.path, {line}});
         if (!numbers.empty()) section = *numbers.begin();
         if (!section.empty()) texts[section] += line + "\n";
     }
@@ -152,7 +152,7 @@ TEST(CitationTest, NoFileCitesAnotherThatIsNotInTheProject) {
 }
 
 TEST(CitationTest, EverySectionOfTheReferenceThatIsCitedIsThere) {
-    const std::set<std::string> sections = sectionsOf(referencePage());
+    const std::set<std::string> sections = getSections(referencePage());
     for (const Source& source : citingFiles()) {
         if (source.path.ends_with(".md")) continue;
         EXPECT_THAT(missingSections(source, sections), IsEmpty()) << source.path;
@@ -160,7 +160,7 @@ TEST(CitationTest, EverySectionOfTheReferenceThatIsCitedIsThere) {
 }
 
 TEST(CitationTest, EveryTestAndFileThatTheReferenceNamesIsThere) {
-    const std::string text = textOf(referencePage());
+    const std::string text = toText(referencePage());
     EXPECT_THAT(missingPaths(text), IsEmpty());
     EXPECT_FALSE(testsIn(text).empty());
     for (const NamedTest& test : testsIn(text))
@@ -168,7 +168,7 @@ TEST(CitationTest, EveryTestAndFileThatTheReferenceNamesIsThere) {
 }
 
 TEST(CitationTest, EverySectionOfTheReferenceNamesATestButItsSources) {
-    const auto texts = textsOf(referencePage());
+    const auto texts = getTexts(referencePage());
     for (const auto& [section, text] : texts) {
         if (section == "13" || texts.contains(section + ".1")) continue;
         EXPECT_FALSE(testsIn(text).empty()) << section;
@@ -179,7 +179,7 @@ TEST(CitationTest, TheRulesRefuseWhatTheyShould) {
     const std::string md = ".md", page = "ACOUSTICS" + md;  // so that these citations are not the project's own
     const Source code{"a.cpp", {"// notes/nowhere" + md + " 3", "// " + page + " 1.1, 7 and 99.1: none", "// " + page}};
     EXPECT_THAT(missingFiles(code, {page}), ElementsAre("notes/nowhere" + md));
-    EXPECT_THAT(missingSections(code, sectionsOf({"", {"## 1 Sound", "### 1.1 Speed", "Text 99.1", "## 7 Noise"}})),
+    EXPECT_THAT(missingSections(code, getSections({"", {"## 1 Sound", "### 1.1 Speed", "Text 99.1", "## 7 Noise"}})),
                 ElementsAre("99.1", ""));
     const auto tests = testsIn(
         "`tests/layout/CitationTest.cpp`: `CitationTest.TheRulesRefuseWhatTheyShould`, "

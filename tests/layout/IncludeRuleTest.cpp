@@ -37,7 +37,7 @@ const std::map<std::string, std::set<std::string>> neighbours = {
 };
 
 /** Folders that a file may include from, besides its own and `types`. */
-std::set<std::string> neighboursOf(const Source& source) {
+std::set<std::string> getNeighbours(const Source& source) {
     const auto found = neighbours.find(source.folder());
     std::set<std::string> allowed = found == neighbours.end() ? std::set<std::string>() : found->second;
     if (source.isTaskHalf()) allowed.insert("framework");
@@ -76,7 +76,7 @@ bool mayInclude(const Source& source, const Source& target) {
     const std::set<std::string> of_any_program = {"Thread"};
     if (to == "types") return from != "gpu" || of_any_program.contains(target.stem());
     if ((from == "study" || from == "dataset") && target.isTaskHalf()) return false;
-    return from != "types" && from != "gpu" && neighboursOf(source).contains(to);
+    return from != "types" && from != "gpu" && getNeighbours(source).contains(to);
 }
 
 std::vector<Source> ourSources() {

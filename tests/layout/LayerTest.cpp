@@ -21,8 +21,8 @@ const std::vector<std::string> layers{"base", "config",    "beams",  "surfaces",
                                       "rays", "multipath", "raster", "effects",  "renderer", "tasks"};
 const std::string sonar = "components/sonar/";
 
-std::string folderOf(const std::string& path) { return path.substr(0, path.find_last_of('/')); }
-std::string unitOf(const std::string& path) { return path.substr(0, path.find_last_of('.')); }
+std::string getFolder(const std::string& path) { return path.substr(0, path.find_last_of('/')); }
+std::string findUnit(const std::string& path) { return path.substr(0, path.find_last_of('.')); }
 
 std::vector<Source> product(const std::string& folder = "components") {
     std::vector<Source> all = sourcesIn(folder, {".hpp", ".cpp"});
@@ -36,8 +36,8 @@ Graph folders(const std::vector<Source>& sources) {
     Graph graph;
     for (const Source& source : sources)
         for (const Include& include : includes(source))
-            if (include.ours && folderOf(include.target) != folderOf(source.path))
-                graph[folderOf(source.path)].insert(folderOf(include.target));
+            if (include.ours && getFolder(include.target) != getFolder(source.path))
+                graph[getFolder(source.path)].insert(getFolder(include.target));
     return graph;
 }
 
@@ -90,8 +90,8 @@ std::vector<Figure> figuresOfTheTree() {
     std::map<std::string, size_t> files;
     size_t small_files = 0;
     for (const Source& source : sources) {
-        units.insert(unitOf(source.path));
-        ++files[folderOf(source.path)];
+        units.insert(findUnit(source.path));
+        ++files[getFolder(source.path)];
         small_files += source.lines.size() <= 40;
     }
     const auto largest = std::ranges::max_element(files, {}, [](const auto& folder) { return folder.second; });

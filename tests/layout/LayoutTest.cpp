@@ -19,12 +19,12 @@ std::string fileText(const std::string& path) {
 }
 
 /** The page of a source's component, or of types. */
-std::string pageOf(const Source& source) {
+std::string makePage(const Source& source) {
     return (source.path.starts_with("types/") ? "" : "components/") + source.folder() + "/README.md";
 }
 
 /** The text between "## Files" and the next heading of that level; "" if there is none. */
-std::string filesSectionOf(const std::string& page) {
+std::string getFilesSection(const std::string& page) {
     const size_t begin = page.find("\n## Files\n");
     return begin == std::string::npos ? "" : page.substr(begin, page.find("\n## ", begin + 1) - begin);
 }
@@ -163,13 +163,13 @@ TEST(LayoutTest, EveryHeaderIsOnThePageOfItsFolder) {
     std::map<std::string, std::set<std::string>> files;  // By page.
     for (const char* folder : {"types", "components"})
         for (const Source& source : sourcesIn(folder, {".hpp", ".cpp"}))
-            files[pageOf(source)].insert(std::filesystem::path(source.path).filename());
+            files[makePage(source)].insert(std::filesystem::path(source.path).filename());
     for (const auto& [page, names] : files) {
         const std::string text = fileText(page);
         for (const std::string& name : names)
             EXPECT_TRUE(!name.ends_with(".hpp") || text.find("`" + name + "`") != std::string::npos)
                 << page << ": " << name;
-        for (const std::string& name : filesNamedIn(filesSectionOf(text)))
+        for (const std::string& name : filesNamedIn(getFilesSection(text)))
             EXPECT_TRUE(names.contains(name)) << page << ": " << name;
     }
 }

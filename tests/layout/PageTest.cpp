@@ -24,13 +24,13 @@ const fs::path root = insonify::test::source_dir;
 bool isOnTheWeb(const std::string& link) { return link.find(':') != std::string::npos; }
 
 /** The file that a link of the page refers to, from the root; "" for a place on the page itself. */
-std::string targetOf(const Page& page, const std::string& link) {
+std::string getTarget(const Page& page, const std::string& link) {
     const std::string file = link.substr(0, link.find('#'));
     return file.empty() ? "" : (fs::path(page.path()).parent_path() / file).lexically_normal().generic_string();
 }
 
 bool leadsSomewhere(const Page& page, const std::string& link) {
-    const std::string target = targetOf(page, link);
+    const std::string target = getTarget(page, link);
     if (!target.empty() && !fs::exists(root / target)) return false;
     const size_t hash = link.find('#');
     if (hash == std::string::npos) return true;
@@ -52,7 +52,7 @@ Texts brokenAddresses(const Page& page) {
 }
 
 /** Cells of a row of a table; 0 for any other line. */
-size_t cellsOf(const std::string& line) {
+size_t countCells(const std::string& line) {
     if (!line.starts_with("|")) return 0;
     size_t bars = 0;
     for (size_t i = 0; i < line.size(); ++i) bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
@@ -64,7 +64,7 @@ Texts unevenRows(const Page& page) {
     Texts uneven;
     size_t above = 0;
     for (const std::string& line : page.lines()) {
-        const size_t cells = cellsOf(line);
+        const size_t cells = countCells(line);
         if (cells > 0 && above > 0 && cells != above) uneven.push_back(line);
         above = cells;
     }
@@ -147,7 +147,7 @@ TEST(PageTest, EveryPageIsReachedFromTheReadme) {
         if (!path.ends_with(".md") || !reached.insert(path).second) continue;
         const Page page = readPage(path);
         for (const std::string& link : page.links())
-            if (!isOnTheWeb(link)) next.push_back(targetOf(page, link));
+            if (!isOnTheWeb(link)) next.push_back(getTarget(page, link));
     }
     for (const Page& page : allPages()) EXPECT_TRUE(reached.contains(page.path())) << page.path();
 }
@@ -157,7 +157,7 @@ TEST(PageTest, EveryPageNextToCodeLinksBackToTheReadme) {
         if (page.path() == "README.md" || page.path() == "CHANGELOG.md" || fs::path(page.path()).stem() == "ACOUSTICS")
             continue;
         Texts targets;
-        for (const std::string& link : page.links()) targets.push_back(targetOf(page, link));
+        for (const std::string& link : page.links()) targets.push_back(getTarget(page, link));
         EXPECT_THAT(targets, Contains("README.md")) << page.path();
     }
 }
@@ -227,5 +227,5 @@ TEST(PageTest, TheRulesRefuseWhatTheyShould) {
     ASSERT_EQ(page.blocks().size(), 1u);
     EXPECT_EQ(page.blocks()[0].language, "sh");
     EXPECT_EQ(page.blocks()[0].line, 6u);
-    EXPECT_EQ(codeOf(page, "sh"), "[i](no.png)\n");
+    EXPECT_EQ(getCode(page, "sh"), "[i](no.png)\n");
 }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 const fs::path build = test::build_dir, parts = build / "tests/loader/parts", components = build / "lib/insonify";
 
-std::string deploymentOf(const std::string& type) {
+std::string getDeployment(const std::string& type) {
     return "tasks:\n  a: {type: " + type + ", activity: {period: 0.1}}\n";
 }
 
@@ -38,7 +38,7 @@ struct ComponentLibraryTest : testing::Test {
         return Process(std::move(all), folder_.path()).wait();
     }
     Outcome check(const std::string& type, const std::string& path = "") const {
-        writeFile(folder_ / "a.yml", deploymentOf(type));
+        writeFile(folder_ / "a.yml", getDeployment(type));
         return call({"check", "a.yml"}, path);
     }
     std::string partsOfUser() const { return folder_ / "parts"; }
@@ -144,12 +144,12 @@ TEST(InstallationTest, ThePartThatIsMissingIsNamedByWhatInstallsItThere) {
         writeFile(folder / file, "");
     }
     fs::create_directories(folder / "archive/insonify.libs");
-    EXPECT_EQ(loader::installationOf(folder / "clone/build/lib/libinsonify.so"), Installation::Clone);
-    EXPECT_EQ(loader::installationOf(folder / "wheel/insonify/lib/libinsonify.so"), Installation::Wheel);
-    EXPECT_EQ(loader::installationOf(folder / "archive/insonify/lib/libinsonify.so"), Installation::Wheel);
-    EXPECT_EQ(loader::installationOf(folder / "prefix/lib/libinsonify.so"), Installation::Prefix);
-    EXPECT_EQ(loader::installationOf("/usr/local/lib/libinsonify.so"), Installation::Prefix);
-    EXPECT_EQ(loader::installationOf("/usr/lib/x86_64-linux-gnu/libinsonify.so.0.1"), Installation::DebianPackage);
+    EXPECT_EQ(loader::findInstallation(folder / "clone/build/lib/libinsonify.so"), Installation::Clone);
+    EXPECT_EQ(loader::findInstallation(folder / "wheel/insonify/lib/libinsonify.so"), Installation::Wheel);
+    EXPECT_EQ(loader::findInstallation(folder / "archive/insonify/lib/libinsonify.so"), Installation::Wheel);
+    EXPECT_EQ(loader::findInstallation(folder / "prefix/lib/libinsonify.so"), Installation::Prefix);
+    EXPECT_EQ(loader::findInstallation("/usr/local/lib/libinsonify.so"), Installation::Prefix);
+    EXPECT_EQ(loader::findInstallation("/usr/lib/x86_64-linux-gnu/libinsonify.so.0.1"), Installation::DebianPackage);
     EXPECT_THAT(loader::absence("dds", Installation::Clone),
                 testing::EndsWith("not here; `scripts/setup dds` installs it"));
     EXPECT_THAT(loader::absence("dds", Installation::DebianPackage),

@@ -35,7 +35,7 @@ struct Db3Test : testing::Test {
         }
     }
     /** Returns the message of the only error. */
-    static std::string refusalOf(const std::filesystem::path& file) {
+    static std::string getRefusal(const std::filesystem::path& file) {
         try {
             const auto log = openLog(file);
             for (const SampleRef& at : log->samples()) log->verify(at);
@@ -87,11 +87,11 @@ TEST_F(Db3Test, ABagIsConvertedToLogsOfEitherFormat) {
         EXPECT_LT(glm::distance(poses.back().position, {2, -49, 3}), 1e-12);
         EXPECT_FALSE(check(to / name).diagnostic);
         if (!isMcap(name)) continue;
-        const size_t other = log->indexOf("other");
-        EXPECT_EQ(log->layout(other), ros::schemaOf<ros::Header>()) << "Humble's databases have no definitions";
+        const size_t other = log->findIndex("other");
+        EXPECT_EQ(log->layout(other), ros::describeSchema<ros::Header>()) << "Humble's databases have no definitions";
         const auto first = std::ranges::find(log->samples(), other, &SampleRef::stream);
         ros::Header header;
-        ros::decode(log->bytesOf(*first), header);
+        ros::decode(log->toBytes(*first), header);
         EXPECT_EQ(header.frame_id, "x");
         EXPECT_EQ(first->time, (types::Time{1'700'000'000'000'600}));
     }
@@ -103,7 +103,7 @@ TEST_F(Db3Test, TheFolderOfABagIsAcceptedInPlaceOfItsFile) {
     EXPECT_EQ(openLog(folder / "bag")->samples().size(), 100u);
     EXPECT_EQ(check(folder / "bag").samples, 100u);
     std::filesystem::copy(path, folder / "bag/bag_1.db3");
-    EXPECT_THAT(refusalOf(folder / "bag"), HasSubstr("is a folder without metadata.yaml; give one of its files: "));
+    EXPECT_THAT(getRefusal(folder / "bag"), HasSubstr("is a folder without metadata.yaml; give one of its files: "));
     const auto describe = [&](const std::string& files) {
         std::ofstream(folder / "bag/metadata.yaml")
             << "rosbag2_bagfile_information: {relative_file_paths: [" << files << "]}\n";
@@ -111,16 +111,16 @@ TEST_F(Db3Test, TheFolderOfABagIsAcceptedInPlaceOfItsFile) {
     describe("bag_1.db3");
     EXPECT_EQ(openLog(folder / "bag")->samples().size(), 100u);
     describe("bag_1.db3, bag_7.db3");
-    EXPECT_THAT(refusalOf(folder / "bag"), HasSubstr("bag_7.db3: cannot be read"));
+    EXPECT_THAT(getRefusal(folder / "bag"), HasSubstr("bag_7.db3: cannot be read"));
     for (const std::string& foreign :
          {std::string("../bag_0.db3"), (folder / "x.db3").string(), std::string("x/../../bag_0.db3")}) {
         describe(foreign);
-        EXPECT_THAT(refusalOf(folder / "bag"), HasSubstr("which is outside of the bag, and is not read")) << foreign;
+        EXPECT_THAT(getRefusal(folder / "bag"), HasSubstr("which is outside of the bag, and is not read")) << foreign;
     }
     describe("bag_0.db3.zstd");
-    EXPECT_THAT(refusalOf(folder / "bag"), AllOf(HasSubstr("unpack it: zstd -d "), HasSubstr("bag_0.db3.zstd")));
+    EXPECT_THAT(getRefusal(folder / "bag"), AllOf(HasSubstr("unpack it: zstd -d "), HasSubstr("bag_0.db3.zstd")));
     std::filesystem::create_directory(folder / "none");
-    EXPECT_THAT(refusalOf(folder / "none"), HasSubstr("is a folder; give a log in it: a .log, .mcap or .db3 file"));
+    EXPECT_THAT(getRefusal(folder / "none"), HasSubstr("is a folder; give a log in it: a .log, .mcap or .db3 file"));
 }
 
 TEST_F(Db3Test, TheFilesOfASplitBagAreOneLogWhateverTheirOrderAndStorage) {
@@ -165,7 +165,7 @@ TEST_F(Db3Test, TheFilesOfASplitBagAreOneLogWhateverTheirOrderAndStorage) {
 TEST_F(Db3Test, AReadOnlyBagThatWasLoggedAheadIsReadAndNoFileIsMadeNextToIt) {
     std::filesystem::create_directory(folder / "wal");
     ASSERT_EQ(bag.writeDb3(folder / "wal/bag.db3", "wal"), "");
-    EXPECT_EQ(bytesOf(folder / "wal/bag.db3")[18], 2) << "a database of this kind";
+    EXPECT_EQ(toBytes(folder / "wal/bag.db3")[18], 2) << "a database of this kind";
     const auto filesNow = [&] { return std::distance(std::filesystem::directory_iterator(folder / "wal"), {}); };
     const auto before = filesNow();
     {
@@ -178,30 +178,30 @@ TEST_F(Db3Test, AReadOnlyBagThatWasLoggedAheadIsReadAndNoFileIsMadeNextToIt) {
 
 TEST_F(Db3Test, OtherFilesAreOneErrorWithItsReason) {
     std::ofstream(folder / "text.db3") << "topics,messages\n" << std::string(500, 'x');
-    EXPECT_THAT(refusalOf(folder / "text.db3"), HasSubstr("is no SQLite database"));
+    EXPECT_THAT(getRefusal(folder / "text.db3"), HasSubstr("is no SQLite database"));
     std::ofstream(folder / "empty.db3") << "";
-    EXPECT_THAT(refusalOf(folder / "empty.db3"), HasSubstr("is no SQLite database"));
-    EXPECT_THAT(refusalOf(folder / "absent.db3"), HasSubstr("cannot be read: No such file"));
+    EXPECT_THAT(getRefusal(folder / "empty.db3"), HasSubstr("is no SQLite database"));
+    EXPECT_THAT(getRefusal(folder / "absent.db3"), HasSubstr("cannot be read: No such file"));
     execute("CREATE TABLE more(x); DROP TABLE topics;");
-    EXPECT_THAT(refusalOf(path), HasSubstr("without the tables topics and messages"));
+    EXPECT_THAT(getRefusal(path), HasSubstr("without the tables topics and messages"));
     execute(
         "CREATE VIEW topics AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i FROM n) SELECT i AS id, i AS name, "
         "i AS type, i AS "
         "serialization_format FROM n;");
-    EXPECT_THAT(refusalOf(path), HasSubstr("without the tables topics and messages")) << "which would never end";
+    EXPECT_THAT(getRefusal(path), HasSubstr("without the tables topics and messages")) << "which would never end";
     execute("DROP VIEW topics; CREATE TABLE topics(id, name);");
-    EXPECT_THAT(refusalOf(path), AllOf(HasSubstr("cannot be read as a bag"), HasSubstr("no such column")));
+    EXPECT_THAT(getRefusal(path), AllOf(HasSubstr("cannot be read as a bag"), HasSubstr("no such column")));
     execute(
         "DROP TABLE topics; CREATE TABLE topics(id, name, type, serialization_format); INSERT INTO topics VALUES(7, "
         "NULL, x'ff', 3);");
-    EXPECT_THAT(refusalOf(path), HasSubstr("the message of id 1 is of topic 1, which is not there"));
+    EXPECT_THAT(getRefusal(path), HasSubstr("the message of id 1 is of topic 1, which is not there"));
 }
 
 TEST_F(Db3Test, AMessageThatIsNotOfItsTypeIsNamedById) {
     execute("UPDATE messages SET data = x'00010000ff' WHERE id = 3;");
-    EXPECT_THAT(refusalOf(path), HasSubstr("the sample of id 3"));
+    EXPECT_THAT(getRefusal(path), HasSubstr("the sample of id 3"));
     execute("UPDATE messages SET data = 5 WHERE id = 3;");
-    EXPECT_THAT(refusalOf(path), HasSubstr("the sample of id 3"));
+    EXPECT_THAT(getRefusal(path), HasSubstr("the sample of id 3"));
 }
 
 TEST_F(Db3Test, ALockedBagIsRefusedAndReadAfterwards) {
@@ -213,25 +213,25 @@ TEST_F(Db3Test, ALockedBagIsRefusedAndReadAfterwards) {
     FILE* const holder = popen(command.c_str(), "w");
     ASSERT_NE(holder, nullptr);
     for (int i = 0; i < 200 && !std::filesystem::exists(folder / "held"); ++i) usleep(50'000);
-    EXPECT_THAT(refusalOf(path), HasSubstr("is locked: another program writes it; wait until it has ended"));
+    EXPECT_THAT(getRefusal(path), HasSubstr("is locked: another program writes it; wait until it has ended"));
     pclose(holder);
-    EXPECT_EQ(refusalOf(path), "");
+    EXPECT_EQ(getRefusal(path), "");
 }
 
 TEST_F(Db3Test, ATruncatedBagIsDamagedWhereverItEnds) {
-    const std::vector<char> whole = bytesOf(path);
+    const std::vector<char> whole = toBytes(path);
     std::mt19937 random(1);
     for (int i = 0; i < 40; ++i) {
         const size_t size = std::uniform_int_distribution<size_t>(0, whole.size() - 1)(random);
         writeBytes(folder / "cut.db3", {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
-        EXPECT_THAT(refusalOf(folder / "cut.db3"),
+        EXPECT_THAT(getRefusal(folder / "cut.db3"),
                     HasSubstr(size < 100 ? "is no SQLite database" : "is damaged or incomplete"))
             << size;
     }
 }
 
 TEST_F(Db3Test, DamagedBytesAreReadOrOneError) {
-    const std::vector<char> whole = bytesOf(path);
+    const std::vector<char> whole = toBytes(path);
     std::mt19937 random(2);
     for (int i = 0; i < 300; ++i) {
         std::vector<char> damaged = whole;
@@ -239,7 +239,7 @@ TEST_F(Db3Test, DamagedBytesAreReadOrOneError) {
             damaged[std::uniform_int_distribution<size_t>(16, damaged.size() - 1)(random)] =
                 static_cast<char>(random());
         writeBytes(folder / "cut.db3", damaged);
-        refusalOf(folder / "cut.db3");  // checks that there is one
+        getRefusal(folder / "cut.db3");  // checks that there is one
     }
 }
 
@@ -262,7 +262,7 @@ TEST_F(Db3Test, MessagesThatAreCompressedOneByOneAreRead) {
     log->read(log->samples()[0], pose);
     EXPECT_EQ(pose.position, glm::dvec3(5, -4, 6));
     execute("UPDATE messages SET data = x'" + hex.substr(0, hex.size() - 10) + "' WHERE id = 1;");
-    EXPECT_THAT(refusalOf(path), AllOf(HasSubstr("the sample of id 1"), HasSubstr("is compressed, and damaged")));
+    EXPECT_THAT(getRefusal(path), AllOf(HasSubstr("the sample of id 1"), HasSubstr("is compressed, and damaged")));
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ private:
     }
 };
 
-std::string textOf(const std::filesystem::path& path) {
-    const std::vector<char> bytes = bytesOf(path);
+std::string toText(const std::filesystem::path& path) {
+    const std::vector<char> bytes = toBytes(path);
     return {bytes.begin(), bytes.end()};
 }
 
@@ -161,7 +161,7 @@ types::SonarElements elements(int64_t time) {
 TEST(ExportTest, SignalsOfElementsAreArraysAndLines) {
     auto [folder, reader] = Logged("sonar.elements", {elements(1'000'000), elements(1'500'000)});
     exportCsv(reader, "sonar.elements", folder / "x.csv");
-    EXPECT_THAT(textOf(folder / "x.csv"),
+    EXPECT_THAT(toText(folder / "x.csv"),
                 testing::StartsWith("time,element,position,sample,in_phase,quadrature\n1.000000,0,-0.5,0,1,0\n"
                                     "1.000000,0,-0.5,1,-2,0.5\n1.000000,1,0.5,0,3,0\n"));
     exportNpz(reader, "sonar.elements", folder / "x.npz");
@@ -186,12 +186,12 @@ TEST(ExportTest, CsvHasALineForEachBinOfTruthAndEachBeamOfReturns) {
     log.close();
     pocolog::Reader reader(folder / "x.0.log");
     exportCsv(reader, "sonar.truth", folder / "truth.csv");
-    EXPECT_EQ(textOf(folder / "truth.csv"),
+    EXPECT_EQ(toText(folder / "truth.csv"),
               "time,beam,bearing,bin,elevation,object,share,hits,grazing,path,shadow\n"
               "1.500000,0,0.5,0,0.5,1,0.75,7,1.25,3,0\n"
               "1.500000,0,0.5,1,nan,-1,0,0,nan,0,1\n");
     exportCsv(reader, "sonar.returns", folder / "returns.csv");
-    EXPECT_THAT(textOf(folder / "returns.csv"),
+    EXPECT_THAT(toText(folder / "returns.csv"),
                 testing::StartsWith("time,beam,bearing,first_range,first_level,first_elevation,strongest_range,"
                                     "strongest_level,strongest_elevation\n1.500000,0,0.5,0.04958"));
 }
@@ -204,7 +204,7 @@ TEST(ExportTest, DetectionsAreArraysByBeamWithTheSpeedOfSound) {
     found.add({-0.5}, {0}, types::SonarDetections::no_return, 0);
     auto [folder, reader] = Logged("sonar.detections", {found, found});
     exportCsv(reader, "sonar.detections", folder / "x.csv");
-    EXPECT_THAT(textOf(folder / "x.csv"), testing::StartsWith("time,beam,bearing,elevation,travel_time,intensity\n"
+    EXPECT_THAT(toText(folder / "x.csv"), testing::StartsWith("time,beam,bearing,elevation,travel_time,intensity\n"
                                                               "1.500000,0,0.5,0.25,0.01,2\n"
                                                               "1.500000,1,-0.5,0,nan,0\n"));
     exportNpz(reader, "sonar.detections", folder / "x.npz");
@@ -225,7 +225,7 @@ TEST(ExportTest, AChangeOfShapeBeginsANewFile) {
 TEST(ExportTest, CsvOfPingsHasALineForEachBin) {
     auto [folder, reader] = Logged("sonar.ping", {ping(1'500'000, 2, 2)});
     exportCsv(reader, "sonar.ping", folder / "x.csv");
-    EXPECT_EQ(textOf(folder / "x.csv"),
+    EXPECT_EQ(toText(folder / "x.csv"),
               "time,beam,bearing,bin,value\n"
               "1.500000,0,0.5,0,0.25\n"
               "1.500000,0,0.5,1,1.25\n"
@@ -236,7 +236,7 @@ TEST(ExportTest, CsvOfPingsHasALineForEachBin) {
 TEST(ExportTest, CsvOfPosesIsATrajectory) {
     auto [folder, reader] = Logged("vehicle.pose", {pose()});
     exportCsv(reader, "vehicle.pose", folder / "x.csv");
-    EXPECT_EQ(textOf(folder / "x.csv"), "time,x,y,z,qw,qx,qy,qz\n1.500000,1,2,-3.5,0.5,0.5,-0.5,0.5\n");
+    EXPECT_EQ(toText(folder / "x.csv"), "time,x,y,z,qw,qx,qy,qz\n1.500000,1,2,-3.5,0.5,0.5,-0.5,0.5\n");
 }
 
 TEST(ExportTest, CsvOfNumbersHasTimeAndValue) {
@@ -246,7 +246,7 @@ TEST(ExportTest, CsvOfNumbersHasTimeAndValue) {
     log.close();
     pocolog::Reader reader(folder / "x.0.log");
     exportCsv(reader, "t.on", folder / "x.csv");
-    EXPECT_EQ(textOf(folder / "x.csv"), "time,value\n2.000000,1\n");
+    EXPECT_EQ(toText(folder / "x.csv"), "time,value\n2.000000,1\n");
 }
 
 types::SonarScan scan() {
@@ -277,7 +277,7 @@ types::Image picture() {
 TEST(ExportTest, ScansAreExportedAsPingsWithDescendingBearings) {
     auto [folder, reader] = Logged("micron.scan", {scan()});
     exportCsv(reader, "micron.scan", folder / "x.csv");
-    EXPECT_EQ(textOf(folder / "x.csv"), "time,beam,bearing,bin,value\n2.000000,0,0.5,0,1\n2.000000,1,0.25,0,0.2\n");
+    EXPECT_EQ(toText(folder / "x.csv"), "time,beam,bearing,bin,value\n2.000000,0,0.5,0,1\n2.000000,1,0.25,0,0.2\n");
     if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
     exportNpz(reader, "micron.scan", folder / "x.npz");
     EXPECT_EQ(numpySays(folder / "x.npz", "x['bins'].shape, x['bearings'].tolist(), x['bin_duration'] * 1e6"),
@@ -310,7 +310,7 @@ TEST(ExportTest, CsvOfTextsQuotesThem) {
     log.close();
     pocolog::Reader reader(folder / "x.0.log");
     exportCsv(reader, "t.text", folder / "x.csv");
-    EXPECT_EQ(textOf(folder / "x.csv"), "time,value\n2.000000,\"say \"\"ping\"\",\ntwice\"\n");
+    EXPECT_EQ(toText(folder / "x.csv"), "time,value\n2.000000,\"say \"\"ping\"\",\ntwice\"\n");
 }
 
 TEST(ExportTest, NamesStreamsThatCannotBeExported) {

@@ -44,7 +44,7 @@ private:
 };
 
 /** Returns the poses of a stream by name. */
-std::vector<types::Pose> posesOf(Reader& log, const std::string& stream) {
+std::vector<types::Pose> getPoses(Reader& log, const std::string& stream) {
     std::vector<types::Pose> poses;
     log.forEach<types::Pose>(stream, [&](const types::Pose& pose, const SampleRef& at) {
         EXPECT_EQ(pose.time, at.time);
@@ -71,7 +71,7 @@ void inEachStorage(const test::Bag& bag, types::WorldFrame frame, auto&& use) {
     }
 }
 
-std::string refusalOf(Reader& log, const PoseSource& source) {
+std::string getRefusal(Reader& log, const PoseSource& source) {
     try {
         addPoses(log, source, types::WorldFrame::Enu);
     } catch (const types::ConfigError& error) {
@@ -100,7 +100,7 @@ void expectTopicsPoses(Draws& draws, types::WorldFrame frame) {
         EXPECT_EQ(found[0].parent, "map");
         EXPECT_EQ(found[0].count, written.size());
         EXPECT_TRUE(addPoses(log, {"/nav/state", "vehicle.pose"}, frame).empty());
-        const std::vector<types::Pose> read = posesOf(log, "vehicle.pose");
+        const std::vector<types::Pose> read = getPoses(log, "vehicle.pose");
         ASSERT_EQ(read.size(), written.size());
         for (size_t i = 0; i < read.size(); ++i) expectSame(read[i], written[i]);
     });
@@ -125,7 +125,7 @@ TEST(PoseSourcesTest, CovariancesOfAPoseAreKept) {
     EXPECT_NEAR(message.pose.covariance[0], 2, 1e-12);  // east is Rock's -y
     bag.add("/p", pose.time, message);
     inEachStorage(bag, types::WorldFrame::Enu, [&](Reader& log) {
-        const types::Pose read = posesOf(log, "p").front();
+        const types::Pose read = getPoses(log, "p").front();
         for (int i = 0; i < 3; ++i) {
             EXPECT_LT(glm::distance(read.cov_position[i], pose.cov_position[i]), exact);
             EXPECT_LT(glm::distance(read.cov_orientation[i], pose.cov_orientation[i]), exact);
@@ -133,7 +133,7 @@ TEST(PoseSourcesTest, CovariancesOfAPoseAreKept) {
     });
 }
 
-ros::TransformStamped transformOf(const std::string& parent, const std::string& child, const types::Pose& pose) {
+ros::TransformStamped makeTransform(const std::string& parent, const std::string& child, const types::Pose& pose) {
     ros::TransformStamped stamped{{ros::toRos(pose.time), parent}, child, {}};
     stamped.transform.translation = {pose.position.x, pose.position.y, pose.position.z};
     const glm::dquat& q = pose.orientation;
@@ -188,21 +188,22 @@ types::Pose inRoot(const std::vector<Branch>& tree, int frame, double time) {
     return all;
 }
 
-test::Bag bagOf(const std::vector<Branch>& tree, Draws& draws, int steps) {
+test::Bag makeBag(const std::vector<Branch>& tree, Draws& draws, int steps) {
     test::Bag bag;
     ros::TFMessage fixed;
-    const auto parentOf = [&](const Branch& b) {
+    const auto getParent = [&](const Branch& b) {
         return b.parent < 0 ? "map" : tree[static_cast<size_t>(b.parent)].name;
     };
     for (const Branch& branch : tree)
-        if (!branch.moves) fixed.transforms.push_back(transformOf(parentOf(branch), branch.name, branch.at(0)));
+        if (!branch.moves) fixed.transforms.push_back(makeTransform(getParent(branch), branch.name, branch.at(0)));
     const int static_step = draws.whole(0, steps - 1);  // a late publisher: the recorder joined before it
     for (int step = 0; step < steps; ++step) {
         const double time = 0.1 * step;
         if (step == static_step && !fixed.transforms.empty()) bag.add("/tf_static", seconds(time), fixed);
         ros::TFMessage moving;
         for (const Branch& branch : tree)
-            if (branch.moves) moving.transforms.push_back(transformOf(parentOf(branch), branch.name, branch.at(time)));
+            if (branch.moves)
+                moving.transforms.push_back(makeTransform(getParent(branch), branch.name, branch.at(time)));
         if (draws.whole(0, 1) == 1) {  // all in one message, or each in its own
             bag.add("/tf", seconds(time + 0.02), moving);
             continue;
@@ -219,7 +220,7 @@ TEST(PoseSourcesTest, FramesOfRandomTreesAreFollowedAsTheyWereWritten) {
         SCOPED_TRACE(seed);
         Draws draws(seed);
         const std::vector<Branch> tree = randomTree(draws);
-        const test::Bag bag = bagOf(tree, draws, steps);
+        const test::Bag bag = makeBag(tree, draws, steps);
         const int child = draws.whole(0, static_cast<int>(tree.size()) - 1);
         const int parent = draws.whole(-1, static_cast<int>(tree.size()) - 1);
         bool moves = false;  // a transform between them, on the way over the frame that both are below
@@ -231,11 +232,11 @@ TEST(PoseSourcesTest, FramesOfRandomTreesAreFollowedAsTheyWereWritten) {
         const PoseSource source{from + "->" + tree[static_cast<size_t>(child)].name, "vehicle.pose"};
         inEachStorage(bag, types::WorldFrame::Enu, [&](Reader& log) {
             if (!moves) {
-                EXPECT_THAT(refusalOf(log, source), HasSubstr("gives no poses"));
+                EXPECT_THAT(getRefusal(log, source), HasSubstr("gives no poses"));
                 return;
             }
             EXPECT_TRUE(addPoses(log, source, types::WorldFrame::Enu).empty());
-            const std::vector<types::Pose> read = posesOf(log, "vehicle.pose");
+            const std::vector<types::Pose> read = getPoses(log, "vehicle.pose");
             ASSERT_EQ(read.size(), static_cast<size_t>(steps));
             for (int step = 0; step < steps; ++step) {
                 const double time = 0.1 * step;
@@ -258,13 +259,13 @@ TEST(PoseSourcesTest, TwoBodiesComeFromOneTopicOfTransforms) {
     Draws draws(3);
     const std::vector<Branch> tree{{"auv", -1, true, draws.pose(0), {1, 0, 0}, {0, 0, 1}, 0.1},
                                    {"diver", -1, true, draws.pose(0), {0, 1, 0}, {0, 0, 1}, 0.2}};
-    inEachStorage(bagOf(tree, draws, 10), types::WorldFrame::Enu, [&](Reader& log) {
+    inEachStorage(makeBag(tree, draws, 10), types::WorldFrame::Enu, [&](Reader& log) {
         const std::vector<FoundPoses> found = findPoses(log);
         ASSERT_EQ(found.size(), 2u);
         EXPECT_THAT(found[0].text(), HasSubstr("(tf2_msgs/msg/TFMessage, 10 in 0.9 s)"));
         addPoses(log, {"map->auv", "vehicle.pose"}, types::WorldFrame::Enu);
         addPoses(log, {"map->diver", "diver.pose"}, types::WorldFrame::Enu);
-        const auto auv = posesOf(log, "vehicle.pose"), diver = posesOf(log, "diver.pose");
+        const auto auv = getPoses(log, "vehicle.pose"), diver = getPoses(log, "diver.pose");
         ASSERT_EQ(auv.size(), 10u);
         ASSERT_EQ(diver.size(), 10u);
         EXPECT_GT(glm::distance(auv.back().position, diver.back().position), 1);
@@ -277,11 +278,11 @@ TEST(PoseSourcesTest, TransformsOfAClockThatRunsTenTimesAsFastAreFollowed) {
     for (int i = 0; i < 300; ++i) {
         types::Pose pose = draws.pose(0);
         pose.time = types::Time::fromSeconds(i * 1.0);  // a simulator's clock
-        bag.add("/tf", seconds(i * 0.1), ros::TFMessage{{transformOf("world", "auv", pose)}});
+        bag.add("/tf", seconds(i * 0.1), ros::TFMessage{{makeTransform("world", "auv", pose)}});
     }
     inEachStorage(bag, types::WorldFrame::Enu, [&](Reader& log) {
         EXPECT_TRUE(addPoses(log, {"world->auv", "p"}, types::WorldFrame::Enu).empty());
-        EXPECT_EQ(posesOf(log, "p").size(), 300u);
+        EXPECT_EQ(getPoses(log, "p").size(), 300u);
     });
 }
 
@@ -300,7 +301,7 @@ TEST(PoseSourcesTest, PosesThatAreNotUsableAreOmittedWithAWarning) {
         const types::Notices notices = addPoses(log, {"/p", "vehicle.pose"}, types::WorldFrame::Enu);
         ASSERT_EQ(notices.size(), 1u);
         EXPECT_THAT(notices[0].text, HasSubstr("2 of 6 poses of /p are omitted"));
-        EXPECT_EQ(posesOf(log, "vehicle.pose").size(), 4u);
+        EXPECT_EQ(getPoses(log, "vehicle.pose").size(), 4u);
         EXPECT_THAT(addPoses(log, {"/p", "p", types::Datum{}}, types::WorldFrame::Enu)[0].text,
                     HasSubstr("datum and orientation are without effect on /p, which has whole poses"));
     });
@@ -316,21 +317,21 @@ TEST(PoseSourcesTest, ASourceThatCannotBeUsedIsRefusedWithThoseThatThereAre) {
         bag.add("/depth", seconds(i), ros::Float64{1.0});
         types::Pose pose = draws.pose(i);
         bag.add("/tf", seconds(i),
-                ros::TFMessage{{transformOf("map", "odom", pose), transformOf("left", "right", pose)}});
+                ros::TFMessage{{makeTransform("map", "odom", pose), makeTransform("left", "right", pose)}});
     }
-    bag.add("/tf_static", seconds(0), ros::TFMessage{{transformOf("odom", "base", draws.pose(0))}});
+    bag.add("/tf_static", seconds(0), ros::TFMessage{{makeTransform("odom", "base", draws.pose(0))}});
     bag.add("/tf", seconds(4),
-            ros::TFMessage{{transformOf("a", "b", draws.pose(4)), transformOf("b", "a", draws.pose(4))}});
+            ros::TFMessage{{makeTransform("a", "b", draws.pose(4)), makeTransform("b", "a", draws.pose(4))}});
     inEachStorage(bag, types::WorldFrame::Enu, [&](Reader& log) {
         const std::string there = "there are: /odom (nav_msgs/msg/Odometry, map -> base_link, 3 in 2 s), ";
-        EXPECT_THAT(refusalOf(log, {"/odm"}), testing::AllOf(HasSubstr("did you mean /odom?"), HasSubstr(there)));
-        EXPECT_THAT(refusalOf(log, {"/depth"}), testing::AllOf(HasSubstr("which is no pose"), HasSubstr(there)));
-        EXPECT_THAT(refusalOf(log, {"odom->base"}), HasSubstr("is a fixed pose"));
-        EXPECT_THAT(refusalOf(log, {"map->right"}), HasSubstr("no transforms lead from right to map, only to left"));
-        EXPECT_THAT(refusalOf(log, {"map->b"}), HasSubstr("form a circle"));
-        EXPECT_THAT(refusalOf(log, {"->"}), HasSubstr("gives no poses"));
-        EXPECT_THAT(refusalOf(log, {""}), HasSubstr("is no stream"));
-        EXPECT_EQ(refusalOf(log, {"map->base", "own"}), "");
+        EXPECT_THAT(getRefusal(log, {"/odm"}), testing::AllOf(HasSubstr("did you mean /odom?"), HasSubstr(there)));
+        EXPECT_THAT(getRefusal(log, {"/depth"}), testing::AllOf(HasSubstr("which is no pose"), HasSubstr(there)));
+        EXPECT_THAT(getRefusal(log, {"odom->base"}), HasSubstr("is a fixed pose"));
+        EXPECT_THAT(getRefusal(log, {"map->right"}), HasSubstr("no transforms lead from right to map, only to left"));
+        EXPECT_THAT(getRefusal(log, {"map->b"}), HasSubstr("form a circle"));
+        EXPECT_THAT(getRefusal(log, {"->"}), HasSubstr("gives no poses"));
+        EXPECT_THAT(getRefusal(log, {""}), HasSubstr("is no stream"));
+        EXPECT_EQ(getRefusal(log, {"map->base", "own"}), "");
     });
 }
 
@@ -378,7 +379,7 @@ TEST(PoseSourcesTest, FixesBecomePlacesAboutTheDatum) {
                 if (std::string(error.what()).find("no GeographicLib") == std::string::npos) throw;
                 GTEST_SKIP() << "this build has no GeographicLib";
             }
-            const std::vector<types::Pose> read = posesOf(log, "vehicle.pose");
+            const std::vector<types::Pose> read = getPoses(log, "vehicle.pose");
             ASSERT_EQ(read.size(), fixes.size());
             const double phi = datum.latitude_deg * M_PI / 180, lambda = datum.longitude_deg * M_PI / 180;
             const glm::dvec3 east(-std::sin(lambda), std::cos(lambda), 0),
@@ -406,11 +407,11 @@ TEST(PoseSourcesTest, FixesWithoutADatumOrAnOrientationSayWhatIsMissing) {
     bag.add("/none", seconds(2), lost);
     inEachStorage(bag, types::WorldFrame::Enu, [&](Reader& log) {
         EXPECT_TRUE(findPoses(log)[0].has_fixes);
-        EXPECT_THAT(refusalOf(log, {"/fix"}),
+        EXPECT_THAT(getRefusal(log, {"/fix"}),
                     HasSubstr("datum: {latitude_deg: 54.5, longitude_deg: 10.25, height_m: 0}"));
         const types::Datum datum{54.5, 10.25, 3};
-        EXPECT_THAT(refusalOf(log, {"/none", "p", datum}), HasSubstr("has no fix in its 1 messages"));
-        EXPECT_THAT(refusalOf(log, {"/fix", "p", datum, "/fix"}),
+        EXPECT_THAT(getRefusal(log, {"/none", "p", datum}), HasSubstr("has no fix in its 1 messages"));
+        EXPECT_THAT(getRefusal(log, {"/fix", "p", datum, "/fix"}),
                     HasSubstr("may be a stream of poses or of sensor_msgs/msg/Imu"));
         types::Notices notices;
         try {
@@ -421,7 +422,7 @@ TEST(PoseSourcesTest, FixesWithoutADatumOrAnOrientationSayWhatIsMissing) {
         ASSERT_EQ(notices.size(), 2u);
         EXPECT_THAT(notices[0].text, HasSubstr("1 messages of /fix are omitted: they have no fix"));
         EXPECT_THAT(notices[1].text, HasSubstr("the body is level and looks to the north; orientation may be /imu"));
-        const types::Pose pose = posesOf(log, "p").front();
+        const types::Pose pose = getPoses(log, "p").front();
         EXPECT_LT(glm::length(pose.position), 1e-8);  // an unknown height is the datum's
         EXPECT_EQ(pose.orientation, glm::dquat(1, 0, 0, 0));
     });
@@ -436,9 +437,9 @@ TEST(PoseSourcesTest, AStreamThatHasTheNameAlreadyIsKeptUnderAnother) {
         bag.add(topic, seconds(0), odometry);
     }
     inEachStorage(bag, types::WorldFrame::Enu, [&](Reader& log) {
-        const types::Pose chosen = posesOf(log, "ekf.pose").front();
+        const types::Pose chosen = getPoses(log, "ekf.pose").front();
         addPoses(log, {"/ekf/pose", "vehicle.pose"}, types::WorldFrame::Enu);
-        expectSame(posesOf(log, "vehicle.pose").front(), chosen);
+        expectSame(getPoses(log, "vehicle.pose").front(), chosen);
         EXPECT_NE(log.find("vehicle.pose_recorded"), nullptr);
     });
 }

@@ -26,7 +26,7 @@ TEST(StreamTest, AReadableTimeIsReadBackToTheMicrosecond) {
 
 TEST(StreamTest, RefusesInvalidTimesByName) {
     for (const char* text : {"noon", "", "2023-11-14", "2023-11-14T22:13:20Zulu", "1e300", "nan", "3 s"})
-        EXPECT_THAT(test::errorOf<types::ConfigError>([&] { readTime(text, "--until"); }),
+        EXPECT_THAT(test::computeError<types::ConfigError>([&] { readTime(text, "--until"); }),
                     testing::HasSubstr("--until: is " + std::string(text)));
 }
 

@@ -71,7 +71,7 @@ private:
     uint64_t late_ = 0;
 };
 
-std::string textOf(uint64_t number) {
+std::string toText(uint64_t number) {
     return std::to_string(number) + std::string(number * 7919 % 3000, static_cast<char>('a' + number % 26));
 }
 
@@ -87,7 +87,7 @@ std::string textOf(uint64_t number) {
     thread.declare([&](log::Writer& file) { return file.add(text.index(), "task.texts", {}); });
     for (uint64_t number = 0;; ++number) {
         reported.pushed = number + 1;
-        thread.push(0, {static_cast<int64_t>(number + 1)}, types::AnySample(textOf(number)));
+        thread.push(0, {static_cast<int64_t>(number + 1)}, types::AnySample(toText(number)));
     }
 }
 
@@ -112,7 +112,7 @@ uint64_t samplesIn(const std::filesystem::path& path) {
     const auto log = log::openLog(path);
     uint64_t number = 0;
     log->forEach<std::string>("task.texts", [&](const std::string& text, const log::SampleRef&) {
-        EXPECT_EQ(text, textOf(number)) << number;
+        EXPECT_EQ(text, toText(number)) << number;
         ++number;
     });
     return number;

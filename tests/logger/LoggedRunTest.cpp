@@ -85,11 +85,11 @@ struct LoggedRunTest : testing::Test {
         registry_.add<ChangingTask>("test::ChangingTask", "a sonar whose range changes");
         registry_.add<LingeringTask>("test::LingeringTask", "a slow sonar");
     }
-    framework::Deployment deploymentOf(const std::string& text) {
+    framework::Deployment getDeployment(const std::string& text) {
         return {framework::DeploymentSpec::parse(text, (folder_ / "x.yml").string()), registry_, folder_.path()};
     }
     void run(const std::string& text, uint64_t pings) {
-        framework::Deployment deployment = deploymentOf(text);
+        framework::Deployment deployment = getDeployment(text);
         deployment.configure();
         const std::atomic<bool> never{false};
         EXPECT_FALSE(deployment.run({.samples = pings}, never).failed());
@@ -151,7 +151,7 @@ TEST_F(LoggedRunTest, APropertyThatChangesDuringTheRunHasASampleForEachChange) {
 }
 
 TEST_F(LoggedRunTest, InRealtimeLoggersWaitForNoLoggerAndNoHook) {
-    framework::Deployment deployment = deploymentOf(R"(
+    framework::Deployment deployment = getDeployment(R"(
 schedule: realtime
 tasks:
   sonar: {type: test::LingeringTask, activity: {period: 0.01}}
@@ -181,7 +181,8 @@ connections:
 }
 
 TEST_F(LoggedRunTest, APropertySetDuringTheRunIsInTheTasksRecord) {
-    framework::Deployment deployment = deploymentOf("tasks: {sonar: {type: test::PlannerTask, activity: {period: 1}}}");
+    framework::Deployment deployment =
+        getDeployment("tasks: {sonar: {type: test::PlannerTask, activity: {period: 1}}}");
     const auto range = [&] { return deployment.environment().records().at(0).properties.at("range"); };
     EXPECT_EQ(range(), types::PropertyValue(50.0)) << "before it is configured";
     deployment.configure();

@@ -6,17 +6,17 @@
 namespace insonify::logger {
 namespace {
 
-size_t refusalsOf(const std::string& file) {
+size_t countRefusals(const std::string& file) {
     LoggerConfig config;
     config.file = file;
-    return test::refusalsOf(config).size();
+    return test::countRefusals(config).size();
 }
 
 TEST(LoggerConfigTest, AcceptsOnlyNamesThatEndInLog) {
     for (const char* good : {"harbour.0.log", "harbour.log", "day/harbour.1.log", "x.LOG", "x.0.Mcap"})
-        EXPECT_EQ(refusalsOf(good), 0u) << good;
+        EXPECT_EQ(countRefusals(good), 0u) << good;
     for (const char* bad : {"", ".log", "harbour", "harbour.log.gz", "harbour.log/"})
-        EXPECT_EQ(refusalsOf(bad), 1u) << bad;
+        EXPECT_EQ(countRefusals(bad), 1u) << bad;
 }
 
 TEST(LoggerConfigTest, ALogOfSeveralFilesHasANumber) {
@@ -24,7 +24,7 @@ TEST(LoggerConfigTest, ALogOfSeveralFilesHasANumber) {
     config.max_file_size = 1e6;
     for (const auto& [file, count] : {std::pair{"harbour.0.log", 0u}, {"harbour.17.log", 0u}, {"harbour.log", 1u}}) {
         config.file = file;
-        EXPECT_THAT(test::refusalsOf(config), testing::SizeIs(count)) << file;
+        EXPECT_THAT(test::countRefusals(config), testing::SizeIs(count)) << file;
     }
     EXPECT_EQ(nextInSequence("day/harbour.9.log"), "day/harbour.10.log");
 }
@@ -33,11 +33,11 @@ TEST(LoggerConfigTest, AQuotaHoldsTwoFiles) {
     LoggerConfig config;
     config.file = "x.0.log";
     config.max_total_size = 3e6;
-    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("needs max_file_size")));
+    EXPECT_THAT(test::countRefusals(config), testing::ElementsAre(testing::HasSubstr("needs max_file_size")));
     config.max_file_size = 1.6e6;
-    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("twice max_file_size: 3200000")));
+    EXPECT_THAT(test::countRefusals(config), testing::ElementsAre(testing::HasSubstr("twice max_file_size: 3200000")));
     config.max_file_size = 1.5e6;
-    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(config), testing::IsEmpty());
 }
 
 TEST(LoggerConfigTest, PropertiesHaveTheirOwnFile) {
@@ -46,7 +46,7 @@ TEST(LoggerConfigTest, PropertiesHaveTheirOwnFile) {
     for (const auto& [file, count] :
          {std::pair{"properties.0.log", 0u}, {"", 0u}, {"x.0.log", 1u}, {"a/b.0.log", 1u}, {"properties", 1u}}) {
         config.property_file = file;
-        EXPECT_THAT(test::refusalsOf(config), testing::SizeIs(count)) << file;
+        EXPECT_THAT(test::countRefusals(config), testing::SizeIs(count)) << file;
     }
 }
 

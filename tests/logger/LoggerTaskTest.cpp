@@ -140,7 +140,7 @@ TEST(LoggerTaskTest, EveryTypeOfTheListCanBeLogged) {
 TEST(LoggerTaskTest, RefusesATypeThatALogCannotStore) {
     Bench bench;
     test::Writer<types::SnapshotPtr> scene("scene");
-    EXPECT_EQ(test::errorOf<types::ConfigError>([&] { bench.task.makeInput("snapshot", scene.port); }),
+    EXPECT_EQ(test::computeError<types::ConfigError>([&] { bench.task.makeInput("snapshot", scene.port); }),
               "scene.port is /insonify/Snapshot, which a log cannot hold");
     EXPECT_TRUE(bench.task.inputs().empty());
 }
@@ -224,7 +224,7 @@ TEST(LoggerTaskTest, TheSameSamplesGiveTheSameLogBitForBit) {
         }
         bench.task.stop();
         bench.task.cleanup();
-        return bytesOf(bench.path());
+        return toBytes(bench.path());
     };
     EXPECT_EQ(run(), run());
 }

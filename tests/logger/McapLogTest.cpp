@@ -185,7 +185,7 @@ TEST_F(McapLogTest, ValidatesTheNameOfTheFile) {
     for (const auto& [file, right] :
          {std::pair{"x.mcap", true}, {"a/x.0.mcap", true}, {".mcap", false}, {"x.bag", false}}) {
         config.file = file;
-        EXPECT_EQ(test::refusalsOf(config).empty(), right) << file;
+        EXPECT_EQ(test::countRefusals(config).empty(), right) << file;
     }
 }
 

@@ -41,7 +41,7 @@ struct RotationTest : testing::Test {
     }
     std::filesystem::path file(int number) const { return folder / ("x." + std::to_string(number) + ".log"); }
     /** Returns the samples of each file, which must be valid and have consecutive numbers. */
-    std::vector<size_t> countsOf(int files) const {
+    std::vector<size_t> getCounts(int files) const {
         std::vector<size_t> counts;
         int expected = 0;
         for (int number = 0; number < files; ++number) {
@@ -68,7 +68,7 @@ TEST_F(RotationTest, ALoggerThatNeverStartsLeavesTheFilesOfAnEarlierRun) {
     log(config, 25);
     std::map<std::filesystem::path, std::vector<char>> before;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
-        before[entry.path()] = bytesOf(entry.path());
+        before[entry.path()] = toBytes(entry.path());
     ASSERT_GT(before.size(), 5u);
     for (const char* file : {"x.0.log", "new.0.log", "new.0.mcap"})
         for (const bool is_cleaned_up : {true, false}) {
@@ -83,7 +83,7 @@ TEST_F(RotationTest, ALoggerThatNeverStartsLeavesTheFilesOfAnEarlierRun) {
                 ASSERT_TRUE(task.cleanup());
             }
         }
-    for (const auto& [file, bytes] : before) EXPECT_TRUE(bytesOf(file) == bytes) << file;
+    for (const auto& [file, bytes] : before) EXPECT_TRUE(toBytes(file) == bytes) << file;
     EXPECT_EQ(static_cast<size_t>(std::distance(std::filesystem::directory_iterator(folder.path()), {})),
               before.size());
 }
@@ -92,7 +92,7 @@ TEST_F(RotationTest, AFullFileIsFollowedByTheNext) {
     LoggerConfig config;
     config.max_file_size = 1e6;
     log(config, 25);
-    EXPECT_THAT(countsOf(3), testing::ElementsAre(10, 10, 5));
+    EXPECT_THAT(getCounts(3), testing::ElementsAre(10, 10, 5));
     EXPECT_LT(std::filesystem::file_size(file(0)), 1.11e6) << "the limit and one sample";
     EXPECT_NE(log::pocolog::Reader(file(2)).find("silent.port"), nullptr) << "declared at the end of the last file";
 }
@@ -101,12 +101,12 @@ TEST_F(RotationTest, AnOldFileIsFollowedByTheNext) {
     LoggerConfig config;
     config.max_file_duration = 1;
     log(config, 25);
-    EXPECT_THAT(countsOf(3), testing::ElementsAre(10, 10, 5));
+    EXPECT_THAT(getCounts(3), testing::ElementsAre(10, 10, 5));
 }
 
 TEST_F(RotationTest, WithoutALimitThereIsOneFile) {
     log({}, 25);
-    EXPECT_THAT(countsOf(1), testing::ElementsAre(25));
+    EXPECT_THAT(getCounts(1), testing::ElementsAre(25));
 }
 
 TEST_F(RotationTest, TheFirstFileStandsForAllOfTheSameRun) {
@@ -154,7 +154,7 @@ TEST_F(RotationTest, AQuotaKeepsTheNewestFiles) {
             config.max_total_size = quota;
             log(config, 75, is_mcap ? "bag/x.0.mcap" : "x.0.log");
             const auto first = folder / (is_mcap ? "bag/x.0.mcap" : "x.0.log");
-            const auto files = log::sequenceOf(first);
+            const auto files = log::findSequence(first);
             ASSERT_FALSE(files.empty());
             uintmax_t total = 0;
             for (const auto& [number, path] : files) total += std::filesystem::file_size(path);
@@ -184,7 +184,7 @@ TEST_F(RotationTest, RemovesFilesOfAnEarlierLongerLogWithTheirIndices) {
     log(config, 45);
     EXPECT_TRUE(std::filesystem::exists(file(4)));
     log(config, 15);
-    EXPECT_THAT(countsOf(2), testing::ElementsAre(10, 5));
+    EXPECT_THAT(getCounts(2), testing::ElementsAre(10, 5));
     for (int number = 2; number < 5; ++number) {
         EXPECT_FALSE(std::filesystem::exists(file(number)));
         EXPECT_FALSE(std::filesystem::exists(log::pocolog::indexPath(file(number))));
@@ -196,7 +196,7 @@ TEST_F(RotationTest, RemovesFilesOfAnEarlierLongerLogWithoutALimit) {
     config.max_file_size = 1e6;
     log(config, 25);
     log({}, 15);
-    EXPECT_THAT(countsOf(1), testing::ElementsAre(15));
+    EXPECT_THAT(getCounts(1), testing::ElementsAre(15));
     for (int number = 1; number < 3; ++number) {
         EXPECT_FALSE(std::filesystem::exists(file(number)));
         EXPECT_FALSE(std::filesystem::exists(log::pocolog::indexPath(file(number))));
@@ -219,8 +219,8 @@ TEST_F(RotationTest, RemovesNothingIfAnotherLoggerWritesOneOfTheFiles) {
         EXPECT_THAT(task.configError()->what(), testing::HasSubstr("another logger writes it"));
         EXPECT_THAT(task.configError()->what(), testing::HasSubstr("x.2.log"));
     }
-    EXPECT_EQ(bytesOf(file(0)).size(), 3u);
-    EXPECT_EQ(bytesOf(file(1)).size(), 3u);
+    EXPECT_EQ(toBytes(file(0)).size(), 3u);
+    EXPECT_EQ(toBytes(file(1)).size(), 3u);
     EXPECT_TRUE(std::filesystem::exists(file(2)));
 }
 
@@ -231,7 +231,7 @@ TEST_F(RotationTest, RemovesFilesOfAnEarlierLogAfterAMissingNumber) {
     std::filesystem::remove(file(1));
     for (const char* other : {"x.7.mcap", "y.8.log", "x.notes.log", "x.log"}) writeBytes(folder / other, {'x'});
     log(config, 5);
-    EXPECT_THAT(countsOf(1), testing::ElementsAre(5));
+    EXPECT_THAT(getCounts(1), testing::ElementsAre(5));
     for (int number = 1; number < 5; ++number) EXPECT_FALSE(std::filesystem::exists(file(number))) << number;
     for (const char* other : {"x.7.mcap", "y.8.log", "x.notes.log", "x.log"})
         EXPECT_TRUE(std::filesystem::exists(folder / other)) << other;
@@ -279,7 +279,7 @@ TEST_F(RotationTest, AClockThatIsSetEndsAFileWithADurationAndFilesAreOfTheirDura
         set_back_at = 15;
         step = types::Time::fromSeconds(seconds);
         log(config, 40);
-        EXPECT_THAT(countsOf(5), testing::ElementsAre(10, 5, 10, 10, 5)) << seconds;
+        EXPECT_THAT(getCounts(5), testing::ElementsAre(10, 5, 10, 10, 5)) << seconds;
     }
 }
 

@@ -29,44 +29,44 @@ void expectNear(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-
 
 struct BodyTest : testing::Test {
     Body::Taken take(const auto& message, double seconds, uint8_t component = 1, uint64_t way = 1) {
-        return body.take(frameOf(message, 1, component), way, Time::fromSeconds(seconds));
+        return body.take(getFrame(message, 1, component), way, Time::fromSeconds(seconds));
     }
     Body body{{}, {0, 0, 0}};
     Body eye{{.source = Source::Vision}, {100, 0, 0}};
 
     Body::Taken see(const VisionPositionEstimate& estimate, double seconds) {
-        return eye.take(frameOf(estimate, 1, 197), 1, Time::fromSeconds(seconds));
+        return eye.take(getFrame(estimate, 1, 197), 1, Time::fromSeconds(seconds));
     }
 };
 
 TEST_F(BodyTest, AVehicleThatIsLevelAndLooksNorthIsNotTurned) {
-    const types::Pose pose = poseOf(AttitudeQuaternion{}, LocalPositionNed{.x = 1, .y = 2, .z = 3});
+    const types::Pose pose = getPose(AttitudeQuaternion{}, LocalPositionNed{.x = 1, .y = 2, .z = 3});
     expectNear(pose.position, {1, -2, -3});  // north, west, up
     EXPECT_EQ(pose.orientation, glm::dquat(1, 0, 0, 0));
 }
 
 TEST_F(BodyTest, EastIsToStarboardOfNorth) {
-    const types::Pose pose = poseOf(turned(pi / 2, {0, 0, 1}), {});
+    const types::Pose pose = getPose(turned(pi / 2, {0, 0, 1}), {});
     expectNear(pose.orientation * glm::dvec3(1, 0, 0), {0, -1, 0});  // ahead
     expectNear(pose.orientation * glm::dvec3(0, 1, 0), {1, 0, 0});   // to port
     expectNear(pose.orientation * glm::dvec3(0, 0, 1), {0, 0, 1});
 }
 
 TEST_F(BodyTest, ThirtyDegreesOfPitchRaiseTheBow) {
-    const types::Pose pose = poseOf(turned(pi / 6, {0, 1, 0}), {});
+    const types::Pose pose = getPose(turned(pi / 6, {0, 1, 0}), {});
     expectNear(pose.orientation * glm::dvec3(1, 0, 0), {std::cos(pi / 6), 0, 0.5});
     expectNear(pose.orientation * glm::dvec3(0, 1, 0), {0, 1, 0});
 }
 
 TEST_F(BodyTest, ThirtyDegreesOfRollLowerStarboard) {
-    const types::Pose pose = poseOf(turned(pi / 6, {1, 0, 0}), {});
+    const types::Pose pose = getPose(turned(pi / 6, {1, 0, 0}), {});
     expectNear(pose.orientation * glm::dvec3(0, 1, 0), {0, std::cos(pi / 6), 0.5});
     expectNear(pose.orientation * glm::dvec3(1, 0, 0), {1, 0, 0});
 }
 
 TEST_F(BodyTest, AnglesOfAVisionEstimateAreOursWithPitchAndYawNegated) {
     const types::Pose pose =
-        poseOf(VisionPositionEstimate{.x = 1, .y = 2, .z = 3, .roll = 0.1f, .pitch = 0.2f, .yaw = 2});
+        getPose(VisionPositionEstimate{.x = 1, .y = 2, .z = 3, .roll = 0.1f, .pitch = 0.2f, .yaw = 2});
     const types::Mount same{.roll_deg = 0.1 * 180 / pi, .pitch_deg = -0.2 * 180 / pi, .yaw_deg = -2 * 180 / pi};
     EXPECT_GT(std::abs(glm::dot(pose.orientation, same.orientation())), 1 - 1e-12);
     expectNear(pose.position, {1, -2, -3});
@@ -77,7 +77,7 @@ TEST_F(BodyTest, VelocitiesAreThoseOfTheWorldAndRatesThoseOfTheBody) {
     attitude.roll_speed = 0.1f;
     attitude.pitch_speed = 0.2f;
     attitude.yaw_speed = 0.3f;
-    const types::Pose pose = poseOf(attitude, LocalPositionNed{.vx = 1, .vy = 2, .vz = 3});
+    const types::Pose pose = getPose(attitude, LocalPositionNed{.vx = 1, .vy = 2, .vz = 3});
     expectNear(pose.velocity, {1, -2, -3});
     expectNear(pose.angular_velocity, {0.1, -0.2, -0.3});
 }
@@ -187,13 +187,13 @@ TEST_F(BodyTest, OneOfTwoSendersCountsUntilItIsSilent) {
 }
 
 TEST_F(BodyTest, SystemAndComponentIdentifyTheBody) {
-    const Frame of_one = frameOf(AttitudeQuaternion{}, 1, 1), of_two = frameOf(AttitudeQuaternion{}, 2, 1);
-    EXPECT_TRUE(body.isOf(of_one));
-    EXPECT_FALSE(body.isOf(of_two));
-    EXPECT_FALSE(body.isOf(frameOf(VisionPositionEstimate{}, 1, 1)));
+    const Frame of_one = getFrame(AttitudeQuaternion{}, 1, 1), of_two = getFrame(AttitudeQuaternion{}, 2, 1);
+    EXPECT_TRUE(body.isInPart(of_one));
+    EXPECT_FALSE(body.isInPart(of_two));
+    EXPECT_FALSE(body.isInPart(getFrame(VisionPositionEstimate{}, 1, 1)));
     const Body particular({.component_id = 1}, {0, 0, 0});
-    EXPECT_TRUE(particular.isOf(of_one));
-    EXPECT_FALSE(particular.isOf(frameOf(AttitudeQuaternion{}, 1, 2)));
+    EXPECT_TRUE(particular.isInPart(of_one));
+    EXPECT_FALSE(particular.isInPart(getFrame(AttitudeQuaternion{}, 1, 2)));
 }
 
 TEST_F(BodyTest, EveryVisionEstimateIsAPoseRelativeToTheOrigin) {
@@ -225,7 +225,7 @@ TEST_F(BodyTest, PosesGoOnWhenAClockIsSetByTenMinutes) {
                 const double now = 0.02 * i;
                 const auto ms = static_cast<uint32_t>(std::lround(1000 * (1000 + now + (now >= 4 ? theirs : 0))));
                 const Time clock = Time::fromSeconds(1e9 + now + (now >= 6 ? ours : 0));
-                const auto give = [&](const auto& message) { return vehicle.take(frameOf(message, 1, 1), 1, clock); };
+                const auto give = [&](const auto& message) { return vehicle.take(getFrame(message, 1, 1), 1, clock); };
                 give(LocalPositionNed{.time_boot_ms = ms, .x = 1});
                 const auto pose = give(turned(0.1, {1, 0, 0}, ms)).pose;
                 if (!pose) continue;

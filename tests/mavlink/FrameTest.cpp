@@ -18,7 +18,7 @@ Message only(const Bytes& bytes) {
     const Datagram datagram = read(bytes);
     EXPECT_EQ(datagram.diagnostic, "");
     EXPECT_THAT(datagram.frames, SizeIs(1));
-    const auto message = datagram.frames.empty() ? std::nullopt : messageOf<Message>(datagram.frames[0]);
+    const auto message = datagram.frames.empty() ? std::nullopt : makeMessage<Message>(datagram.frames[0]);
     EXPECT_TRUE(message);
     return message.value_or(Message{});
 }
@@ -65,12 +65,12 @@ TEST(FrameTest, AVisionEstimateIsReadWithoutItsCovariance) {
 
 TEST(FrameTest, SendsTheBytesOfPymavlink) {
     const AttitudeQuaternion attitude{123456, 0.5f, 0.5f, -0.5f, 0.5f, 0.25f, -0.5f, 1.0f};
-    EXPECT_EQ(frameOf(attitude, 1, 1, 7, 1).bytes(AttitudeQuaternion::kind.crc_extra), attitude_1);
-    EXPECT_EQ(frameOf(attitude, 1, 1, 7, 2).bytes(AttitudeQuaternion::kind.crc_extra), attitude_2);
+    EXPECT_EQ(getFrame(attitude, 1, 1, 7, 1).bytes(AttitudeQuaternion::kind.crc_extra), attitude_1);
+    EXPECT_EQ(getFrame(attitude, 1, 1, 7, 2).bytes(AttitudeQuaternion::kind.crc_extra), attitude_2);
     CommandLong command{.command = CommandLong::set_message_interval, .target_system = 1, .target_component = 1};
     command.parameters[0] = 31;
     command.parameters[1] = 50000;
-    EXPECT_EQ(frameOf(command, 255, 190).bytes(CommandLong::kind.crc_extra),
+    EXPECT_EQ(getFrame(command, 255, 190).bytes(CommandLong::kind.crc_extra),
               bytesOfHex("fd20000000ffbe4c00000000f84100504347000000000000000000000000000000000000"
                          "0000ff010101dc73"));
 }

@@ -9,10 +9,10 @@ struct Dae {
     std::string unit = "1", up_axis = "Z_UP";  // empty: no element
     std::string floats = "0 0 0 1 0 0 1 2 3 0 2 3", float_count = "12";
     std::string accessor = R"(count="4" stride="3")";
-    std::string triangles = trianglesOf("0 1 2 0 2 3");
+    std::string triangles = getTriangles("0 1 2 0 2 3");
     std::string nodes = R"(<node id="near" name="near"><instance_geometry url="#g"/></node>)";
 
-    static std::string trianglesOf(const std::string& indices) {
+    static std::string getTriangles(const std::string& indices) {
         return R"(<triangles count="2"><input semantic="VERTEX" source="#v" offset="0"/><p>)" + indices +
                "</p></triangles>";
     }

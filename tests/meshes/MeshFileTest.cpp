@@ -34,13 +34,13 @@ struct MeshFileTest : SdfFiles {
 TEST_F(MeshFileTest, TheUnitOfADaeIsHonoured) {
     const auto geometry = readMeshFile(writeDae("0.0254", "Z_UP"), MeshAxes::AsStored);
     expectSound(*mesh("<uri>part.dae</uri>"));
-    expectBounds(boundsOf(*geometry), {0, 0, 0}, glm::dvec3(11, 2, 3) * 0.0254);
+    expectBounds(getBounds(*geometry), {0, 0, 0}, glm::dvec3(11, 2, 3) * 0.0254);
     EXPECT_EQ(geometry->triangleCount(), 4u);
 }
 
 TEST_F(MeshFileTest, TheUpAxisOfADaeTurnsItWhereItIsASceneOfItsOwn) {
     const auto bounds = [&](const char* up_axis) {
-        return boundsOf(*readMeshFile(writeDae("1", up_axis), MeshAxes::ZUp));
+        return getBounds(*readMeshFile(writeDae("1", up_axis), MeshAxes::ZUp));
     };
     expectBounds(bounds("Z_UP"), {0, 0, 0}, {11, 2, 3});
     // y is up: (x, y, z) of the file is (x, -z, y) of the world; so it is where the file says nothing (COLLADA 1.4)
@@ -52,10 +52,10 @@ TEST_F(MeshFileTest, ADaeInAWorldAndInARobotIsNotTurnedWhateverItsUpAxis) {
     for (const char* up_axis : {"X_UP", "Y_UP", "Z_UP", ""}) {
         SCOPED_TRACE(up_axis);
         writeDae("0.5", up_axis);
-        expectBounds(boundsOf(*mesh("<uri>part.dae</uri>")), {0, 0, 0}, {5.5, 1, 1.5});
+        expectBounds(getBounds(*mesh("<uri>part.dae</uri>")), {0, 0, 0}, {5.5, 1, 1.5});
         const auto robot = write("r.urdf", R"(<robot name="r"><link name="base"><visual><geometry>
             <mesh filename="part.dae"/></geometry></visual></link></robot>)");
-        expectBounds(boundsOf(*readScene(robot).geometry), {0, 0, 0}, {5.5, 1, 1.5});
+        expectBounds(getBounds(*readScene(robot).geometry), {0, 0, 0}, {5.5, 1, 1.5});
     }
 }
 
@@ -67,7 +67,7 @@ TEST_F(MeshFileTest, AMeshOfAnyFormatFillsTheCollisionBoxOfItsModel) {
           "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 11 0 0\nvertex 11 2 3\nendloop\nendfacet\n"
           "endsolid s\n");
     write("part.gltf", gltf(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)" +
-                            triangle(bytesOf<float>({0, 0, 0, 11, 0, 0, 11, 2, 3}))));
+                            triangle(toBytes<float>({0, 0, 0, 11, 0, 0, 11, 2, 3}))));
     const std::string box = pose("5.5 1 1.5 0 0 0"), place = pose("10 -4 2 1.5707963267948966 0 0");
     for (const char* file : {"part.dae", "part.obj", "part.stl", "part.gltf"}) {
         SCOPED_TRACE(file);
@@ -79,10 +79,10 @@ TEST_F(MeshFileTest, AMeshOfAnyFormatFillsTheCollisionBoxOfItsModel) {
         ASSERT_GE(objects.size(), 2u);
         Bounds shown;
         for (size_t i = 0; i + 1 < objects.size(); ++i) {
-            const Bounds one = boundsOf(*scene.geometry, objects[i]);
+            const Bounds one = getBounds(*scene.geometry, objects[i]);
             shown = {glm::min(shown.low, one.low), glm::max(shown.high, one.high)};
         }
-        const Bounds collision = boundsOf(*scene.geometry, objects.back());
+        const Bounds collision = getBounds(*scene.geometry, objects.back());
         expectBounds(shown, collision.low, collision.high, 1e-5);
     }
 }
@@ -92,8 +92,8 @@ TEST_F(MeshFileTest, ObjAndStlAreTakenAsTheyAre) {
         "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 2 0 1\nvertex 0 3 1\n"
         "endloop\nendfacet\nendsolid s\n";
     for (const MeshAxes axes : {MeshAxes::AsStored, MeshAxes::ZUp}) {
-        expectBounds(boundsOf(*readMeshFile(write("a.stl", stl), axes)), {0, 0, 1}, {2, 3, 1});
-        expectBounds(boundsOf(*readMeshFile(write("a.OBJ", "v 0 0 1\nv 2 0 1\nv 2 3 1\nv 0 3 1\nf 1 2 3 4\n"), axes)),
+        expectBounds(getBounds(*readMeshFile(write("a.stl", stl), axes)), {0, 0, 1}, {2, 3, 1});
+        expectBounds(getBounds(*readMeshFile(write("a.OBJ", "v 0 0 1\nv 2 0 1\nv 2 3 1\nv 0 3 1\nf 1 2 3 4\n"), axes)),
                      {0, 0, 1}, {2, 3, 1});
     }
 }
@@ -102,11 +102,11 @@ TEST_F(MeshFileTest, AGltfInAWorldIsNotTurnedAndBringsItsAcoustics) {
     write("leaf.gltf",
           gltf(R"("nodes":[{"mesh":0}],"materials":[{"name":"oak","extras":{"acoustics":{"lambert_db":-7}}}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],)" +
-               triangle(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 3}))));
+               triangle(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 2, 3}))));
     const auto geometry = mesh("<uri>leaf.gltf</uri>");
     expectSound(*geometry);
-    expectBounds(boundsOf(*geometry), {0, 0, 0}, {1, 2, 3});
-    expectBounds(boundsOf(*readMeshFile(folder_ / "leaf.gltf", MeshAxes::ZUp)), {0, -3, 0}, {1, 0, 2});
+    expectBounds(getBounds(*geometry), {0, 0, 0}, {1, 2, 3});
+    expectBounds(getBounds(*readMeshFile(folder_ / "leaf.gltf", MeshAxes::ZUp)), {0, -3, 0}, {1, 0, 2});
     EXPECT_EQ(geometry->materials.at(0).name, "oak");
     EXPECT_FLOAT_EQ(geometry->materials.at(0).lambert_db, -7);
 }
@@ -146,13 +146,13 @@ TEST_F(MeshFileTest, AMeshFileIsASceneOfItsOwn) {
         SCOPED_TRACE(file);
         const Scene scene = readScene(folder_ / file);
         expectSound(*scene.geometry);
-        expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {11, 2, 3});
+        expectBounds(getBounds(*scene.geometry), {0, 0, 0}, {11, 2, 3});
         ASSERT_EQ(findNode(scene, "part"), 0) << "the whole file moves with the node of its name";
-        EXPECT_EQ(partsOf(scene, 0).size(), scene.geometry->objects.size());
-        expectBounds(boundsOf(*placed(scene, {.position = {1, 2, 3}, .scale = 0.1}).geometry), {1, 2, 3},
+        EXPECT_EQ(getParts(scene, 0).size(), scene.geometry->objects.size());
+        expectBounds(getBounds(*placed(scene, {.position = {1, 2, 3}, .scale = 0.1}).geometry), {1, 2, 3},
                      {2.1, 2.2, 3.3});
-        expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Y}).geometry), {0, -3, 0}, {11, 0, 2});
-        expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Z}).geometry), {0, 0, 0}, {11, 2, 3});
+        expectBounds(getBounds(*placed(scene, {.up = UpAxis::Y}).geometry), {0, -3, 0}, {11, 0, 2});
+        expectBounds(getBounds(*placed(scene, {.up = UpAxis::Z}).geometry), {0, 0, 0}, {11, 2, 3});
         const auto used = static_cast<size_t>(scene.geometry->meshes.at(0).clusters.at(0).material);
         EXPECT_EQ(scene.geometry->materials.at(used).name, std::string(file) == "part.obj" ? "steel_grey" : "part");
     }
@@ -168,11 +168,11 @@ TEST_F(MeshFileTest, ADaeAsASceneIsUprightAndItsAxesMayBeOverridden) {
     for (const auto& [up_axis, bounds] : upright) {
         SCOPED_TRACE(up_axis);
         const Scene scene = readScene(writeDae("1", up_axis));
-        expectBounds(boundsOf(*scene.geometry), bounds.low, bounds.high);
+        expectBounds(getBounds(*scene.geometry), bounds.low, bounds.high);
         for (const char* node : {"part", "near", "far"}) EXPECT_GE(findNode(scene, node), 0) << node;
-        EXPECT_EQ(partsOf(scene, findNode(scene, "part")).size(), 2u);
-        expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Z}).geometry), {0, 0, 0}, {11, 2, 3});
-        expectBounds(boundsOf(*placed(scene, {.up = UpAxis::Y}).geometry), {0, -3, 0}, {11, 0, 2});
+        EXPECT_EQ(getParts(scene, findNode(scene, "part")).size(), 2u);
+        expectBounds(getBounds(*placed(scene, {.up = UpAxis::Z}).geometry), {0, 0, 0}, {11, 2, 3});
+        expectBounds(getBounds(*placed(scene, {.up = UpAxis::Y}).geometry), {0, -3, 0}, {11, 0, 2});
     }
 }
 
@@ -201,7 +201,7 @@ TEST_F(MeshFileTest, AMeshFileWithoutTrianglesOrThatIsNoMeshIsNoScene) {
     write("words.obj", "hello\n");
     write("words.ply", "ply\nhello\n");
     for (const char* file : {"points.ply", "empty.stl", "words.obj", "words.ply"})
-        EXPECT_NE(diagnosticOf(folder_ / file).find(file), std::string::npos) << diagnosticOf(folder_ / file);
+        EXPECT_NE(findDiagnostic(folder_ / file).find(file), std::string::npos) << findDiagnostic(folder_ / file);
 }
 
 TEST_F(MeshFileTest, ADaeWhoseTextureHasNoPictureIsReadWithoutIt) {
@@ -213,12 +213,12 @@ TEST_F(MeshFileTest, ADaeWhoseTextureHasNoPictureIsReadWithoutIt) {
 <technique sid="c"><phong><diffuse><texture texture="t" texcoord="u"/></diffuse></phong></technique></profile_COMMON></effect></library_effects>
 <library_materials><material id="m" name="paint"><instance_effect url="#e"/></material></library_materials>)";
     text.insert(text.find("<library_geometries>"), effects);
-    expectBounds(boundsOf(*readMeshFile(write("paint.dae", text), MeshAxes::AsStored)), {0, 0, 0}, {1, 2, 3});
+    expectBounds(getBounds(*readMeshFile(write("paint.dae", text), MeshAxes::AsStored)), {0, 0, 0}, {1, 2, 3});
 }
 
 TEST_F(MeshFileTest, TheScaleOfAMeshMayMirrorIt) {
     writeDae("1", "Z_UP");
-    expectBounds(boundsOf(*mesh("<uri>part.dae</uri><scale>2 -1 1</scale>")), {0, -2, 0}, {22, 0, 3});
+    expectBounds(getBounds(*mesh("<uri>part.dae</uri><scale>2 -1 1</scale>")), {0, -2, 0}, {22, 0, 3});
 }
 
 TEST_F(MeshFileTest, ASubmeshIsChosenByItsNodeOrMeshAndMayBeCentred) {
@@ -226,9 +226,9 @@ TEST_F(MeshFileTest, ASubmeshIsChosenByItsNodeOrMeshAndMayBeCentred) {
     const auto submesh = [&](const std::string& name, const std::string& more = "") {
         return mesh("<uri>part.dae</uri><submesh><name>" + name + "</name>" + more + "</submesh>");
     };
-    expectBounds(boundsOf(*submesh("far")), {10, 0, 0}, {11, 2, 3});
-    expectBounds(boundsOf(*submesh("plate")), {0, 0, 0}, {11, 2, 3});
-    expectBounds(boundsOf(*submesh("far", "<center>true</center>")), {-0.5, -1, -1.5}, {0.5, 1, 1.5});
+    expectBounds(getBounds(*submesh("far")), {10, 0, 0}, {11, 2, 3});
+    expectBounds(getBounds(*submesh("plate")), {0, 0, 0}, {11, 2, 3});
+    expectBounds(getBounds(*submesh("far", "<center>true</center>")), {-0.5, -1, -1.5}, {0.5, 1, 1.5});
     EXPECT_TRUE(hasNotice(*submesh("rudder"), "part.dae has no submesh \"rudder\""));
 }
 
@@ -241,11 +241,11 @@ TEST_F(MeshFileTest, AMeshUsedTwiceIsReadOnce) {
 }
 
 TEST_F(MeshFileTest, ReportsADamagedMesh) {
-    const std::string whole = bytesOf<float>({1, 2, 3});
+    const std::string whole = toBytes<float>({1, 2, 3});
     const std::map<std::string, std::string> files = {
         {"cut.dae", "<COLLADA><asset>"},
         {"words.obj", "no mesh"},
-        {"cut.stl", std::string(80, ' ') + bytesOf<uint32_t>({1000000}) + whole},
+        {"cut.stl", std::string(80, ' ') + toBytes<uint32_t>({1000000}) + whole},
         {"empty.dae", ""},
         {"a.blend", "BLENDER"}};
     for (const auto& [name, bytes] : files) {

@@ -34,14 +34,14 @@ struct MeshProcessTest : SdfFiles {
             return error.what();
         }
     }
-    std::string diagnosticOf(const Dae& dae) const { return diagnosticOfMesh(write("part.dae", dae.text())); }
+    std::string findDiagnostic(const Dae& dae) const { return diagnosticOfMesh(write("part.dae", dae.text())); }
 
     /** Uses a shell script in place of the program that reads. */
     std::string diagnosticWithReader(const std::string& script) const {
         const auto reader = write("reader", "#!/bin/sh\nulimit -c 0\n" + script + "\n");
         std::filesystem::permissions(reader, std::filesystem::perms::owner_all);
         const Variable named("INSONIFY_MESH_READER", reader);
-        return diagnosticOf(Dae());
+        return findDiagnostic(Dae());
     }
     void expectPart(const std::string& text, const std::string& part) const {
         EXPECT_NE(text.find(part), std::string::npos) << text;
@@ -73,7 +73,7 @@ void expectSame(const FileMeshes& apart, const FileMeshes& here) {
 TEST_F(MeshProcessTest, ANodeThatInstancesItselfIsRefused) {
     Dae dae;
     dae.nodes = R"(<node id="n" name="n"><instance_geometry url="#g"/><instance_node url="#n"/></node>)";
-    const std::string diagnostic = diagnosticOf(dae);
+    const std::string diagnostic = findDiagnostic(dae);
     expectPart(diagnostic, "part.dae");
     expectPart(diagnostic, "best as .glb");
 }
@@ -84,7 +84,7 @@ TEST_F(MeshProcessTest, InvalidCornersEndInAnErrorOrASoundMesh) {
             Dae dae;
             dae.triangles = Dae::polygons(count, corners);
             SCOPED_TRACE(dae.triangles);
-            diagnosticOf(dae);
+            findDiagnostic(dae);
         }
 }
 
@@ -93,14 +93,14 @@ TEST_F(MeshProcessTest, AStrideBeyondTheArrayEndsInAnErrorOrASoundMesh) {
         Dae dae;
         dae.accessor = std::string(R"(count="4" stride=")") + stride + "\"";
         SCOPED_TRACE(dae.accessor);
-        diagnosticOf(dae);
+        findDiagnostic(dae);
     }
 }
 
 TEST_F(MeshProcessTest, ACommaBetweenIndicesIsRefusedWithinItsMemory) {
     Dae dae;
-    dae.triangles = Dae::trianglesOf("0,1 2 0 2 3");
-    const std::string diagnostic = diagnosticOf(dae);
+    dae.triangles = Dae::getTriangles("0,1 2 0 2 3");
+    const std::string diagnostic = findDiagnostic(dae);
     expectPart(diagnostic, "part.dae");
     expectPart(diagnostic, "best as .glb");
 }
@@ -110,7 +110,7 @@ TEST_F(MeshProcessTest, CountsOfThreeGigabytesAreRefused) {
     floats.float_count = "800000000";
     corners.triangles = Dae::polygons("800000000", "3 3");
     for (const Dae& dae : {floats, corners}) {
-        const std::string diagnostic = diagnosticOf(dae);
+        const std::string diagnostic = findDiagnostic(dae);
         expectPart(diagnostic, "cannot be read: ");
         EXPECT_EQ(diagnostic.find("std::"), std::string::npos) << diagnostic;
     }
@@ -129,10 +129,11 @@ TEST_F(MeshProcessTest, AFileThatTakesTooLongIsRefused) {
     ReadLimits limits = ReadLimits::forFile(std::filesystem::file_size(file));
     const auto read = [&] { readMeshesApart(file, MeshAxes::AsStored, limits); };
     limits.processor_s = 1;
-    expectPart(test::errorOf<types::ConfigError>(read), "star.obj: takes more than 1 s to compute; open the model");
+    expectPart(test::computeError<types::ConfigError>(read),
+               "star.obj: takes more than 1 s to compute; open the model");
     limits.processor_s = 100;
     limits.wall_s = 1;
-    expectPart(test::errorOf<types::ConfigError>(read), "star.obj: was not read within 1 s; open the model");
+    expectPart(test::computeError<types::ConfigError>(read), "star.obj: was not read within 1 s; open the model");
 }
 
 TEST_F(MeshProcessTest, ReportsEveryEndOfTheReader) {
@@ -154,7 +155,7 @@ TEST_F(MeshProcessTest, ReportsEveryEndOfTheReader) {
 
 TEST_F(MeshProcessTest, ReportsAMissingReader) {
     const Variable named("INSONIFY_MESH_READER", folder_ / "nowhere");
-    expectPart(diagnosticOf(Dae()), "part.dae: cannot be read: " + (folder_ / "nowhere").string() + ": No such file");
+    expectPart(findDiagnostic(Dae()), "part.dae: cannot be read: " + (folder_ / "nowhere").string() + ": No such file");
 }
 
 TEST_F(MeshProcessTest, ReadsFromManyThreadsAndWithIgnoredChildren) {
@@ -223,8 +224,8 @@ TEST_F(MeshProcessTest, EveryDamageIsAMeshOrAnError) {
     const std::pair<const char*, std::string> files[] = {
         {"part.dae", Dae().text()},
         {"part.obj", "o plate\nv 0 0 1\nv 2 0 1\nv 2 3 1\nv 0 3 1\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\n"},
-        {"part.stl", std::string(80, ' ') + bytesOf<uint32_t>({1}) +
-                         bytesOf<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<uint16_t>({0})}};
+        {"part.stl", std::string(80, ' ') + toBytes<uint32_t>({1}) +
+                         toBytes<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}) + toBytes<uint16_t>({0})}};
     std::minstd_rand random(11);
     for (const auto& [name, whole] : files)
         for (int round = 0; round < 60; ++round) {
@@ -241,7 +242,7 @@ TEST_F(MeshProcessTest, ForeignFilesAreReadBitForBitAsWithoutAProcess) {
     if (!std::filesystem::is_directory(shared)) GTEST_SKIP() << "NO FILES AT " << shared << ": NOTHING WAS COMPARED";
     size_t files = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(shared)) {
-        const std::string extension = extensionOf(entry.path());
+        const std::string extension = getExtension(entry.path());
         if (extension != ".dae" && extension != ".obj" && extension != ".stl" && extension != ".ply") continue;
         SCOPED_TRACE(entry.path());
         const MeshAxes axes = extension == ".dae" ? MeshAxes::ZUp : MeshAxes::AsStored;

@@ -11,7 +11,7 @@ namespace insonify::nav {
 namespace {
 
 template <class Task, class Out>
-std::vector<std::string> allocationsOf(Task& task, framework::OutputPort<Out> Task::*output) {
+std::vector<std::string> countAllocations(Task& task, framework::OutputPort<Out> Task::*output) {
     test::Writer<types::Pose> poses;
     test::Reader<Out> reader;
     poses.port.connectTo(task.pose, framework::ConnPolicy::buffer(4));
@@ -30,28 +30,28 @@ std::vector<std::string> allocationsOf(Task& task, framework::OutputPort<Out> Ta
 
 TEST(AllocationTest, AnInertialUnitAllocatesNothing) {
     ImuTask task("imu");
-    EXPECT_THAT(allocationsOf(task, &ImuTask::imu), testing::IsEmpty());
+    EXPECT_THAT(countAllocations(task, &ImuTask::imu), testing::IsEmpty());
 }
 
 TEST(AllocationTest, ADopplerLogOverASceneAllocatesNothing) {
     DvlTask task("dvl");
     test::Writer<types::SnapshotPtr> scene;
     scene.port.connectTo(task.snapshot, {});
-    const auto snapshot = std::make_shared<types::Snapshot>(test::snapshotOf(test::sceneOf({test::ground(-17)})));
+    const auto snapshot = std::make_shared<types::Snapshot>(test::makeSnapshot(test::makeScene({test::ground(-17)})));
     scene.port.write(snapshot);
-    EXPECT_THAT(allocationsOf(task, &DvlTask::dvl), testing::IsEmpty());
+    EXPECT_THAT(countAllocations(task, &DvlTask::dvl), testing::IsEmpty());
 }
 
 TEST(AllocationTest, AReceiverOfSatellitesAllocatesNothing) {
     FixTask task("fix");
     task.config.set({.datum = types::Datum{54, 10, 0}, .water_surface = -100});
-    if (!test::refusalsOf(task).empty()) GTEST_SKIP() << "this build has no GeographicLib";
-    EXPECT_THAT(allocationsOf(task, &FixTask::fix), testing::IsEmpty());
+    if (!test::countRefusals(task).empty()) GTEST_SKIP() << "this build has no GeographicLib";
+    EXPECT_THAT(countAllocations(task, &FixTask::fix), testing::IsEmpty());
 }
 
 TEST(AllocationTest, APressureGaugeAllocatesNothing) {
     PressureTask task("pressure");
-    EXPECT_THAT(allocationsOf(task, &PressureTask::pressure), testing::IsEmpty());
+    EXPECT_THAT(countAllocations(task, &PressureTask::pressure), testing::IsEmpty());
 }
 
 }  // namespace

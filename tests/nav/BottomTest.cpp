@@ -12,7 +12,7 @@
 namespace insonify::nav {
 namespace {
 
-Bottom bottomOf(types::Snapshot snapshot) {
+Bottom makeBottom(types::Snapshot snapshot) {
     Bottom bottom;
     bottom.take(std::make_shared<types::Snapshot>(std::move(snapshot)));
     return bottom;
@@ -31,7 +31,7 @@ TEST(BottomTest, ALevelBottomIsHitFromAboveAndFromBelow) {
 }
 
 TEST(BottomTest, AFloorOfTrianglesIsWhereALevelBottomIs) {
-    const Bottom floor = bottomOf(test::snapshotOf(test::sceneOf({test::ground(-20)})));
+    const Bottom floor = makeBottom(test::makeSnapshot(test::makeScene({test::ground(-20)})));
     const Bottom level(-20.0);
     for (const glm::dvec3 way : {glm::dvec3(0.3, 0.4, -0.8), glm::dvec3(-0.1, 0.7, -0.2), down}) {
         const glm::dvec3 direction = glm::normalize(way);
@@ -45,11 +45,11 @@ TEST(BottomTest, AFloorOfTrianglesIsWhereALevelBottomIs) {
 
 TEST(BottomTest, FindsTheNearestOfManyMovedObjects) {
     auto geometry = test::surfaces();  // ground at -4, and a block, turned, among others
-    types::Snapshot snapshot = test::snapshotOf(geometry);
-    EXPECT_NEAR(*bottomOf(snapshot).range({-30, 30, 0}, down, 100), 4, 1e-6);
+    types::Snapshot snapshot = test::makeSnapshot(geometry);
+    EXPECT_NEAR(*makeBottom(snapshot).range({-30, 30, 0}, down, 100), 4, 1e-6);
     const auto ball = static_cast<uint32_t>(1);  // 1.5 m, of flat triangles
     snapshot.moved = {{ball, glm::translate(glm::dmat4(1), {-30, 30, -2})}};
-    Bottom bottom = bottomOf(snapshot);
+    Bottom bottom = makeBottom(snapshot);
     EXPECT_NEAR(*bottom.range({-30, 30, 10}, down, 100), 10.5, 0.02);
     EXPECT_NEAR(*bottom.range({-30, 33, 0}, down, 100), 4, 1e-6) << "next to the ball";
     EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 14, 1e-6) << "nor is it where it was";
@@ -69,14 +69,14 @@ TEST(BottomTest, AMeshThatDeformsIsWhereItIsPosed) {
     Bottom bottom;
     int hits = 0;
     for (int trial = 0; trial < 50; ++trial) {
-        types::Snapshot snapshot = test::snapshotOf(geometry);
+        types::Snapshot snapshot = test::makeSnapshot(geometry);
         const glm::dmat4 joint =
             glm::rotate(glm::translate(glm::dmat4(1), 5.0 * vector()), 3 * number(random), vector());
         if (trial % 5 > 0) test::pose(snapshot, ball, glm::scale(joint, glm::dvec3(1.2, 0.5, 2)));
         if (trial % 3 > 0) snapshot.moved = {{ball, glm::translate(glm::dmat4(1), 10.0 * vector())}};
-        const Bottom by_hand = bottomOf(test::rigid(snapshot));
+        const Bottom by_hand = makeBottom(test::rigid(snapshot));
         bottom.take(std::make_shared<types::Snapshot>(snapshot));
-        const types::Extent extent = types::extentOf(
+        const types::Extent extent = types::getExtent(
             test::rigid(snapshot)
                 .geometry->meshes[static_cast<size_t>(test::rigid(snapshot).geometry->objects[1].mesh)],
             snapshot.moved.empty() ? geometry->objects[ball].world_from_object : snapshot.moved[0].world_from_object);
@@ -92,34 +92,34 @@ TEST(BottomTest, AMeshThatDeformsIsWhereItIsPosed) {
 }
 
 TEST(BottomTest, APlateOnAJointIsAsHighAsItsJoint) {
-    const auto geometry = test::sceneOf({test::jointed(test::ground(-20))});
+    const auto geometry = test::makeScene({test::jointed(test::ground(-20))});
     Bottom bottom;
     for (const double up : {0.0, 3.0, -70.0, 12.0}) {
-        types::Snapshot snapshot = test::snapshotOf(geometry);
+        types::Snapshot snapshot = test::makeSnapshot(geometry);
         test::pose(snapshot, 0, glm::translate(glm::dmat4(1), {0, 0, up}));
         bottom.take(std::make_shared<types::Snapshot>(snapshot));
         EXPECT_NEAR(*bottom.range({0, 0, -5}, down, 100), 15 - up, 1e-5);
     }
-    bottom.take(std::make_shared<types::Snapshot>(test::snapshotOf(geometry)));
+    bottom.take(std::make_shared<types::Snapshot>(test::makeSnapshot(geometry)));
     EXPECT_NEAR(*bottom.range({0, 0, -5}, down, 100), 15, 1e-5) << "at rest again";
 }
 
 TEST(BottomTest, ANewGeometryReplacesTheFirst) {
-    Bottom bottom = bottomOf(test::snapshotOf(test::sceneOf({test::ground(-20)})));
-    bottom.take(std::make_shared<types::Snapshot>(test::snapshotOf(test::sceneOf({test::ground(-10)}))));
+    Bottom bottom = makeBottom(test::makeSnapshot(test::makeScene({test::ground(-20)})));
+    bottom.take(std::make_shared<types::Snapshot>(test::makeSnapshot(test::makeScene({test::ground(-10)}))));
     EXPECT_NEAR(*bottom.range({0, 0, -8}, down, 100), 2, 1e-9);
     bottom.take(std::make_shared<types::Snapshot>());
     EXPECT_FALSE(bottom.range({0, 0, -8}, down, 100)) << "one without a geometry";
-    bottom.take(std::make_shared<types::Snapshot>(test::snapshotOf(std::make_shared<types::Geometry>())));
+    bottom.take(std::make_shared<types::Snapshot>(test::makeSnapshot(std::make_shared<types::Geometry>())));
     EXPECT_FALSE(bottom.range({0, 0, -8}, down, 100)) << "one without objects";
 }
 
 TEST(BottomTest, UnderWaterIsBelowTheSurfaceOfTheScene) {
-    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-20)}));
-    EXPECT_TRUE(bottomOf(snapshot).isUnderWater({0, 0, 5})) << "without a surface all is water";
+    types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::ground(-20)}));
+    EXPECT_TRUE(makeBottom(snapshot).isUnderWater({0, 0, 5})) << "without a surface all is water";
     snapshot.water_surface = 1;
-    EXPECT_TRUE(bottomOf(snapshot).isUnderWater({0, 0, 0.5}));
-    EXPECT_FALSE(bottomOf(snapshot).isUnderWater({0, 0, 1.5}));
+    EXPECT_TRUE(makeBottom(snapshot).isUnderWater({0, 0, 0.5}));
+    EXPECT_FALSE(makeBottom(snapshot).isUnderWater({0, 0, 1.5}));
     EXPECT_TRUE(Bottom(-20.0).isUnderWater({0, 0, 5}));
 }
 

@@ -28,7 +28,7 @@ pose::Trajectory survey() {
 }
 
 /** Returns motions at 100 Hz along the survey. */
-std::vector<Motion> motionsOf(const pose::Trajectory& path, const types::Mount& mount) {
+std::vector<Motion> computeMotions(const pose::Trajectory& path, const types::Mount& mount) {
     MotionTracker tracker(mount);
     std::vector<Motion> motions;
     for (int i = 0; i <= 12'000; ++i) {
@@ -40,7 +40,7 @@ std::vector<Motion> motionsOf(const pose::Trajectory& path, const types::Mount& 
 }
 
 TEST(DeadReckoningTest, VelocitiesAndAttitudesLeadBackToTheStart) {
-    const std::vector<Motion> motions = motionsOf(survey(), {});
+    const std::vector<Motion> motions = computeMotions(survey(), {});
     const Dvl log({});
     const Bottom bottom(-20.0);
     Imu unit({});
@@ -62,7 +62,7 @@ TEST(DeadReckoningTest, VelocitiesAndAttitudesLeadBackToTheStart) {
 
 TEST(DeadReckoningTest, AccelerationsAndRatesLeadBackToTheStart) {
     const types::Mount mount{.position = {0.4, -0.1, 0.2}, .roll_deg = 3, .pitch_deg = -2, .yaw_deg = 30};
-    const std::vector<Motion> motions = motionsOf(survey(), mount);
+    const std::vector<Motion> motions = computeMotions(survey(), mount);
     Imu unit({});
     const glm::dvec3 gravity(0, 0, -normalGravity(45));
     glm::dquat attitude = motions[0].orientation;

@@ -43,7 +43,7 @@ TEST_F(DvlTaskTest, DoesNotStartWithoutABottom) {
 TEST_F(DvlTaskTest, MeasuresOverTheFloorOfASceneFromItsPlaceInTheBody) {
     connectScene();
     startWith({.sensor = {.mount = {.position = {0.5, 0, -1}, .yaw_deg = 90}}});
-    show(test::snapshotOf(test::sceneOf({test::ground(-17)})));
+    show(test::makeSnapshot(test::makeScene({test::ground(-17)})));
     const types::DvlPtr dvl = reported(1, ahead_);
     ASSERT_TRUE(dvl);
     EXPECT_LT(glm::distance(dvl->velocity, {0, -1.5, 0}), 1e-9) << "its x axis looks to port";
@@ -54,7 +54,7 @@ TEST_F(DvlTaskTest, BeforeTheFirstSnapshotAndAboveTheSurfaceThereIsNoBottomLock)
     connectScene();
     startWith({});
     EXPECT_FALSE(reported(1, ahead_)->hasBottomLock());
-    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-17)}));
+    types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::ground(-17)}));
     snapshot.water_surface = -6;
     show(snapshot);
     EXPECT_FALSE(reported(2, ahead_)->hasBottomLock());
@@ -99,7 +99,7 @@ TEST_F(DvlTaskTest, RejectsAPoseThatIsNotFiniteUntilAValidPose) {
 }
 
 TEST_F(DvlTaskTest, RejectsAnEmptyIntervalOfAltitudes) {
-    EXPECT_THAT(test::refusalsOf(DvlConfig{.min_altitude = 5, .max_altitude = 5}),
+    EXPECT_THAT(test::countRefusals(DvlConfig{.min_altitude = 5, .max_altitude = 5}),
                 testing::ElementsAre(testing::StartsWith("min_altitude: ")));
 }
 

@@ -7,7 +7,7 @@
 namespace insonify::nav {
 namespace {
 
-std::vector<double> seriesOf(Axis& axis, size_t count, double step, double truth = 0) {
+std::vector<double> makeSeries(Axis& axis, size_t count, double step, double truth = 0) {
     std::vector<double> series(count);
     for (size_t i = 0; i < count; ++i)
         series[i] = axis.measure(truth, 0, types::Time::fromSeconds(static_cast<double>(i + 1) * step), step);
@@ -40,7 +40,7 @@ TEST(ErrorModelTest, WhiteNoiseHasTheAllanDeviationOfItsDensity) {
     constexpr double density = 2e-4, step = 0.01;
     constexpr size_t count = 300'000;
     Axis axis({.noise_density = density}, 1, 0);
-    const std::vector<double> series = seriesOf(axis, count, step);
+    const std::vector<double> series = makeSeries(axis, count, step);
     for (const size_t average : {1, 10, 100, 1000, 3000}) {
         const double expected = allanOfNoise(density, step * static_cast<double>(average));
         EXPECT_NEAR(allanDeviation(series, average) / expected, 1, fiveDeviations(count, average)) << average;
@@ -51,7 +51,7 @@ TEST(ErrorModelTest, AWanderingBiasHasTheAllanDeviationOfGaussAndMarkov) {
     constexpr double deviation = 3e-5, time = 100, step = 1;
     constexpr size_t count = 1'000'000;
     Axis axis({.bias_deviation = deviation, .bias_time = time}, 5, 2);
-    const std::vector<double> series = seriesOf(axis, count, step);
+    const std::vector<double> series = makeSeries(axis, count, step);
     for (const size_t average : {10, 50, 189, 1000, 5000}) {
         const double expected = allanOfBias(deviation, time, step * static_cast<double>(average));
         EXPECT_NEAR(allanDeviation(series, average) / expected, 1, fiveDeviations(count, average) + 0.002) << average;
@@ -104,8 +104,8 @@ TEST(ErrorModelTest, TheVarianceMatchesTheReadings) {
     constexpr size_t count = 100'000;
     constexpr double step = 0.02, truth = 0.35;
     double squares = 0;
-    for (const double reported : seriesOf(axis, count, step, truth)) squares += std::pow(reported - truth, 2);
-    EXPECT_NEAR(squares / count / varianceOf(errors, step), 1, 0.03);
+    for (const double reported : makeSeries(axis, count, step, truth)) squares += std::pow(reported - truth, 2);
+    EXPECT_NEAR(squares / count / computeVariance(errors, step), 1, 0.03);
 }
 
 TEST(ErrorModelTest, ABiasWandersOnAfterTheClockIsSetBack) {

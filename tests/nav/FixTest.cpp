@@ -96,7 +96,7 @@ TEST_F(FixTest, ThePeriodSelectsFixes) {
 }
 
 TEST_F(FixTest, AWorldWithoutADatumIsRefused) {
-    EXPECT_THAT(test::refusalsOf(task_),
+    EXPECT_THAT(test::countRefusals(task_),
                 testing::ElementsAre(testing::HasSubstr("datum: is missing; give the deployment")));
     EXPECT_FALSE(task_.configure());
     EXPECT_THAT(task_.lastError(), testing::HasSubstr("is missing"));
@@ -106,7 +106,7 @@ TEST_F(FixTest, ExtremePlacesGiveFiniteFixesOrNone) {
     for (const types::Datum& extreme : {types::Datum{90, 0, 0}, {-90, 77, 0}, {0, 180, 0}, {0, -180, -12'000}})
         for (const double far : {0.0, 1e-300, 1e4, 1e7, 1e300}) {
             FixReceiver receiver({.datum = extreme});
-            const types::Fix fix = fixOf(receiver.measure(poseAt(1, {far, -far, far})), extreme);
+            const types::Fix fix = makeFix(receiver.measure(poseAt(1, {far, -far, far})), extreme);
             if (!fix.hasPosition()) continue;
             EXPECT_LE(std::abs(fix.latitude), 90);
             EXPECT_LE(std::abs(fix.longitude), 180);

@@ -30,14 +30,15 @@ TEST(AmbientTest, NoiseInABinIsThatOfTheBandMinusTheDirectivityRelativeToTheSour
 }
 
 TEST(AmbientTest, NeedsEitherALevelOrAllInputsOfTheFormula) {
-    EXPECT_THAT(test::refusalsOf(windy(0)), testing::IsEmpty());
-    EXPECT_THAT(test::refusalsOf(AmbientConfig{}),
+    EXPECT_THAT(test::countRefusals(windy(0)), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(AmbientConfig{}),
                 testing::ElementsAre("has no value; give level_db, or wind_m_s, bandwidth_khz and source_level_db"));
     AmbientConfig both = windy(3), half = windy(3);
     both.level_db = -100;
-    EXPECT_THAT(test::refusalsOf(both), testing::SizeIs(3));
+    EXPECT_THAT(test::countRefusals(both), testing::SizeIs(3));
     half.bandwidth_khz.reset();
-    EXPECT_THAT(test::refusalsOf(half), testing::ElementsAre("has no bandwidth_khz, which is needed without level_db"));
+    EXPECT_THAT(test::countRefusals(half),
+                testing::ElementsAre("has no bandwidth_khz, which is needed without level_db"));
 }
 
 }  // namespace

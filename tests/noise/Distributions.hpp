@@ -11,9 +11,9 @@
 
 namespace insonify::noise {
 
-using test::pingOf;
+using test::makePing;
 
-inline types::Sonar noisyOf(const NoiseConfig& config, const types::Sonar& clean) {
+inline types::Sonar makeNoisy(const NoiseConfig& config, const types::Sonar& clean) {
     types::Sonar noisy;
     Noise(config).add(clean, noisy);
     return noisy;
@@ -31,7 +31,7 @@ inline NoiseConfig gaussian(double mean, double deviation) {
     return withSpeckle({.law = SpeckleLaw::Gaussian, .mean = mean, .deviation = deviation});
 }
 inline NoiseConfig gamma(double looks) { return withSpeckle({.law = SpeckleLaw::Gamma, .looks = looks}); }
-inline NoiseConfig kOf(double shape) { return withSpeckle({.law = SpeckleLaw::K, .shape = shape}); }
+inline NoiseConfig makeK(double shape) { return withSpeckle({.law = SpeckleLaw::K, .shape = shape}); }
 inline NoiseConfig background(double level_db) {
     NoiseConfig config;
     config.additive = AdditiveConfig{level_db};
@@ -42,14 +42,14 @@ inline NoiseConfig withSea(NoiseConfig config, double level_db) {
     return config;
 }
 
-inline double meanOf(const std::vector<float>& values) {
+inline double computeMean(const std::vector<float>& values) {
     double sum = 0;
     for (const float value : values) sum += value;
     return sum / static_cast<double>(values.size());
 }
 
-inline double varianceOf(const std::vector<float>& values) {
-    const double mean = meanOf(values);
+inline double computeVariance(const std::vector<float>& values) {
+    const double mean = computeMean(values);
     double sum = 0;
     for (const float value : values) sum += (value - mean) * (value - mean);
     return sum / static_cast<double>(values.size());
@@ -57,10 +57,10 @@ inline double varianceOf(const std::vector<float>& values) {
 
 inline double correlation(const float* a, const float* b, size_t count) {
     const std::vector<float> first(a, a + count), second(b, b + count);
-    const double first_mean = meanOf(first), second_mean = meanOf(second);
+    const double first_mean = computeMean(first), second_mean = computeMean(second);
     double sum = 0;
     for (size_t i = 0; i < count; ++i) sum += (first[i] - first_mean) * (second[i] - second_mean);
-    return sum / static_cast<double>(count) / std::sqrt(varianceOf(first) * varianceOf(second));
+    return sum / static_cast<double>(count) / std::sqrt(computeVariance(first) * computeVariance(second));
 }
 
 /** Returns values as shares of a distribution: uniform in [0, 1] if they follow it. */

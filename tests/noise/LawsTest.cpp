@@ -54,7 +54,7 @@ Law gammaLaw(int looks) {
 }
 Law kLaw(double shape) {
     return {"k " + std::to_string(shape),
-            kOf(shape),
+            makeK(shape),
             [shape](double x) { return kCdf(x, shape); },
             1 + 2 / shape,
             decibels_per_neper * (digamma(1) + digamma(shape) - std::log(shape)),
@@ -65,7 +65,7 @@ std::vector<Law> laws() {
     return {rayleighLaw(), gammaLaw(2), gammaLaw(4), gammaLaw(8), gammaLaw(16), kLaw(1), kLaw(2.5), kLaw(8)};
 }
 
-std::vector<float> drawn(const NoiseConfig& config) { return noisyOf(config, pingOf(256, 500)).bins; }
+std::vector<float> drawn(const NoiseConfig& config) { return makeNoisy(config, makePing(256, 500)).bins; }
 
 TEST(LawsTest, EachLawFollowsOnlyItsOwnDistribution) {
     for (const Law& law : laws()) {
@@ -104,7 +104,7 @@ struct Moments {
     double mean = 0, variance = 0, mean_bound = 0, variance_bound = 0;
 };
 
-Moments momentsOf(const std::vector<double>& values) {
+Moments computeMoments(const std::vector<double>& values) {
     Moments moments;
     double fourth = 0;
     for (const double value : values) moments.mean += value / count;
@@ -122,7 +122,7 @@ TEST(LawsTest, ScintillationAndDecibelsMatchTheory) {
             factors.push_back(value);
             levels.push_back(10 * std::log10(static_cast<double>(value)));
         }
-        const Moments factor = momentsOf(factors), level = momentsOf(levels);
+        const Moments factor = computeMoments(factors), level = computeMoments(levels);
         EXPECT_NEAR(factor.mean, 1, factor.mean_bound) << law.name;
         EXPECT_NEAR(factor.variance, law.scintillation, factor.variance_bound) << law.name;
         EXPECT_NEAR(level.mean, law.decibel_mean, level.mean_bound) << law.name;
@@ -148,7 +148,7 @@ double tail(const std::vector<float>& values, double x) {
 
 TEST(LawsTest, TheTailOfKMatchesItsFormulaAndIsFarAboveTheExponential) {
     for (const double shape : {1.0, 2.5, 8.0}) {
-        const std::vector<float> values = drawn(kOf(shape));
+        const std::vector<float> values = drawn(makeK(shape));
         for (const double x : {3.0, 6.0, 10.0}) {
             const double expected = 1 - kCdf(x, shape);
             EXPECT_NEAR(tail(values, x), expected, 4 * std::sqrt(expected / count)) << shape << " beyond " << x;
@@ -160,13 +160,13 @@ TEST(LawsTest, TheTailOfKMatchesItsFormulaAndIsFarAboveTheExponential) {
 }
 
 TEST(LawsTest, ExtremeShapesAreFiniteWithAnExtremeTailOrExponential) {
-    const std::vector<float> patchy = drawn(kOf(1e-3));
+    const std::vector<float> patchy = drawn(makeK(1e-3));
     EXPECT_TRUE(std::ranges::all_of(patchy, [](float value) { return value >= 0 && std::isfinite(value); }));
     EXPECT_GT(std::ranges::max(patchy), 1e3f);
     EXPECT_LT(tail(patchy, 1e-3), 0.02) << "nearly all is nothing";
-    EXPECT_LT(kolmogorovSmirnov(shares(drawn(kOf(1e6)), exponentialCdf)), ks_one_percent);
+    EXPECT_LT(kolmogorovSmirnov(shares(drawn(makeK(1e6)), exponentialCdf)), ks_one_percent);
     const std::vector<float> smooth = drawn(gamma(1e4));
-    EXPECT_NEAR(varianceOf(smooth), 1e-4, 0.02e-4);
+    EXPECT_NEAR(computeVariance(smooth), 1e-4, 0.02e-4);
     EXPECT_LT(kolmogorovSmirnov(shares(smooth, [](double x) { return normalCdf((x - 1) * 1e2); })), 3)
         << "a skew of 0.02 remains";
 }
@@ -185,8 +185,8 @@ TEST(LawsTest, BeamsAndPingsOfEveryLawAreIndependent) {
     constexpr uint32_t bins = 4096;
     const double bound = 4 / std::sqrt(static_cast<double>(bins));
     for (const Law& law : laws()) {
-        const types::Sonar now = noisyOf(law.config, pingOf(9, bins)),
-                           next = noisyOf(law.config, pingOf(9, bins, 1, pingOf(1, 1).time.microseconds + 1));
+        const types::Sonar now = makeNoisy(law.config, makePing(9, bins)),
+                           next = makeNoisy(law.config, makePing(9, bins, 1, makePing(1, 1).time.microseconds + 1));
         double worst = 0;
         for (size_t beam = 0; beam < 9; ++beam) {
             const float* here = &now.bins[beam * bins];

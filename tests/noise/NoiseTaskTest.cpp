@@ -7,7 +7,7 @@
 namespace insonify::noise {
 namespace {
 
-types::SonarPtr makePing(int64_t time) { return test::shared(test::pingOf(2, 100, 1, time)); }
+types::SonarPtr makePing(int64_t time) { return test::shared(test::makePing(2, 100, 1, time)); }
 
 struct NoiseTaskTest : test::TaskBench<NoiseTask, types::SonarPtr> {
     NoiseTaskTest() : TaskBench(&NoiseTask::clean, &NoiseTask::noisy) {}
@@ -86,7 +86,7 @@ TEST_F(NoiseTaskTest, AChangedLawAppliesFromTheNextPing) {
     EXPECT_NE(answerTo(makePing(1))->bins, makePing(1)->bins);
 }
 
-AmbientConfig ambientOf(double level_db) {
+AmbientConfig makeAmbient(double level_db) {
     AmbientConfig ambient;
     ambient.level_db = level_db;
     return ambient;
@@ -97,11 +97,11 @@ TEST_F(NoiseTaskTest, WarnsOnceAboutEchoesBelowTheNoiseAndAgainAfterLouderEchoes
     const auto environment = std::make_shared<framework::Environment>();
     environment->warn = [&](const std::string& text) { reported.push_back(text); };
     task_.setEnvironment(environment);
-    startWith({.seed = 1, .speckle = {}, .ambient = ambientOf(-40), .additive = {}});
+    startWith({.seed = 1, .speckle = {}, .ambient = makeAmbient(-40), .additive = {}});
     int64_t time = 0;
     const auto receive = [&](float loudest, int pings) {
         for (int i = 0; i < pings; ++i) {
-            types::Sonar ping = test::pingOf(2, 100, 1e-9f, ++time);
+            types::Sonar ping = test::makePing(2, 100, 1e-9f, ++time);
             ping.bins[100 + 25] = loudest;
             answerTo(test::shared(ping));
         }
@@ -126,11 +126,11 @@ TEST_F(NoiseTaskTest, DoesNotWarnAboutAnEmptyPingOrWithoutBackground) {
     const auto environment = std::make_shared<framework::Environment>();
     environment->warn = [&](const std::string& text) { reported.push_back(text); };
     task_.setEnvironment(environment);
-    startWith({.seed = 1, .speckle = {}, .ambient = ambientOf(-40), .additive = {}});
-    answerTo(test::shared(test::pingOf(2, 100, 0)));
+    startWith({.seed = 1, .speckle = {}, .ambient = makeAmbient(-40), .additive = {}});
+    answerTo(test::shared(test::makePing(2, 100, 0)));
     ASSERT_TRUE(task_.stop() && task_.cleanup());
     startWith({.seed = 1, .speckle = SpeckleConfig{}, .ambient = {}, .additive = {}});
-    answerTo(test::shared(test::pingOf(2, 100, 1e-30f)));
+    answerTo(test::shared(test::makePing(2, 100, 1e-30f)));
     EXPECT_TRUE(reported.empty());
 }
 

@@ -18,7 +18,7 @@ struct DiscImageTest : ::testing::Test {
     void paint(double bearing_deg, float value, uint32_t bins = 100) {
         types::Image picture;
         disc_.paint(beamAt(bearing_deg, value, bins), picture);
-        picture_ = test::pixelsOf(picture);
+        picture_ = test::toPixels(picture);
     }
     /** Returns whether an echo shows at 42 m, away from rings. */
     bool lit(double bearing_deg) const {

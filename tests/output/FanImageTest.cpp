@@ -12,17 +12,17 @@ namespace {
 
 using test::centreOfDifference;
 using test::emptyPing;
-using test::pixelsOf;
+using test::toPixels;
 using test::withEcho;
 
 cv::Mat paint(FanImage& fan, const types::Sonar& ping) {
     types::Image picture;
     fan.paint(ping, picture);
-    return pixelsOf(picture);
+    return toPixels(picture);
 }
 
 /** Returns the place of one bin's echo: the difference from a ping without it. */
-cv::Point2d placeOf(FanImage& fan, const types::Sonar& empty, uint32_t beam, uint32_t bin) {
+cv::Point2d getPlace(FanImage& fan, const types::Sonar& empty, uint32_t beam, uint32_t bin) {
     return centreOfDifference(paint(fan, empty), paint(fan, withEcho(empty, beam, bin)));
 }
 
@@ -33,8 +33,8 @@ double levelAt(const cv::Mat& picture, cv::Point2d at) {
 TEST(FanImageTest, AheadIsUpAndPortIsLeft) {
     FanImage fan(test::grayPicture(800));
     const types::Sonar empty = emptyPing(120, 121);
-    const cv::Point2d ahead = placeOf(fan, empty, 60, 80), port = placeOf(fan, empty, 110, 80);
-    const cv::Point2d starboard = placeOf(fan, empty, 10, 80);
+    const cv::Point2d ahead = getPlace(fan, empty, 60, 80), port = getPlace(fan, empty, 110, 80);
+    const cv::Point2d starboard = getPlace(fan, empty, 10, 80);
     EXPECT_NEAR(ahead.x, 399.5, 1);
     EXPECT_LT(port.x, 200);
     EXPECT_GT(starboard.x, 600);
@@ -52,7 +52,7 @@ TEST(FanImageTest, ShowsAnEchoAtItsBearingAndRange) {
             const double bearing = empty.bearings[beam].rad, share = (bin + 0.5) / 100;
             const cv::Point2d expected(origin.x - fan.layout().radius() * share * std::sin(bearing),
                                        origin.y - fan.layout().radius() * share * std::cos(bearing));
-            const cv::Point2d place = placeOf(fan, empty, beam, bin);
+            const cv::Point2d place = getPlace(fan, empty, beam, bin);
             EXPECT_LT(cv::norm(place - expected), 2.5) << beam << " " << bin;  // a bin is 3.8 pixels long
         }
 }

@@ -45,7 +45,7 @@ void expectWater(const types::Sonar& ping, const std::string& name, double margi
     paintInto(loud_picture, filled(ping, 1), loud);
     paintInto(silent_picture, filled(ping, 0), silent);
     const FanLayout& layout = loud_picture.layout();
-    const cv::Mat echoes = test::pixelsOf(loud), nothing = test::pixelsOf(silent);
+    const cv::Mat echoes = test::toPixels(loud), nothing = test::toPixels(silent);
     for (int y = FanLayout::title_height; y < echoes.rows; ++y)
         for (int x = 0; x < echoes.cols; ++x) {
             const double ahead = layout.origin().y - y, port = layout.origin().x - x;

@@ -44,9 +44,9 @@ TEST(FileFormatTest, EachEndingIsFoundInAnyCaseOfLettersWithItsContentOnly) {
 
 TEST(RecordingConfigTest, ReportsNamesThatCannotBeWritten) {
     using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
-    EXPECT_THAT(test::refusalsOf(RecordingConfig{}), IsEmpty());
-    EXPECT_THAT(test::refusalsOf(RecordingConfig{.file = "a%d.png", .video = "b.mp4", .video_rate = {}}), IsEmpty());
-    EXPECT_THAT(test::refusalsOf(RecordingConfig{.file = "%s%n", .video = "b.mkv", .video_rate = {}}),
+    EXPECT_THAT(test::countRefusals(RecordingConfig{}), IsEmpty());
+    EXPECT_THAT(test::countRefusals(RecordingConfig{.file = "a%d.png", .video = "b.mp4", .video_rate = {}}), IsEmpty());
+    EXPECT_THAT(test::countRefusals(RecordingConfig{.file = "%s%n", .video = "b.mkv", .video_rate = {}}),
                 ElementsAre(HasSubstr("must have one number and end in " + fileEndings(FileContent::Picture)),
                             HasSubstr("video: is 'b.mkv'; it must end in .avi or .mp4")));
 }

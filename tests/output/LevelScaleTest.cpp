@@ -16,7 +16,7 @@ DisplayConfig fixed(double reference_db, double dynamic_range_db) {
     return config;
 }
 
-int levelOf(const DisplayConfig& config, double bin) {
+int computeLevel(const DisplayConfig& config, double bin) {
     LevelScale scale(config);
     cv::Mat levels;
     scale.apply(cv::Mat(1, 1, CV_32F, cv::Scalar(bin)), levels);
@@ -25,45 +25,45 @@ int levelOf(const DisplayConfig& config, double bin) {
 
 TEST(LevelScaleTest, LevelsAreProportionalToDecibelsBelowTheReference) {
     const DisplayConfig config = fixed(-20, 51);  // five levels a decibel
-    EXPECT_EQ(levelOf(config, std::pow(10, -2.0)), 255);
-    EXPECT_EQ(levelOf(config, std::pow(10, -3.0)), 205);
-    EXPECT_EQ(levelOf(config, std::pow(10, -6.0)), 55);
-    EXPECT_EQ(levelOf(config, std::pow(10, -7.2)), 0);
+    EXPECT_EQ(computeLevel(config, std::pow(10, -2.0)), 255);
+    EXPECT_EQ(computeLevel(config, std::pow(10, -3.0)), 205);
+    EXPECT_EQ(computeLevel(config, std::pow(10, -6.0)), 55);
+    EXPECT_EQ(computeLevel(config, std::pow(10, -7.2)), 0);
 }
 
 TEST(LevelScaleTest, ClipsLevelsOutsideAndShowsUnknownBinsDark) {
     const DisplayConfig config = fixed(0, 40);
-    EXPECT_EQ(levelOf(config, 1e30), 255);
-    for (const double bin : {0.0, -1.0, 1e-30, std::nan("")}) EXPECT_EQ(levelOf(config, bin), 0) << bin;
-    EXPECT_EQ(levelOf(config, std::numeric_limits<float>::infinity()), 255);
+    EXPECT_EQ(computeLevel(config, 1e30), 255);
+    for (const double bin : {0.0, -1.0, 1e-30, std::nan("")}) EXPECT_EQ(computeLevel(config, bin), 0) << bin;
+    EXPECT_EQ(computeLevel(config, std::numeric_limits<float>::infinity()), 255);
 }
 
 TEST(LevelScaleTest, ShowsCodesUnchanged) {
     DisplayConfig config;
     config.scale = BinScale::Code;
-    for (const int code : {0, 1, 64, 128, 255}) EXPECT_EQ(levelOf(config, code), code);
-    EXPECT_EQ(levelOf(config, std::nan("")), 0);
-    EXPECT_EQ(levelOf(config, 256), 255);
+    for (const int code : {0, 1, 64, 128, 255}) EXPECT_EQ(computeLevel(config, code), code);
+    EXPECT_EQ(computeLevel(config, std::nan("")), 0);
+    EXPECT_EQ(computeLevel(config, 256), 255);
     config.code_bits = 16;
-    EXPECT_EQ(levelOf(config, 65535), 255);
-    EXPECT_EQ(levelOf(config, 257 * 100), 100);
-    EXPECT_EQ(levelOf(config, 0), 0);
+    EXPECT_EQ(computeLevel(config, 65535), 255);
+    EXPECT_EQ(computeLevel(config, 257 * 100), 100);
+    EXPECT_EQ(computeLevel(config, 0), 0);
 }
 
 TEST(LevelScaleTest, CodesHaveNoReferenceLevel) {
     PictureConfig config;
     config.scale = BinScale::Code;
-    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(config), testing::IsEmpty());
     config.reference_db = 255;
-    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::StartsWith("reference_db: ")));
+    EXPECT_THAT(test::countRefusals(config), testing::ElementsAre(testing::StartsWith("reference_db: ")));
 }
 
 TEST(LevelScaleTest, ShowsBinsInDecibelsUnchanged) {
     DisplayConfig config = fixed(100, 51);
     config.scale = BinScale::Decibel;
-    EXPECT_EQ(levelOf(config, 90), 205);
-    EXPECT_EQ(levelOf(config, -3000), 0);
-    EXPECT_EQ(levelOf(config, std::nan("")), 0);
+    EXPECT_EQ(computeLevel(config, 90), 205);
+    EXPECT_EQ(computeLevel(config, -3000), 0);
+    EXPECT_EQ(computeLevel(config, std::nan("")), 0);
 }
 
 TEST(LevelScaleTest, WithoutAReferenceFollowsTheStrongestEchoesSmoothed) {

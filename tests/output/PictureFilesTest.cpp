@@ -35,7 +35,7 @@ TEST(PictureFilesTest, PngFilesHaveThePicturesPixels) {
     for (const char* name : {"deep/er/fan_000.png", "deep/er/fan_001.png"}) {
         const cv::Mat read = cv::imread((folder.path() / name).string());
         ASSERT_FALSE(read.empty()) << name;
-        EXPECT_EQ(cv::norm(read, test::pixelsOf(fanPicture()), cv::NORM_INF), 0);
+        EXPECT_EQ(cv::norm(read, test::toPixels(fanPicture()), cv::NORM_INF), 0);
     }
 }
 
@@ -52,7 +52,7 @@ TEST(PictureFilesTest, AVideoHasEveryPictureAndTheRateOfThePings) {
         int count = 0;
         for (; video.read(frame); ++count) last = frame.clone();
         EXPECT_EQ(count, 12) << name;
-        EXPECT_LT(cv::norm(last, test::pixelsOf(fanPicture(1 + 0.125 * 11)), cv::NORM_L1) /
+        EXPECT_LT(cv::norm(last, test::toPixels(fanPicture(1 + 0.125 * 11)), cv::NORM_L1) /
                       static_cast<double>(3 * last.total()),
                   12)
             << name;
@@ -69,7 +69,7 @@ TEST(PictureFilesTest, WritesAVideoOfOnePicture) {
 }
 
 TEST(PictureFilesTest, NamesAFileThatCannotBeWritten) {
-    EXPECT_THAT(test::errorOf<std::runtime_error>([] { writePng("/dev/full", fanPicture()); }),
+    EXPECT_THAT(test::computeError<std::runtime_error>([] { writePng("/dev/full", fanPicture()); }),
                 testing::HasSubstr("/dev/full"));
     EXPECT_THROW(writePng("no/such/folder.png", fanPicture()), std::runtime_error);
 }

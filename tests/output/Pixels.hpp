@@ -21,13 +21,13 @@ Config grayPicture(uint32_t width) {
     return config;
 }
 
-inline cv::Mat pixelsOf(const types::Image& picture) {
+inline cv::Mat toPixels(const types::Image& picture) {
     return cv::Mat(picture.size.height, picture.size.width, CV_8UC3, const_cast<uint8_t*>(picture.image.data()))
         .clone();
 }
 
 /** Returns the green of a pixel. */
-inline int levelAt(const types::Image& picture, cv::Point at) { return pixelsOf(picture).at<cv::Vec3b>(at)[1]; }
+inline int levelAt(const types::Image& picture, cv::Point at) { return toPixels(picture).at<cv::Vec3b>(at)[1]; }
 
 /** Returns the centre of gravity of the difference of two pictures. */
 inline cv::Point2d centreOfDifference(const cv::Mat& a, const cv::Mat& b) {

@@ -12,7 +12,7 @@ namespace {
 using test::emptyPing;
 using test::withEcho;
 
-PlainConfig configOf(PlainShape shape, uint32_t height) {
+PlainConfig getConfig(PlainShape shape, uint32_t height) {
     PlainConfig config;
     config.shape = shape;
     config.height = height;
@@ -20,7 +20,7 @@ PlainConfig configOf(PlainShape shape, uint32_t height) {
     return config;
 }
 
-PlainPicture pictureOf(const types::Sonar& ping, const PlainConfig& config) {
+PlainPicture makePicture(const types::Sonar& ping, const PlainConfig& config) {
     PlainPicture picture(config);
     picture.take(ping);
     return picture;
@@ -39,13 +39,13 @@ cv::Point2d middle(const types::Image& picture) {
 
 TEST(PlainPictureTest, AFanHasOnlyWaterAheadIsUpAndPortIsLeft) {
     const types::Sonar empty = emptyPing(120, 121);
-    const PlainConfig config = configOf(PlainShape::Fan, 100);
-    const PlainPicture nothing = pictureOf(empty, config);
+    const PlainConfig config = getConfig(PlainShape::Fan, 100);
+    const PlainPicture nothing = makePicture(empty, config);
     EXPECT_THAT(nothing.image().image, testing::Each(0));
     EXPECT_EQ(nothing.height(), 100u);
     for (const uint32_t beam : {10u, 60u, 110u}) {
         const double bearing = empty.bearings[beam].rad;
-        const cv::Point2d at = middle(pictureOf(withEcho(empty, beam, 80), config).image());
+        const cv::Point2d at = middle(makePicture(withEcho(empty, beam, 80), config).image());
         EXPECT_NEAR(at.x, nothing.width() / 2.0 - 0.5 - 80.5 * std::sin(bearing), 1) << beam;
         EXPECT_NEAR(at.y, 99.5 - 80.5 * std::cos(bearing), 1) << beam;
     }
@@ -53,16 +53,16 @@ TEST(PlainPictureTest, AFanHasOnlyWaterAheadIsUpAndPortIsLeft) {
 
 TEST(PlainPictureTest, APolarPictureHasAPixelForEachBin) {
     const types::Sonar empty = emptyPing(120, 121);
-    const PlainPicture picture = pictureOf(withEcho(empty, 110, 80), configOf(PlainShape::Polar, 100));
+    const PlainPicture picture = makePicture(withEcho(empty, 110, 80), getConfig(PlainShape::Polar, 100));
     EXPECT_EQ(picture.width(), 121u);
     EXPECT_EQ(picture.height(), 100u);
     EXPECT_EQ(middle(picture.image()), cv::Point2d(10, 19));
-    EXPECT_EQ(picture.pixelOf(110, 80), cv::Point(10, 19));
+    EXPECT_EQ(picture.findPixel(110, 80), cv::Point(10, 19));
 }
 
 TEST(PlainPictureTest, FinerBinsShareACellThatShowsTheirMean) {
     const types::Sonar empty = emptyPing(120, 4);
-    const PlainPicture picture = pictureOf(withEcho(empty, 2, 99), configOf(PlainShape::Polar, 32));
+    const PlainPicture picture = makePicture(withEcho(empty, 2, 99), getConfig(PlainShape::Polar, 32));
     EXPECT_EQ(picture.binsPerCell(), 4u);
     EXPECT_EQ(picture.cellsPerBeam(), 25u);
     const double mean = static_cast<double>(withEcho(empty, 2, 99).bins[2 * 100 + 99]) / 4;
@@ -72,14 +72,14 @@ TEST(PlainPictureTest, FinerBinsShareACellThatShowsTheirMean) {
 TEST(PlainPictureTest, MapsPixelsToCellsAndCellsToPixels) {
     const types::Sonar ping = emptyPing(130, 64);
     for (const PlainShape shape : {PlainShape::Fan, PlainShape::Polar}) {
-        const PlainPicture picture = pictureOf(ping, configOf(shape, 200));
+        const PlainPicture picture = makePicture(ping, getConfig(shape, 200));
         const auto count = static_cast<int32_t>(64 * picture.cellsPerBeam());
         for (const int32_t cell : picture.cells()) EXPECT_LT(cell, count);
         for (int32_t cell = count / 4; cell < count; cell += 97) {
             const auto cells = static_cast<int32_t>(picture.cellsPerBeam());
             if (cell % cells < cells / 3) continue;  // nearer, a pixel of a fan shows one of several beams
             const cv::Point at =
-                picture.pixelOf(static_cast<uint32_t>(cell / cells), static_cast<uint32_t>(cell % cells));
+                picture.findPixel(static_cast<uint32_t>(cell / cells), static_cast<uint32_t>(cell % cells));
             const int32_t shown =
                 picture.cells()[static_cast<size_t>(at.y) * picture.width() + static_cast<size_t>(at.x)];
             EXPECT_LE(std::abs(shown / cells - cell / cells), 1) << cell;
@@ -98,14 +98,14 @@ TEST(PlainPictureTest, AWaterfallHasARowForEachLineTheNewestOnTopAndPortLeft) {
         for (uint32_t beam = 0; beam < run.beam_count; ++beam)
             run.bearings[beam] = types::Angle::fromDeg(beam % 2 == 0 ? first : second);
         for (uint32_t beam = 0; beam < run.beam_count; ++beam) {
-            const PlainPicture picture = pictureOf(withEcho(run, beam, 11), configOf(PlainShape::Waterfall, 100));
+            const PlainPicture picture = makePicture(withEcho(run, beam, 11), getConfig(PlainShape::Waterfall, 100));
             ASSERT_EQ(picture.height(), lines);
             ASSERT_EQ(picture.width(), is_pair ? 2 * bins : bins);
             const double bearing = beam % 2 == 0 ? first : second;
             const uint32_t line = is_pair ? beam / 2 : beam, port = is_pair || bearing > 0 ? bins : 0;
             const double column = bearing > 0 ? bins - 1 - 11 : port + 11;
             EXPECT_EQ(middle(picture.image()), cv::Point2d(column, lines - 1 - line)) << first << " " << beam;
-            EXPECT_EQ(picture.pixelOf(beam, 11),
+            EXPECT_EQ(picture.findPixel(beam, 11),
                       cv::Point(static_cast<int>(column), static_cast<int>(lines - 1 - line)));
         }
     }
@@ -117,13 +117,13 @@ TEST(PlainPictureTest, GroupsAreCellsThatTouchForAnyOrderOfBeams) {
     for (const uint32_t step : {1u, 7u, 11u}) {  // beam k of the fan is beam k * step % 30 of the ping
         types::Sonar shuffled = ping;
         for (uint32_t beam = 0; beam < 30; ++beam) shuffled.bearings[beam * step % 30] = ping.bearings[beam];
-        const PlainPicture picture = pictureOf(shuffled, configOf(PlainShape::Fan, 100));
+        const PlainPicture picture = makePicture(shuffled, getConfig(PlainShape::Fan, 100));
         std::vector<uint8_t> cells(size_t{30} * picture.cellsPerBeam(), 0);
         const auto at = [&](size_t i) {
             return size_t{chosen[i].first * step % 30} * picture.cellsPerBeam() + chosen[i].second;
         };
         for (size_t i = 0; i < chosen.size(); ++i) cells[at(i)] = 1;
-        const std::vector<int32_t> groups = picture.groupsOf(cells);
+        const std::vector<int32_t> groups = picture.groupBy(cells);
         EXPECT_EQ(std::ranges::count(groups, 0), static_cast<long>(groups.size() - chosen.size()));
         EXPECT_EQ(groups[at(0)], groups[at(1)]) << "they touch at a corner";
         EXPECT_EQ(groups[at(1)], groups[at(2)]);
@@ -135,26 +135,26 @@ TEST(PlainPictureTest, ScalesEachPingIndependently) {
     const types::Sonar loud = withEcho(emptyPing(120, 31), 3, 50);
     types::Sonar faint = loud;
     for (float& bin : faint.bins) bin *= 1e-6f;
-    PlainConfig config = configOf(PlainShape::Fan, 64);
+    PlainConfig config = getConfig(PlainShape::Fan, 64);
     config.reference_db.reset();
     PlainPicture both(config);
     both.take(loud);
     both.take(faint);
-    EXPECT_EQ(both.image().image, pictureOf(faint, config).image().image);
-    EXPECT_NEAR(both.referenceDb(), pictureOf(loud, config).referenceDb() - 60, 1e-4);
+    EXPECT_EQ(both.image().image, makePicture(faint, config).image().image);
+    EXPECT_NEAR(both.referenceDb(), makePicture(loud, config).referenceDb() - 60, 1e-4);
 }
 
 TEST(PlainPictureTest, RefusesAPingWithoutBins) {
-    EXPECT_THROW(pictureOf(types::Sonar{}, configOf(PlainShape::Fan, 100)), std::runtime_error);
+    EXPECT_THROW(makePicture(types::Sonar{}, getConfig(PlainShape::Fan, 100)), std::runtime_error);
 }
 
 TEST(PlainPictureTest, GroupsOfAFullCircleTouchAcrossItsSeam) {
     for (const double view_deg : {360.0, 300.0}) {
-        const PlainPicture picture = pictureOf(emptyPing(view_deg, 36, 40), configOf(PlainShape::Fan, 100));
+        const PlainPicture picture = makePicture(emptyPing(view_deg, 36, 40), getConfig(PlainShape::Fan, 100));
         std::vector<uint8_t> chosen(size_t{36} * picture.cellsPerBeam(), 0);
         const auto at = [&](size_t beam, size_t cell) { return beam * picture.cellsPerBeam() + cell; };
         for (const size_t cell : {at(0, 5), at(35, 6), at(18, 5), at(34, 6), at(0, 20)}) chosen[cell] = 1;
-        const std::vector<int32_t> groups = picture.groupsOf(chosen);
+        const std::vector<int32_t> groups = picture.groupBy(chosen);
         EXPECT_EQ(groups[at(0, 5)] == groups[at(35, 6)], view_deg == 360);
         EXPECT_EQ(groups[at(34, 6)], groups[at(35, 6)]);
         std::set<int32_t> all(groups.begin(), groups.end());

@@ -21,7 +21,7 @@ types::DepthMapPtr smallMap() {
 /** Returns the level in the middle of a cell. */
 int cellLevel(const types::Image& picture, const cv::Rect& cells, int row, int column) {
     const cv::Point at(cells.x + cells.width * (2 * column + 1) / 6, cells.y + cells.height * (2 * row + 1) / 4);
-    return test::pixelsOf(picture).at<cv::Vec3b>(at)[1];
+    return test::toPixels(picture).at<cv::Vec3b>(at)[1];
 }
 
 TEST(RangeImageTest, TheNearestIsBrightestAndNoReturnIsBlack) {

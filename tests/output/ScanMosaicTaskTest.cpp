@@ -58,7 +58,7 @@ TEST_F(ScanMosaicTaskTest, APingWaitsForTheNextPoseAndIsShownAtTheInterpolatedPo
     ping.time = last_->time;
     types::Image picture;
     expected.paint(ping, picture);
-    EXPECT_EQ(cv::norm(test::pixelsOf(*last_), test::pixelsOf(picture), cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(test::toPixels(*last_), test::toPixels(picture), cv::NORM_INF), 0);
 }
 
 TEST_F(ScanMosaicTaskTest, APoseAtThePingsTimeIsEnough) {
@@ -113,9 +113,9 @@ TEST_F(ScanMosaicTaskTest, ReportsALatePose) {
 
 TEST_F(ScanMosaicTaskTest, RefusesHalvesThatAreTooNarrow) {
     MosaicConfig config;
-    EXPECT_THAT(test::refusalsOf(config), IsEmpty());
+    EXPECT_THAT(test::countRefusals(config), IsEmpty());
     config.width = 511;
-    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::StartsWith("width: ")));
+    EXPECT_THAT(test::countRefusals(config), testing::ElementsAre(testing::StartsWith("width: ")));
 }
 
 TEST_F(ScanMosaicTaskTest, ARestartForgetsEarlierPings) {

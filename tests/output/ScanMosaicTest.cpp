@@ -18,7 +18,7 @@ struct ScanMosaicTest : ::testing::Test {
         }
         show(picture);
     }
-    void show(const types::Image& picture) { cv::cvtColor(test::pixelsOf(picture), gray_, cv::COLOR_BGR2GRAY); }
+    void show(const types::Image& picture) { cv::cvtColor(test::toPixels(picture), gray_, cv::COLOR_BGR2GRAY); }
     /** Returns the part of the map between two corners in the world. */
     cv::Rect part(glm::dvec2 north_west, glm::dvec2 south_east) const {
         return {cv::Point(mosaic_.pixel(north_west)), cv::Point(mosaic_.pixel(south_east))};

@@ -15,7 +15,7 @@ constexpr double fields_of_view[] = {0.1, 1, 20, 60, 90, 120, 130, 150, 179.9, 1
 constexpr double ranges[] = {0, 1e-3, 0.7, 50, 3e4, 1e9};
 
 /** Returns pings whose ranges cycle with the widths, so that every width meets every fan, and each fan every range. */
-types::Sonar pingOf(double field_of_view, size_t number) {
+types::Sonar makePing(double field_of_view, size_t number) {
     types::Sonar ping = test::emptyPing(field_of_view, 7, 20);
     ping.speed_of_sound *= ranges[number % std::size(ranges)] / 50;
     return ping;
@@ -33,7 +33,7 @@ void expectPictures(uint32_t width, int expected_width, size_t& number) {
         SCOPED_TRACE(testing::Message() << width << " pixels, " << field_of_view << " degrees, number " << number);
         Picture painter(widthConfig(width));
         types::Image picture;
-        ASSERT_NO_THROW(painter.paint(pingOf(field_of_view, number++), picture));
+        ASSERT_NO_THROW(painter.paint(makePing(field_of_view, number++), picture));
         EXPECT_EQ(picture.size.width, expected_width);
         EXPECT_EQ(picture.image.size(), size_t{3} * picture.size.width * picture.size.height);
     }
@@ -72,7 +72,7 @@ bool showsColourBar(uint32_t width, double field_of_view) {
     config.colour_map = ColourMap::Gray;
     types::Image picture;
     FanImage(config).paint(test::emptyPing(field_of_view, 7), picture);
-    return test::pixelsOf(picture).at<cv::Vec3b>(FanLayout::title_height + 19, 16)[1] > 200;
+    return test::toPixels(picture).at<cv::Vec3b>(FanLayout::title_height + 19, 16)[1] > 200;
 }
 
 TEST(SmallPictureTest, OmitsTheColourBarIfItDoesNotFit) {

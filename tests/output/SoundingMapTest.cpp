@@ -9,18 +9,18 @@
 namespace insonify::output {
 namespace {
 
-types::PointCloudPtr cloudOf(std::vector<glm::dvec3> points, int64_t time = 1'000'000) {
+types::PointCloudPtr makeCloud(std::vector<glm::dvec3> points, int64_t time = 1'000'000) {
     auto cloud = std::make_shared<types::PointCloud>();
     cloud->time = {time};
     for (const glm::dvec3& point : points) cloud->add(point, 1);
     return cloud;
 }
 
-cv::Vec3b colourAt(const types::Image& picture, cv::Point at) { return test::pixelsOf(picture).at<cv::Vec3b>(at); }
+cv::Vec3b colourAt(const types::Image& picture, cv::Point at) { return test::toPixels(picture).at<cv::Vec3b>(at); }
 
 TEST(SoundingMapTest, NorthIsUpWestIsLeftAndTheHighestPointIsBrightest) {
     SoundingMap map(600, ColourMap::Gray);
-    map.add(cloudOf({{0, 0, -10}, {20, 0, -6}, {0, 20, -8}}));
+    map.add(makeCloud({{0, 0, -10}, {20, 0, -6}, {0, 20, -8}}));
     types::Image picture;
     map.paint(picture);
     EXPECT_EQ(picture.time.microseconds, 1'000'000);
@@ -36,8 +36,8 @@ TEST(SoundingMapTest, DrawsPointsThatAreNotFiniteAndNoPoints) {
     types::Image picture;
     map.paint(picture);
     EXPECT_EQ(picture.size.width, 302);
-    map.add(cloudOf({}));
-    map.add(cloudOf({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {1, 2, -3}}));
+    map.add(makeCloud({}));
+    map.add(makeCloud({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {1, 2, -3}}));
     map.paint(picture);
     EXPECT_TRUE(picture.holdsPixels());
 }
@@ -45,21 +45,21 @@ TEST(SoundingMapTest, DrawsPointsThatAreNotFiniteAndNoPoints) {
 TEST(SoundingMapTest, ForgetsOldPoints) {
     SoundingMap map(600, ColourMap::Gray);
     types::Image picture;
-    map.add(cloudOf({{1e6, 1e6, 0}}));
-    for (size_t i = 0; i < SoundingMap::history; ++i) map.add(cloudOf({{0, 0, -1}, {10, 10, 0}}));
+    map.add(makeCloud({{1e6, 1e6, 0}}));
+    for (size_t i = 0; i < SoundingMap::history; ++i) map.add(makeCloud({{0, 0, -1}, {10, 10, 0}}));
     map.paint(picture);
     EXPECT_GT(map.pixel(0, 0).x - map.pixel(0, 10).x, 100) << "the chart fits the points that are left";
 }
 
 TEST(SoundingMapTest, TheTitleNamesTheDatum) {
     SoundingMap map(1000, ColourMap::Gray);
-    map.add(cloudOf({{0, 0, -10}, {20, 0, -6}}));
+    map.add(makeCloud({{0, 0, -10}, {20, 0, -6}}));
     types::Image bare, placed;
     map.paint(bare);
     map.setDatum(types::Datum{54.5, 10.25, 40});
     map.paint(placed);
     ASSERT_EQ(bare.size.height, placed.size.height);
-    const cv::Mat changed = test::pixelsOf(bare) != test::pixelsOf(placed);
+    const cv::Mat changed = test::toPixels(bare) != test::toPixels(placed);
     EXPECT_GT(cv::countNonZero(changed.reshape(1)), 100);
     const cv::Mat below = changed.rowRange(changed.rows / 2, changed.rows);
     EXPECT_EQ(cv::countNonZero(below.clone().reshape(1)), 0) << "a title is at the top";
@@ -78,7 +78,7 @@ TEST(SoundingMapTest, MakesAPictureForEveryFewClouds) {
     ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     types::ImagePtr picture;
     for (int64_t i = 1; i <= 6; ++i) {
-        clouds.port.write(cloudOf({{0, 0, -1}, {10, 5, -2}}, i));
+        clouds.port.write(makeCloud({{0, 0, -1}, {10, 5, -2}}, i));
         task.update();
         ASSERT_EQ(pictures.port.readNew(picture), i % 3 == 0) << i;
     }

@@ -20,7 +20,7 @@ types::Sonar truthAt(double seconds) {
     return ping;
 }
 
-types::SonarTruth truthOf(const types::Sonar& ping) {
+types::SonarTruth getTruth(const types::Sonar& ping) {
     types::SonarTruth truth;
     truth.copyGrid(ping);
     truth.objects = {"quay", "wreck", "chain"};
@@ -42,7 +42,9 @@ struct TruthImageTaskTest : test::PictureBench<TruthImageTask, types::SonarTruth
         task_.config.set(config);
     }
     void givePing(double seconds) { give(truthAt(seconds)); }
-    void giveTruth(double seconds) { giveSecond(std::make_shared<const types::SonarTruth>(truthOf(truthAt(seconds)))); }
+    void giveTruth(double seconds) {
+        giveSecond(std::make_shared<const types::SonarTruth>(getTruth(truthAt(seconds))));
+    }
 };
 
 TEST_F(TruthImageTaskTest, ShowsObjectsInTheirColoursNextToTheFan) {
@@ -51,7 +53,7 @@ TEST_F(TruthImageTaskTest, ShowsObjectsInTheirColoursNextToTheFan) {
     givePing(1);
     ASSERT_EQ(pictures(), 1u) << task_.lastError();
     EXPECT_EQ(last_->time, types::Time::fromSeconds(1));
-    const cv::Mat picture = test::pixelsOf(*last_);
+    const cv::Mat picture = test::toPixels(*last_);
     FanImage fan([] {
         DisplayConfig config;
         config.width = 600;
@@ -64,11 +66,11 @@ TEST_F(TruthImageTaskTest, ShowsObjectsInTheirColoursNextToTheFan) {
         return picture.at<cv::Vec3b>(cvRound(at.y), cvRound(at.x) + 600 * half);
     };
     EXPECT_EQ(pixel(0.86, -23, 0), cv::Vec3b(255, 255, 255)) << "the echoes, in grey";
-    EXPECT_EQ(pixel(0.86, -23, 1), TruthImage::colourOf(0));
-    EXPECT_EQ(pixel(0.86, 23, 1), TruthImage::colourOf(1));
-    EXPECT_EQ(pixel(0.46, -23, 1), TruthImage::colourOf(0));
+    EXPECT_EQ(pixel(0.86, -23, 1), TruthImage::getColour(0));
+    EXPECT_EQ(pixel(0.86, 23, 1), TruthImage::getColour(1));
+    EXPECT_EQ(pixel(0.46, -23, 1), TruthImage::getColour(0));
     EXPECT_EQ(pixel(0.46, 23, 1)[0], 255) << "in shadow, as blue as its echo at least";
-    EXPECT_GT(cv::norm(TruthImage::colourOf(0), TruthImage::colourOf(1)), 100);
+    EXPECT_GT(cv::norm(TruthImage::getColour(0), TruthImage::getColour(1)), 100);
 }
 
 TEST_F(TruthImageTaskTest, TheLegendNamesTheObjectsShown) {
@@ -76,10 +78,10 @@ TEST_F(TruthImageTaskTest, TheLegendNamesTheObjectsShown) {
     giveTruth(1);
     givePing(1);
     ASSERT_EQ(pictures(), 1u);
-    const cv::Mat right = test::pixelsOf(*last_).colRange(600, 1200);
+    const cv::Mat right = test::toPixels(*last_).colRange(600, 1200);
     const auto hasSwatch = [&](int32_t object) {
         for (int row = FanLayout::title_height; row < right.rows / 2; ++row)
-            if (right.at<cv::Vec3b>(row, 14) == TruthImage::colourOf(object)) return true;
+            if (right.at<cv::Vec3b>(row, 14) == TruthImage::getColour(object)) return true;
         return false;
     };
     EXPECT_TRUE(hasSwatch(0));
@@ -105,7 +107,7 @@ TEST_F(TruthImageTaskTest, RefusesTheTruthOfAnotherSonar) {
     start();
     types::Sonar other = truthAt(1);
     other.resize(50, 60);
-    second_.port.write(std::make_shared<const types::SonarTruth>(truthOf(other)));
+    second_.port.write(std::make_shared<const types::SonarTruth>(getTruth(other)));
     givePing(1);
     EXPECT_EQ(task_.state(), framework::TaskState::Exception);
     EXPECT_THAT(task_.lastError(), HasSubstr("a ping of 60 x 100 bins does not fit a truth of 60 x 50"));
@@ -114,7 +116,7 @@ TEST_F(TruthImageTaskTest, RefusesTheTruthOfAnotherSonar) {
 TEST_F(TruthImageTaskTest, TwoPicturesTake512Pixels) {
     TruthImageConfig config;
     config.width = 511;
-    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::StartsWith("width: ")));
+    EXPECT_THAT(test::countRefusals(config), testing::ElementsAre(testing::StartsWith("width: ")));
 }
 
 TEST_F(TruthImageTaskTest, ASteadyStreamAllocatesNothingOfOurs) {
@@ -129,7 +131,7 @@ TEST_F(TruthImageTaskTest, ASteadyStreamAllocatesNothingOfOurs) {
     std::vector<types::SonarTruthPtr> truths;
     for (int i = 0; i < 20; ++i) {
         pings.push_back(std::make_shared<const types::Sonar>(truthAt(1 + i)));
-        truths.push_back(std::make_shared<const types::SonarTruth>(truthOf(*pings.back())));
+        truths.push_back(std::make_shared<const types::SonarTruth>(getTruth(*pings.back())));
     }
     cycle(pings[0], truths[0]);
     std::vector<std::string> places = test::allocationsOn(task_, [&] {

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 /** Returns a line in which starboard counts up from 100, port from 1000. */
 types::Sonar pingLine(int64_t time, uint32_t bins = 5) {
-    types::Sonar ping = test::pingOf(2, bins, 0, time);
+    types::Sonar ping = test::makePing(2, bins, 0, time);
     ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
     ping.beam_width = types::Angle::fromDeg(0.5);
     ping.beam_height = types::Angle::fromDeg(50);
@@ -139,7 +139,7 @@ TEST_F(XtfTest, AFileIsAHeaderOf1024BytesAndRecordsOfWholeUnits) {
     give(towed(1'000'000));
     give(pingLine(1'000'000));
     task_.stop();
-    const std::vector<char> bytes = bytesOf(folder_ / "line.xtf");
+    const std::vector<char> bytes = toBytes(folder_ / "line.xtf");
     EXPECT_EQ(bytes.size(), 1024 + 448u) << "256 + 2 * (64 + 10), up to a multiple of 64";
     EXPECT_EQ(static_cast<uint8_t>(bytes[0]), 0x7B);
     EXPECT_EQ(static_cast<uint8_t>(bytes[1024]), 0xCE);
@@ -147,7 +147,7 @@ TEST_F(XtfTest, AFileIsAHeaderOf1024BytesAndRecordsOfWholeUnits) {
 }
 
 TEST_F(XtfTest, ABinThatIsNotACodeOrAPingWithoutSidesEndsTheFileWithAReason) {
-    const auto reasonOf = [&](types::Sonar ping) {
+    const auto getReason = [&](types::Sonar ping) {
         start();
         give(towed(ping.time.microseconds));
         give(ping);
@@ -160,27 +160,27 @@ TEST_F(XtfTest, ABinThatIsNotACodeOrAPingWithoutSidesEndsTheFileWithAReason) {
     intensities.bins[2] = 1e-6f;
     loud.bins[2] = 70000;
     ahead.bearings[1] = {-0.5};
-    EXPECT_THAT(reasonOf(intensities),
+    EXPECT_THAT(getReason(intensities),
                 testing::AllOf(HasSubstr("a bin is 1e-06"), HasSubstr("output: code"), HasSubstr("samples: float32")));
-    EXPECT_THAT(reasonOf(loud), HasSubstr("a bin is 70000"));
-    EXPECT_THAT(reasonOf(ahead), HasSubstr("no beam to port"));
+    EXPECT_THAT(getReason(loud), HasSubstr("a bin is 70000"));
+    EXPECT_THAT(getReason(ahead), HasSubstr("no beam to port"));
 }
 
 TEST_F(XtfTest, WritesAndReportsAPingBeforeAnyPose) {
     start();
     give(pingLine(1'000'000));
     task_.stop();
-    EXPECT_GT(bytesOf(folder_ / "line.xtf").size(), 1024u);
+    EXPECT_GT(toBytes(folder_ / "line.xtf").size(), 1024u);
     EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("1 pings of line.xtf have no pose")));
 }
 
 TEST(XtfConfigTest, RequiresTheFileExtension) {
     XtfConfig config;
-    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(config), testing::IsEmpty());
     config.file = "line.jsf";
-    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("is line.jsf; must end in .xtf")));
+    EXPECT_THAT(test::countRefusals(config), testing::ElementsAre(testing::HasSubstr("is line.jsf; must end in .xtf")));
     config.file = "LINE.Xtf";
-    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(config), testing::IsEmpty());
 }
 
 TEST_F(XtfTest, EveryPingIsWrittenWhenTheClockIsSetOrARecordingRepeats) {

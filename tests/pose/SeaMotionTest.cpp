@@ -140,9 +140,9 @@ TEST(SeaMotionTest, ExtremesAreFinite) {
 }
 
 TEST(SeaMotionTest, RejectsAMotionWithoutAmplitudes) {
-    EXPECT_THAT(test::refusalsOf(SeaMotionConfig{}),
+    EXPECT_THAT(test::countRefusals(SeaMotionConfig{}),
                 testing::ElementsAre("moves nothing; give heave_m, roll_deg or pitch_deg"));
-    EXPECT_THAT(test::refusalsOf(SeaMotionConfig{.heave_m = 1}), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(SeaMotionConfig{.heave_m = 1}), testing::IsEmpty());
 }
 
 }  // namespace

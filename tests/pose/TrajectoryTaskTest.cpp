@@ -129,7 +129,7 @@ TEST_F(TrajectoryTaskTest, FindsAFileNextToTheDeployment) {
 
 TEST_F(TrajectoryTaskTest, AMissingFileIsADiagnosticAndAnErrorOfConfigure) {
     task_.config.set({.file = "no_such.csv", .waypoints = {}});
-    EXPECT_THAT(test::refusalsOf(task_), testing::ElementsAre(testing::StartsWith("file: ")));
+    EXPECT_THAT(test::countRefusals(task_), testing::ElementsAre(testing::StartsWith("file: ")));
     EXPECT_FALSE(task_.configure());
     EXPECT_NE(task_.configError(), nullptr);
 }
@@ -149,14 +149,14 @@ TEST_F(TrajectoryTaskTest, TimesSince1970OfAnyUnitBeginWithTheRunWhereAsked) {
         for (const TrajectoryTimes& times :
              {TrajectoryTimes{.start = TrajectoryStart::FirstPose}, TrajectoryTimes{.start_s = 1403636580.8388}}) {
             task_.config.set({.file = "t.csv", .waypoints = {}, .times = times});
-            EXPECT_THAT(test::refusalsOf(task_), testing::IsEmpty());
+            EXPECT_THAT(test::countRefusals(task_), testing::IsEmpty());
             ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
             for (const double time : {0.0, 0.25, 1.5, 2.0}) EXPECT_NEAR(poseAt(1 + time).position.x, time, 1e-6);
             EXPECT_NEAR(task_.duration(), 2, 1e-6);
             ASSERT_TRUE(task_.stop() && task_.cleanup());
         }
         task_.config.set({.file = "t.csv", .waypoints = {}});
-        EXPECT_THAT(test::refusalsOf(task_),
+        EXPECT_THAT(test::countRefusals(task_),
                     testing::ElementsAre(testing::AllOf(testing::HasSubstr("begins 1403636580.8"),
                                                         testing::HasSubstr("start: first_pose"),
                                                         testing::HasSubstr("start_s: 1403636580.8"))));
@@ -171,10 +171,10 @@ TEST_F(TrajectoryTaskTest, SecondsThatAreNotSince1970HaveTheUnitThatIsGiven) {
     EXPECT_DOUBLE_EQ(poseAt(2.5).position.x, 1.5);
     ASSERT_TRUE(task_.stop() && task_.cleanup());
     task_.config.set({.file = "t.csv", .waypoints = {}});
-    EXPECT_THAT(test::refusalsOf(task_), testing::ElementsAre(testing::HasSubstr("Set time_unit if")));
+    EXPECT_THAT(test::countRefusals(task_), testing::ElementsAre(testing::HasSubstr("Set time_unit if")));
     for (const double end : {1e30, 1e300, -1e300}) {
         writeLine(folder_ / "t.csv", std::min(end, 0.0), std::abs(end));
-        EXPECT_THAT(test::refusalsOf(task_), testing::ElementsAre(testing::HasSubstr("may be up to 1e+09 s")));
+        EXPECT_THAT(test::countRefusals(task_), testing::ElementsAre(testing::HasSubstr("may be up to 1e+09 s")));
     }
 }
 
@@ -209,7 +209,7 @@ TEST_F(TrajectoryTaskTest, TrajectoriesOfOneClockKeepTheirDistanceInTime) {
     EXPECT_THAT(task_.notices(), testing::ElementsAre(testing::HasSubstr("begins 5 s after")));
     ASSERT_TRUE(task_.stop() && task_.cleanup());
     task_.config.set({.file = {}, .waypoints = {{.time = 1}, {.time = 2}}, .times = {.start_s = 10}});
-    EXPECT_THAT(test::refusalsOf(task_), testing::ElementsAre(testing::HasSubstr("ends at 2 s, before start_s")));
+    EXPECT_THAT(test::countRefusals(task_), testing::ElementsAre(testing::HasSubstr("ends at 2 s, before start_s")));
     task_.config.set({.file = {},
                       .waypoints = {{.time = 1}, {.time = 2}},
                       .times = {.start = TrajectoryStart::FirstPose, .start_s = 1}});
@@ -222,7 +222,7 @@ TEST_F(TrajectoryTaskTest, RefusesTimesThatAreNoNumbersOrOutOfOrder) {
     const auto refusals = [&](const std::string& second) {
         std::ofstream(folder_ / "t.csv") << "time,x,y,z,qw,qx,qy,qz\n1,0,0,0,1,0,0,0\n" << second << ",0,0,0,1,0,0,0\n";
         task_.config.set({.file = "t.csv", .waypoints = {}});
-        return test::refusalsOf(task_);
+        return test::countRefusals(task_);
     };
     for (const char* bad : {"nan", "inf", "-inf", "1", "0.5", "-3", ""})
         EXPECT_THAT(refusals(bad), testing::ElementsAre(testing::HasSubstr("t.csv:3:1"))) << bad;

@@ -30,7 +30,7 @@ public:
     const std::filesystem::path path = folder_ / "trajectory.csv";
 };
 
-types::Diagnostics diagnosticsOf(const std::string& text) {
+types::Diagnostics findDiagnostics(const std::string& text) {
     const TextFile file(text);
     try {
         Trajectory::fromFile(file.path);
@@ -167,14 +167,14 @@ TEST(TrajectoryTest, AQuaternionThatIsNotQuiteUnitIsNormalised) {
 }
 
 TEST(TrajectoryTest, ReportsEveryErrorOfAFileWithItsPlace) {
-    const auto diagnostics = diagnosticsOf(header +
-                                           "0,0,0,0,1,0,0,0\n"      // 2: good
-                                           "1,0,abc,0,1,0,0,0\n"    // 3: no number
-                                           "2,0,0,0,1,0,0\n"        // 4: too few
-                                           "3,0,0,0,1,0,0,0,9\n"    // 5: too many
-                                           "4,0,0,0,0,0,1e-7,0\n"   // 6: no direction
-                                           "4,0,0,nan,1,0,0,0x1\n"  // 7: two diagnostics
-                                           "4,0,0,0,1,0,0,0\n");    // 8: time does not advance
+    const auto diagnostics = findDiagnostics(header +
+                                             "0,0,0,0,1,0,0,0\n"      // 2: good
+                                             "1,0,abc,0,1,0,0,0\n"    // 3: no number
+                                             "2,0,0,0,1,0,0\n"        // 4: too few
+                                             "3,0,0,0,1,0,0,0,9\n"    // 5: too many
+                                             "4,0,0,0,0,0,1e-7,0\n"   // 6: no direction
+                                             "4,0,0,nan,1,0,0,0x1\n"  // 7: two diagnostics
+                                             "4,0,0,0,1,0,0,0\n");    // 8: time does not advance
     struct Place {
         int line, column;
         const char *path, *message;
@@ -193,10 +193,10 @@ TEST(TrajectoryTest, ReportsEveryErrorOfAFileWithItsPlace) {
 
 TEST(TrajectoryTest, RejectsAFileWithoutHeaderStampsOrContent) {
     for (const char* text : {"", "\n\n", "time,x,y,z,qw,qx,qy,qz\n", "t,x\n0,0,0,0,1,0,0,0\n"})
-        EXPECT_EQ(diagnosticsOf(text).size(), 1u) << text;
+        EXPECT_EQ(findDiagnostics(text).size(), 1u) << text;
 }
 
-std::string lineOf(std::vector<double> values, const char* separator) {
+std::string makeLine(std::vector<double> values, const char* separator) {
     std::string line;
     char number[40];
     for (const double value : values) {
@@ -220,9 +220,9 @@ TEST(TrajectoryTest, FilesOfTumAndEurocHaveThePosesOfTheCsv) {
             const double s = static_cast<double>(ns) * 1e-9;
             const glm::dvec3 p(any(random), any(random), any(random));
             const glm::dquat q = glm::normalize(glm::dquat(any(random), any(random), any(random), any(random)));
-            csv += lineOf({s, p.x, p.y, p.z, q.w, q.x, q.y, q.z}, ",") + "\n";
-            tum += lineOf({s, p.x, p.y, p.z, q.x, q.y, q.z, q.w}, i % 2 ? " " : "  \t") + (i % 3 ? "\n" : " \r\n");
-            euroc += std::to_string(ns) + "," + lineOf({p.x, p.y, p.z, q.w, q.x, q.y, q.z, 9, 9}, ",") + "\r\n";
+            csv += makeLine({s, p.x, p.y, p.z, q.w, q.x, q.y, q.z}, ",") + "\n";
+            tum += makeLine({s, p.x, p.y, p.z, q.x, q.y, q.z, q.w}, i % 2 ? " " : "  \t") + (i % 3 ? "\n" : " \r\n");
+            euroc += std::to_string(ns) + "," + makeLine({p.x, p.y, p.z, q.w, q.x, q.y, q.z, 9, 9}, ",") + "\r\n";
             if (i == 10) tum += "\n# a gap\n", euroc += "#\n";
         }
         const TrajectoryTimes from_first{.start = TrajectoryStart::FirstPose};
@@ -252,9 +252,9 @@ TEST(TrajectoryTest, AFileInTheAxesOfRosOrOfAircraftHasTheSamePath) {
         const glm::dquat q = glm::normalize(glm::dquat(any(random), any(random), any(random), any(random)));
         const double half = std::sqrt(0.5);
         const glm::dquat to_enu = glm::dquat(half, 0, 0, half) * q;  // north, the x of Rock, is the y of ENU
-        rock += lineOf({double(i), p.x, p.y, p.z, q.w, q.x, q.y, q.z}, ",") + "\n";
-        enu += lineOf({double(i), -p.y, p.x, p.z, to_enu.w, to_enu.x, to_enu.y, to_enu.z}, ",") + "\n";
-        ned += lineOf({double(i), p.x, -p.y, -p.z, q.w, q.x, -q.y, -q.z}, ",") + "\n";
+        rock += makeLine({double(i), p.x, p.y, p.z, q.w, q.x, q.y, q.z}, ",") + "\n";
+        enu += makeLine({double(i), -p.y, p.x, p.z, to_enu.w, to_enu.x, to_enu.y, to_enu.z}, ",") + "\n";
+        ned += makeLine({double(i), p.x, -p.y, -p.z, q.w, q.x, -q.y, -q.z}, ",") + "\n";
     }
     const TextFile file(rock);
     const Trajectory wanted = Trajectory::fromFile(file.path);
@@ -297,7 +297,7 @@ TEST(TrajectoryTest, WrongFilesOfTumAndEurocAreRefusedWithLineAndColumn) {
                             {"#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1]\n1,2,3\n", 1, 1,
                              "the header must begin with #timestamp,p_RS"},
                             {"0,0,0,0,1,0,0,0\n", 1, 1, "the header must be time,"}}) {
-        const types::Diagnostics diagnostics = diagnosticsOf(text);
+        const types::Diagnostics diagnostics = findDiagnostics(text);
         ASSERT_EQ(diagnostics.size(), 1u) << text;
         EXPECT_EQ(diagnostics[0].line, line) << text;
         if (column > 0) {
@@ -315,17 +315,17 @@ TEST(TrajectoryTest, RejectsAFolderAndAMissingFile) {
 TEST(TrajectoryTest, AHundredDiagnosticsAreEnough) {
     std::string text = header;
     for (int i = 0; i < 5000; ++i) text += "x,x,x,x,x,x,x,x\n";
-    EXPECT_LE(diagnosticsOf(text).size(), 108u);
+    EXPECT_LE(findDiagnostics(text).size(), 108u);
 }
 
 TEST(TrajectoryConfigTest, NeedsExactlyOneSourceAndIncreasingTimes) {
-    const auto refusalsOf = [](const TrajectoryConfig& config) { return test::refusalsOf(config); };
-    EXPECT_THAT(refusalsOf({}), testing::SizeIs(1));
-    EXPECT_THAT(refusalsOf({.file = "a.csv", .waypoints = {Waypoint{}}}), testing::SizeIs(1));
-    EXPECT_THAT(refusalsOf({.file = "a.csv", .waypoints = {}}), testing::IsEmpty());
-    EXPECT_THAT(refusalsOf({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}}),
+    const auto countRefusals = [](const TrajectoryConfig& config) { return test::countRefusals(config); };
+    EXPECT_THAT(countRefusals({}), testing::SizeIs(1));
+    EXPECT_THAT(countRefusals({.file = "a.csv", .waypoints = {Waypoint{}}}), testing::SizeIs(1));
+    EXPECT_THAT(countRefusals({.file = "a.csv", .waypoints = {}}), testing::IsEmpty());
+    EXPECT_THAT(countRefusals({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}}),
                 testing::ElementsAre(testing::StartsWith("waypoints[2].time: "), testing::_));
-    EXPECT_THAT(refusalsOf({.file = {}, .waypoints = {{.time = 0}, {.time = std::nan("")}}}), testing::SizeIs(1));
+    EXPECT_THAT(countRefusals({.file = {}, .waypoints = {{.time = 0}, {.time = std::nan("")}}}), testing::SizeIs(1));
 }
 
 }  // namespace

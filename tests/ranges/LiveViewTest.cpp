@@ -29,7 +29,7 @@ TEST(LiveViewTest, AWallIsWithinOneShownBinOfItsRangeAndInItsBeam) {
         config.quality.rows = config.quality.columns_per_beam = 32;
         config.visibility = sonar::Visibility::Cpu;
         const double distance = config.range * draw.between(0.2, 0.6);
-        const types::Snapshot scene = test::snapshotOf(test::sceneOf({test::wall(static_cast<float>(distance))}));
+        const types::Snapshot scene = test::makeSnapshot(test::makeScene({test::wall(static_cast<float>(distance))}));
         sonar::SonarRenderer renderer(config, scene.geometry, {.threads = 1});
         types::Sonar ping;
         renderer.render(scene, ping);

@@ -64,7 +64,7 @@ struct Rendered {
 };
 
 Rendered rendered(const Case& given) {
-    const types::Snapshot scene = test::snapshotOf(test::sceneOf({test::wall(static_cast<float>(given.wall))}));
+    const types::Snapshot scene = test::makeSnapshot(test::makeScene({test::wall(static_cast<float>(given.wall))}));
     sonar::SonarRenderer renderer(given.config, scene.geometry, {.threads = 1});
     Rendered made;
     renderer.setTruth(made.ping, &made.truth);

@@ -33,8 +33,8 @@ void putToSea(double volume_db, SonarConfig& config) {
 
 /** Looks down at a floor; no floor where `depth` is 0. */
 types::SnapshotPtr lookingDown(double depth) {
-    types::Snapshot scene = test::snapshotOf(depth > 0 ? test::sceneOf({test::ground(static_cast<float>(-depth))}, -27)
-                                                       : test::openWater());
+    types::Snapshot scene = test::makeSnapshot(
+        depth > 0 ? test::makeScene({test::ground(static_cast<float>(-depth))}, -27) : test::openWater());
     scene.sonar.orientation = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
     return std::make_shared<types::Snapshot>(scene);
 }
@@ -168,11 +168,12 @@ TEST_F(SeaSideScanTest, PicturesAlongTheGroundBeginAtTheBottom) {
             task_.stop();
             task_.cleanup();
             startWith(config);
-            types::Snapshot scene = test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-depth))}, -27));
+            types::Snapshot scene =
+                test::makeSnapshot(test::makeScene({test::ground(static_cast<float>(-depth))}, -27));
             scene.targets = {{{0, 25, -depth + 0.5}, -25}};  // weaker than the bottom
             const types::SonarPtr ping = answerTo(std::make_shared<types::Snapshot>(scene));
             ASSERT_TRUE(ping);
-            EXPECT_NEAR(targetIn(*ping, returnRulesOf(config.acrossTrack())), 25, 0.5)
+            EXPECT_NEAR(targetIn(*ping, makeReturnRules(config.acrossTrack())), 25, 0.5)
                 << volume_db << " dB, " << depth << " m";
             EXPECT_GT(std::abs(targetIn(*ping, {}) - 25), 0.4) << "the ring-down, where nothing is known of the sonar";
         }
@@ -185,7 +186,7 @@ TEST(SeaScanTest, LaserScansAndRangesShowTheWallAndMarkWhatIsTooNear) {
     config.field_of_view_deg = 20;
     config.beam_height_deg = 2;
     config.quality.rows = config.quality.columns_per_beam = 32;
-    const types::Snapshot scene = test::snapshotOf(test::sceneOf({test::wall(30)}, -27));
+    const types::Snapshot scene = test::makeSnapshot(test::makeScene({test::wall(30)}, -27));
     SonarRenderer renderer(config, scene.geometry, {.threads = 1});
     types::Sonar ping;
     renderer.render(scene, ping);
@@ -193,7 +194,7 @@ TEST(SeaScanTest, LaserScansAndRangesShowTheWallAndMarkWhatIsTooNear) {
     ros::LaserScan scan;
     convert(ping, options, scan);
     EXPECT_LT(scan.ranges[2], 1) << "the ring-down, where nothing is known of the sonar";
-    options.returns = returnRulesOf(config);
+    options.returns = makeReturnRules(config);
     convert(ping, options, scan);
     for (const float range : scan.ranges) EXPECT_NEAR(range, 30.2, 0.6);
     options.range_min = 40;

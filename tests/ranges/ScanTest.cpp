@@ -37,9 +37,9 @@ struct Chain {
         task.properties().front()->setAll(values);
         ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     }
-    types::SonarPtr pingOf(double wall) {
-        const auto scene = test::sceneOf({test::wall(static_cast<float>(wall))}, -20);
-        in.port.write(std::make_shared<const types::Snapshot>(test::snapshotOf(scene)));
+    types::SonarPtr makePing(double wall) {
+        const auto scene = test::makeScene({test::wall(static_cast<float>(wall))}, -20);
+        in.port.write(std::make_shared<const types::Snapshot>(test::makeSnapshot(scene)));
         for (framework::TaskContext* task :
              {static_cast<framework::TaskContext*>(&sonar), static_cast<framework::TaskContext*>(&noise),
               static_cast<framework::TaskContext*>(&receiver)})
@@ -84,7 +84,7 @@ TEST(ScanTest, NoRangeIsNearerThanTheScansRangeMinAndTheWallIsThere) {
             const double wall = i == 0   ? draw.between(0.2, 0.95) * least
                                 : i == 1 ? draw.between(1.001 * least, least + range / bins)  // in the first bin
                                          : draw.between(heard, 11);
-            const types::SonarPtr ping = chain.pingOf(wall);
+            const types::SonarPtr ping = chain.makePing(wall);
             ASSERT_TRUE(ping);
             ros::LaserScan scan;
             convert(*ping, options, scan);

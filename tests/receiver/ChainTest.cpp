@@ -48,14 +48,14 @@ double offTheLaw(const types::Sonar& ping) {
 
 TEST(ChainTest, NoiseGrowsWithTheGainAsTheGainDoes) {
     types::Sonar noisy, ping;
-    noise::Noise(sea()).add(test::pingOf(256, bins, 0), noisy);
+    noise::Noise(sea()).add(test::makePing(256, bins, 0), noisy);
     Receiver(amplifying()).receive(noisy, ping);
     EXPECT_LT(offTheLaw(ping), 0.3) << "of 5120 exponential variates a mean is off by 0.06 dB";
 }
 
 TEST(ChainTest, NoiseAfterTheGainDoesNotGrow) {
     types::Sonar amplified, ping;
-    Receiver(amplifying()).receive(test::pingOf(256, bins, 0), amplified);
+    Receiver(amplifying()).receive(test::makePing(256, bins, 0), amplified);
     noise::Noise(sea()).add(amplified, ping);
     EXPECT_GT(offTheLaw(ping), 50);
 }

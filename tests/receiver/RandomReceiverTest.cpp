@@ -36,19 +36,19 @@ struct Drawn {
 };
 
 template <class Task>
-auto configOf(const Properties& properties) {
+auto getConfig(const Properties& properties) {
     Task task("task");
     task.properties().front()->setAll(properties);
     return *task.config;
 }
 types::Sonar received(const Properties& properties, const types::Sonar& ping) {
     types::Sonar result;
-    Receiver(configOf<ReceiverTask>(properties)).receive(ping, result);
+    Receiver(getConfig<ReceiverTask>(properties)).receive(ping, result);
     return result;
 }
 types::Sonar noisy(const Properties& properties, const types::Sonar& ping) {
     types::Sonar result;
-    noise::Noise(configOf<noise::NoiseTask>(properties)).add(ping, result);
+    noise::Noise(getConfig<noise::NoiseTask>(properties)).add(ping, result);
     return result;
 }
 
@@ -121,7 +121,7 @@ double expected(const ReceiverConfig& config, double intensity, double r, bool i
 
 TEST(RandomReceiverTest, EachBinIsByTheFormulas) {
     forEachDrawn([](const Drawn& one, Draw&) {
-        const auto config = configOf<ReceiverTask>(one.receiver);
+        const auto config = getConfig<ReceiverTask>(one.receiver);
         const types::Sonar ping = received(one.receiver, one.ping);
         ASSERT_EQ(ping.bins.size(), one.ping.bins.size());
         for (size_t k = 0; k < ping.bins.size(); ++k) {
@@ -177,7 +177,7 @@ TEST(RandomReceiverTest, NoiseDoesNotDependOnTheSizeOfThePingOrOnPingsBefore) {
         shorter.bins.resize(size_t{shorter.bin_count} * shorter.beam_count);
         for (size_t k = 0; k < shorter.bins.size(); ++k)
             shorter.bins[k] = one.ping.bins[k / shorter.bin_count * one.ping.bin_count + k % shorter.bin_count];
-        noise::Noise adding(configOf<noise::NoiseTask>(one.noise));
+        noise::Noise adding(getConfig<noise::NoiseTask>(one.noise));
         types::Sonar first, second;
         adding.add(one.ping, first);
         adding.add(shorter, second);
@@ -193,7 +193,7 @@ TEST(RandomReceiverTest, NoiseAndEchoesScaleTogether) {
         Properties louder = one.noise;
         for (const char* name : {"ambient", "additive"})
             if (louder.contains(name)) {
-                const auto config = configOf<noise::NoiseTask>(one.noise);
+                const auto config = getConfig<noise::NoiseTask>(one.noise);
                 const double level = name[1] == 'm' ? *config.ambient->level_db : config.additive->level_db;
                 louder[name] = fmt::format("{{level_db: {:.17g}}}", level + 20);
             }

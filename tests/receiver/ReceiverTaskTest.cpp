@@ -15,7 +15,7 @@ struct ReceiverTaskTest : test::TaskBench<ReceiverTask, types::SonarPtr> {
 
 TEST_F(ReceiverTaskTest, PassesOnThePingItselfWithoutConfiguration) {
     startWith({});
-    const types::SonarPtr ping = test::shared(test::pingOf(2, 10));
+    const types::SonarPtr ping = test::shared(test::makePing(2, 10));
     EXPECT_EQ(answerTo(ping), ping);
 }
 
@@ -23,7 +23,7 @@ TEST_F(ReceiverTaskTest, KeepsTheInputPingUnchangedAndItsTime) {
     ReceiverConfig config;
     config.gain_db = 10;
     startWith(config);
-    const types::SonarPtr ping = test::shared(test::pingOf(2, 10, 1, 42)), answer = answerTo(ping);
+    const types::SonarPtr ping = test::shared(test::makePing(2, 10, 1, 42)), answer = answerTo(ping);
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->time.microseconds, 42);
     EXPECT_EQ(answer->bins, std::vector<float>(20, 10));
@@ -34,7 +34,7 @@ TEST_F(ReceiverTaskTest, TheGainOfADriverAppliesFromTheNextPing) {
     test::Writer<types::SonarSettings> driver{"driver"};
     driver.port.connectTo(task_.settings, {});
     startWith({});
-    const types::SonarPtr ping = test::shared(test::pingOf(2, 10));
+    const types::SonarPtr ping = test::shared(test::makePing(2, 10));
     types::SonarSettings asked;
     asked.gain_db = 10;
     driver.port.write(asked);
@@ -49,11 +49,11 @@ TEST_F(ReceiverTaskTest, TheGainOfADriverAppliesFromTheNextPing) {
 
 TEST_F(ReceiverTaskTest, RejectsDecibelsWithARemedyAndRecoversWithIntensities) {
     startWith({});
-    EXPECT_FALSE(answerTo(test::shared(test::pingOf(2, 10, -60))));
+    EXPECT_FALSE(answerTo(test::shared(test::makePing(2, 10, -60))));
     EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
     EXPECT_EQ(task_.lastError(),
               "intensity: bins are below 0, as decibels are: no intensities; connect the noise, or a sonar's ping");
-    EXPECT_TRUE(answerTo(test::shared(test::pingOf(2, 10))));
+    EXPECT_TRUE(answerTo(test::shared(test::makePing(2, 10))));
     EXPECT_EQ(task_.state(), framework::TaskState::Running);
 }
 
@@ -61,11 +61,11 @@ TEST_F(ReceiverTaskTest, ABrightnessRejectsBeamsOfUnknownWidthAndRecovers) {
     ReceiverConfig config;
     config.brightness.emplace();
     startWith(config);
-    types::Sonar ping = test::pingOf(2, 10);
+    types::Sonar ping = test::makePing(2, 10);
     ping.beam_width = {};
     EXPECT_FALSE(answerTo(test::shared(ping)));
     EXPECT_THAT(task_.lastError(), HasSubstr("the width of its beams is unknown, which brightness needs"));
-    EXPECT_TRUE(answerTo(test::shared(test::pingOf(2, 10))));
+    EXPECT_TRUE(answerTo(test::shared(test::makePing(2, 10))));
     EXPECT_EQ(task_.state(), framework::TaskState::Running);
 }
 
@@ -73,7 +73,7 @@ TEST_F(ReceiverTaskTest, RejectsAPingShorterThanItsCounts) {
     ReceiverConfig config;
     config.gain_db = 10;
     startWith(config);
-    types::Sonar ping = test::pingOf(2, 10);
+    types::Sonar ping = test::makePing(2, 10);
     ping.bins.pop_back();
     EXPECT_FALSE(answerTo(test::shared(ping)));
     EXPECT_THAT(task_.lastError(), HasSubstr("more or fewer bins than the counts say"));
@@ -82,16 +82,16 @@ TEST_F(ReceiverTaskTest, RejectsAPingShorterThanItsCounts) {
 TEST_F(ReceiverTaskTest, AChangedGainAppliesFromTheNextPing) {
     startWith({});
     task_.operation("setGain_db")->callText({"20"});
-    EXPECT_EQ(answerTo(test::shared(test::pingOf(1, 3)))->bins, std::vector<float>(3, 100));
+    EXPECT_EQ(answerTo(test::shared(test::makePing(1, 3)))->bins, std::vector<float>(3, 100));
 }
 
 TEST_F(ReceiverTaskTest, ReportsTheRangeOfTheGainsClamp) {
     ReceiverConfig config;
     config.tvg = TvgConfig{.log_coefficient = 20, .db_per_m = 0, .max_db = 20};
     startWith(config);
-    answerTo(test::shared(test::pingOf(1, 90)));
+    answerTo(test::shared(test::makePing(1, 90)));
     EXPECT_THAT(task_.notices(), testing::IsEmpty()) << "the ping ends at 9 m";
-    answerTo(test::shared(test::pingOf(1, 110)));
+    answerTo(test::shared(test::makePing(1, 110)));
     EXPECT_THAT(task_.notices(), testing::ElementsAre("tvg reaches its max_db of 20 dB at 10 m and stays there"));
 }
 
@@ -108,7 +108,7 @@ struct FlawTest : ReceiverTaskTest {
      *  codes. */
     void receive(int bins, float intensity, int pings = 1) {
         for (int i = 0; i < pings; ++i) {
-            types::Sonar ping = test::pingOf(2, 100, 1e-5f);
+            types::Sonar ping = test::makePing(2, 100, 1e-5f);
             std::fill_n(ping.bins.begin(), bins, intensity);
             answerTo(test::shared(ping));
         }
@@ -148,10 +148,10 @@ TEST_F(FlawTest, LinearAndRootCodesBeginAtTheLevelOfTheirLaw) {
         config_.code->law = law;
         config_.gain_db = -50;
         Receiver receiver(config_);
-        const types::Sonar ping = test::pingOf(2, 100, 1e-4f);
+        const types::Sonar ping = test::makePing(2, 100, 1e-4f);
         types::Sonar received;
         receiver.receive(ping, received);
-        const Receiver::Flaws flaws = receiver.flawsOf(ping, received);
+        const Receiver::Flaws flaws = receiver.getFlaws(ping, received);
         EXPECT_TRUE(flaws.all_zero);
         EXPECT_THAT(receiver.text(flaws, ping), HasSubstr(begin));
     }
@@ -159,7 +159,7 @@ TEST_F(FlawTest, LinearAndRootCodesBeginAtTheLevelOfTheirLaw) {
 
 TEST_F(FlawTest, AnEmptyPingHasCodesOfZeroAndNoFlaw) {
     startWith(config_);
-    answerTo(test::shared(test::pingOf(2, 100, 0)));
+    answerTo(test::shared(test::makePing(2, 100, 0)));
     EXPECT_TRUE(reported_.empty());
 }
 
@@ -177,7 +177,7 @@ TEST_F(FlawTest, BlankingSilencesARingDown) {
     config_ = {};
     config_.blanking = BlankingConfig{0.5};
     startWith(config_);
-    types::Sonar ping = test::pingOf(1, 100, 1e-9f);
+    types::Sonar ping = test::makePing(1, 100, 1e-9f);
     for (size_t k = 0; k < 5; ++k) ping.bins[k] = 1;
     const types::SonarPtr echoes = answerTo(test::shared(ping));
     EXPECT_EQ(*std::ranges::max_element(echoes->bins), 1e-9f);

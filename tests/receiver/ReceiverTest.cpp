@@ -25,8 +25,8 @@ types::Sonar received(const ReceiverConfig& config, const types::Sonar& intensit
 }
 
 /** Returns one beam with these intensities. */
-types::Sonar beamOf(const std::vector<float>& bins) {
-    types::Sonar ping = test::pingOf(1, static_cast<uint32_t>(bins.size()));
+types::Sonar getBeam(const std::vector<float>& bins) {
+    types::Sonar ping = test::makePing(1, static_cast<uint32_t>(bins.size()));
     ping.bins = bins;
     return ping;
 }
@@ -44,7 +44,7 @@ ReceiverConfig coding(const CodeConfig& code) {
 }
 
 TEST(ReceiverTest, NeutralValuesGiveTheSameBins) {
-    types::Sonar ping = test::pingOf(3, 200);
+    types::Sonar ping = test::makePing(3, 200);
     for (size_t i = 0; i < ping.bins.size(); ++i) ping.bins[i] = static_cast<float>(i) * 1.37e-9f;
     ReceiverConfig neutral;
     neutral.tvg.emplace();
@@ -58,7 +58,7 @@ TEST(ReceiverTest, TheGainOfABinIsThatOfItsMiddle) {
     ReceiverConfig config;
     config.tvg = TvgConfig{.log_coefficient = 40, .db_per_m = 0.5, .max_db = 70};
     config.gain_db = 3;
-    const types::Sonar ping = received(config, test::pingOf(2, 400, 1e-6f));
+    const types::Sonar ping = received(config, test::makePing(2, 400, 1e-6f));
     for (size_t k = 0; k < 400; ++k) {
         const double r = 0.1 * (static_cast<double>(k) + 0.5);
         const double gain = std::min(40 * std::log10(r) + r, 70.0) + 3;
@@ -79,7 +79,7 @@ TEST(ReceiverTest, TheGainIsClampedAtItsMax) {
 TEST(ReceiverTest, NoBinOverflowsAndNoEchoStaysZero) {
     ReceiverConfig config;
     config.tvg = TvgConfig{.log_coefficient = 0, .db_per_m = 1000, .max_db = 1000};
-    const auto bins = received(config, beamOf({0, 1e-30f, 1, nan, std::numeric_limits<float>::infinity()})).bins;
+    const auto bins = received(config, getBeam({0, 1e-30f, 1, nan, std::numeric_limits<float>::infinity()})).bins;
     EXPECT_EQ(bins[0], 0);
     EXPECT_EQ(bins[2], maximum);
     EXPECT_TRUE(std::isnan(bins[3])) << "unknown stays unknown";
@@ -94,7 +94,7 @@ TEST(ReceiverTest, BinsNearerThanTheBlankingAreSilentInEveryOutput) {
                                           {Output::Code, 0.0f}}) {
         ReceiverConfig config = giving(output);
         config.blanking = BlankingConfig{0.35};
-        types::Sonar ping = test::pingOf(2, 10);
+        types::Sonar ping = test::makePing(2, 10);
         ping.bins[1] = nan;
         const auto bins = received(config, ping).bins;
         for (size_t k = 0; k < 4; ++k) EXPECT_EQ(bins[k], silence) << "the bin of 0.3 to 0.4 m begins before";
@@ -105,22 +105,22 @@ TEST(ReceiverTest, BinsNearerThanTheBlankingAreSilentInEveryOutput) {
 }
 
 TEST(ReceiverTest, AmplitudeIsTheRootOfIntensity) {
-    EXPECT_EQ(received(giving(Output::Amplitude), beamOf({0, 4, 0.25f})).bins, (std::vector<float>{0, 2, 0.5f}));
+    EXPECT_EQ(received(giving(Output::Amplitude), getBeam({0, 4, 0.25f})).bins, (std::vector<float>{0, 2, 0.5f}));
 }
 
 TEST(ReceiverTest, LevelsAreDecibelsOverTheWholeRangeOfAFloat) {
     const std::vector<float> intensities = {0, 1, 1e-10f, 3e38f, 1e-38f, 1e-44f, 0.70710678f, 1.41421356f, 0.99999994f};
-    const auto levels = received(giving(Output::LevelDb), beamOf(intensities)).bins;
+    const auto levels = received(giving(Output::LevelDb), getBeam(intensities)).bins;
     EXPECT_EQ(levels[0], -3000);
     EXPECT_EQ(levels[1], 0);
     for (size_t i = 1; i < intensities.size(); ++i)
         EXPECT_NEAR(levels[i], 10 * std::log10(static_cast<double>(intensities[i])), 4e-5) << intensities[i];
     ReceiverConfig config = giving(Output::LevelDb);
     config.source_level_db = 210;
-    EXPECT_EQ(received(config, beamOf(intensities)).bins, levels) << "relative to the source";
+    EXPECT_EQ(received(config, getBeam(intensities)).bins, levels) << "relative to the source";
     config.output = Output::ReceivedLevelDb;
-    EXPECT_NEAR(received(config, beamOf(intensities)).bins[2], 110, 1e-4);
-    EXPECT_TRUE(std::isnan(received(config, beamOf({nan})).bins[0]));
+    EXPECT_NEAR(received(config, getBeam(intensities)).bins[2], 110, 1e-4);
+    EXPECT_TRUE(std::isnan(received(config, getBeam({nan})).bins[0]));
 }
 
 TEST(ReceiverTest, TheVectorisedLogarithmIsRightToTheLastDigitsOfALevel) {
@@ -132,53 +132,53 @@ TEST(ReceiverTest, TheVectorisedLogarithmIsRightToTheLastDigitsOfALevel) {
 
 TEST(ReceiverTest, CodesFollowTheirLawBetweenTheirEnds) {
     const std::vector<float> intensities = {0, 0.25f, 1, 4, nan, 3e-3f};
-    EXPECT_EQ(received(coding({.bits = 8, .law = CodeLaw::Linear}), beamOf(intensities)).bins,
+    EXPECT_EQ(received(coding({.bits = 8, .law = CodeLaw::Linear}), getBeam(intensities)).bins,
               (std::vector<float>{0, 64, 255, 255, 0, 1}));
-    EXPECT_EQ(received(coding({.bits = 8, .law = CodeLaw::Sqrt}), beamOf(intensities)).bins,
+    EXPECT_EQ(received(coding({.bits = 8, .law = CodeLaw::Sqrt}), getBeam(intensities)).bins,
               (std::vector<float>{0, 128, 255, 255, 0, 14}));
-    EXPECT_EQ(received(coding({.bits = 8, .law = CodeLaw::Log, .dynamic_range_db = 60}), beamOf(intensities)).bins,
+    EXPECT_EQ(received(coding({.bits = 8, .law = CodeLaw::Log, .dynamic_range_db = 60}), getBeam(intensities)).bins,
               (std::vector<float>{0, 229, 255, 255, 0, 148}));
-    EXPECT_EQ(received(coding({.bits = 16, .law = CodeLaw::Log, .dynamic_range_db = 60}), beamOf(intensities)).bins,
+    EXPECT_EQ(received(coding({.bits = 16, .law = CodeLaw::Log, .dynamic_range_db = 60}), getBeam(intensities)).bins,
               (std::vector<float>{0, 58959, 65535, 65535, 0, 37979}));
 }
 
 TEST(ReceiverTest, CodesHaveAnyWidthFromEightToSixteenBits) {
     for (int bits = 8; bits <= 16; ++bits) {
         const auto full = static_cast<float>((1 << bits) - 1);
-        EXPECT_EQ(received(coding({.bits = bits, .law = CodeLaw::Sqrt}), beamOf({0, 0.25f, 1, 4, nan})).bins,
+        EXPECT_EQ(received(coding({.bits = bits, .law = CodeLaw::Sqrt}), getBeam({0, 0.25f, 1, 4, nan})).bins,
                   (std::vector<float>{0, 0.5f * (full + 1), full, full, 0}));
     }
 }
 
 TEST(ReceiverTest, GammaIsThePowerOfACode) {
     const std::vector<float> intensities = {0, 0.0625f, 0.25f, 1, 4, nan};
-    EXPECT_EQ(received(coding({.law = CodeLaw::Sqrt, .gamma = 0.5}), beamOf(intensities)).bins,
+    EXPECT_EQ(received(coding({.law = CodeLaw::Sqrt, .gamma = 0.5}), getBeam(intensities)).bins,
               (std::vector<float>{0, 128, 180, 255, 255, 0}));
-    EXPECT_EQ(received(coding({.law = CodeLaw::Linear, .gamma = 0.25}), beamOf(intensities)).bins,
+    EXPECT_EQ(received(coding({.law = CodeLaw::Linear, .gamma = 0.25}), getBeam(intensities)).bins,
               (std::vector<float>{0, 128, 180, 255, 255, 0}));
-    EXPECT_EQ(received(coding({.law = CodeLaw::Linear, .gamma = 2}), beamOf(intensities)).bins,
+    EXPECT_EQ(received(coding({.law = CodeLaw::Linear, .gamma = 2}), getBeam(intensities)).bins,
               (std::vector<float>{0, 1, 16, 255, 255, 0}));
-    EXPECT_EQ(received(coding({.law = CodeLaw::Sqrt, .gamma = 1}), beamOf(intensities)).bins,
-              received(coding({.law = CodeLaw::Sqrt}), beamOf(intensities)).bins);
+    EXPECT_EQ(received(coding({.law = CodeLaw::Sqrt, .gamma = 1}), getBeam(intensities)).bins,
+              received(coding({.law = CodeLaw::Sqrt}), getBeam(intensities)).bins);
 }
 
 TEST(ReceiverTest, FullScaleIsTheLevelOfTheMaxCodeWithAllGain) {
     for (const CodeLaw law : {CodeLaw::Linear, CodeLaw::Sqrt, CodeLaw::Log}) {
         ReceiverConfig config = coding({.law = law, .full_scale_db = -20});
         config.gain_db = 10;
-        const auto bins = received(config, beamOf({0.001f, 0.0009f})).bins;
+        const auto bins = received(config, getBeam({0.001f, 0.0009f})).bins;
         EXPECT_EQ(bins[0], 255);
         EXPECT_LT(bins[1], 255);
     }
 }
 
 TEST(ReceiverTest, RejectsContradictionsAndReportsUnusedConfiguration) {
-    EXPECT_THAT(test::refusalsOf(CodeConfig{.law = CodeLaw::Log, .gamma = 0.5}),
+    EXPECT_THAT(test::countRefusals(CodeConfig{.law = CodeLaw::Log, .gamma = 0.5}),
                 testing::ElementsAre("gamma: is given with law log; it bends law linear and sqrt"));
     ReceiverConfig config = giving(Output::LevelDb);
     config.brightness.emplace();
     config.tvg.emplace();
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 testing::ElementsAre("brightness: is given with tvg; it compensates for spreading itself",
                                      "brightness: is given with another output; it scales output: intensity"));
     config = {};
@@ -220,7 +220,7 @@ TEST(ReceiverTest, ValuesThatNoReceiverHasAreWarnings) {
         each.value(config) = each.usual;
         EXPECT_THAT(Receiver(config).notices(), testing::IsEmpty()) << each.name;
         each.value(config) = each.typo;
-        EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty()) << each.name;
+        EXPECT_THAT(test::countRefusals(config), testing::IsEmpty()) << each.name;
         const types::Notices notices = Receiver(config).notices();
         ASSERT_EQ(notices.size(), 1u) << each.name;
         EXPECT_EQ(notices[0].kind, types::Notice::Kind::Warning);
@@ -230,7 +230,7 @@ TEST(ReceiverTest, ValuesThatNoReceiverHasAreWarnings) {
 
 TEST(ReceiverTest, ABrightnessOfOneHalfShowsACellOfMediumSandFaceOnAsOneAtEveryRange) {
     ReceiverConfig config;
-    types::Sonar sand = test::pingOf(1, 300);
+    types::Sonar sand = test::makePing(1, 300);
     for (size_t k = 0; k < 300; ++k) {
         const double r = 0.1 * (static_cast<double>(k) + 0.5);
         const double cell = types::radians(2) * 0.1 / r;  // [sr]
@@ -247,7 +247,7 @@ TEST(ReceiverTest, ABrightnessOfOneHalfShowsACellOfMediumSandFaceOnAsOneAtEveryR
 TEST(ReceiverTest, ABrightnessOfPublishedPingsIsTwiceTheGainAndAtMostOne) {
     ReceiverConfig config;
     config.brightness = BrightnessConfig{0.75, Model::Cerqueira2017};
-    const auto bins = received(config, beamOf({0, 0.1f, 0.6f, 0.9f})).bins;
+    const auto bins = received(config, getBeam({0, 0.1f, 0.6f, 0.9f})).bins;
     EXPECT_EQ(bins[0], 0);
     EXPECT_NEAR(bins[1], 0.15, 1e-7);
     EXPECT_NEAR(bins[2], 0.9, 1e-7);
@@ -258,7 +258,7 @@ TEST(ReceiverTest, APingOfAnotherShapeOrRangeHasItsOwnGain) {
     ReceiverConfig config;
     config.tvg = TvgConfig{.log_coefficient = 20, .db_per_m = 0, .max_db = 100};
     Receiver receiver(config);
-    types::Sonar ping, first = test::pingOf(2, 100), longer = test::pingOf(1, 50);
+    types::Sonar ping, first = test::makePing(2, 100), longer = test::makePing(1, 50);
     longer.bin_duration.microseconds = 1000;
     receiver.receive(first, ping);
     const std::vector<float> before = ping.bins;
@@ -269,7 +269,7 @@ TEST(ReceiverTest, APingOfAnotherShapeOrRangeHasItsOwnGain) {
 }
 
 TEST(ReceiverTest, KeepsEverythingExceptTheBins) {
-    types::Sonar ping = test::pingOf(2, 3);
+    types::Sonar ping = test::makePing(2, 3);
     ping.timestamps = {{1}, {2}};
     ping.beam_height = types::Angle{0.2};
     ping.bearings = {types::Angle{0.3}, types::Angle{-0.3}};

@@ -185,7 +185,7 @@ TEST_F(ArisFileTest, KeepsWholeFramesOfATruncatedFile) {
 }
 
 TEST_F(ArisFileTest, EveryDamagedByteGivesPingsOrOneError) {
-    EXPECT_GT(refusedOf(arisFile({smallFrame(), smallFrame(5)}), 3), 20u);
+    EXPECT_GT(countRefused(arisFile({smallFrame(), smallFrame(5)}), 3), 20u);
 }
 
 }  // namespace

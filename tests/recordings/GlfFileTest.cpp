@@ -24,7 +24,7 @@ RecordedBytes packedByZlib(const RecordedBytes& bytes) {
 
 /** Deflates as in archives: without zlib's header. @param level 0: blocks that are not packed, as in the maker's
  *  files */
-RecordedBytes deflatedOf(RecordedBytes bytes, int level) {
+RecordedBytes deflateBytes(RecordedBytes bytes, int level) {
     z_stream stream{};
     deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
     RecordedBytes packed(deflateBound(&stream, bytes.size()) + 64);
@@ -82,7 +82,7 @@ TEST_F(GlfFileTest, SamplesDoNotDependOnThePacking) {
             const auto size = static_cast<uint32_t>(log.size());
             const uint32_t sum = test::zipChecksum(log);
             all.push_back(read(way == 0 ? zipped("a.dat", log, size, sum)
-                                        : zipped("a.dat", deflatedOf(log, way % 2 * 6), size, sum, 8))
+                                        : zipped("a.dat", deflateBytes(log, way % 2 * 6), size, sum, 8))
                               .at(0));
             EXPECT_FALSE(isNoticed("checksum"));
         }
@@ -181,8 +181,9 @@ TEST_F(GlfFileTest, KeepsWholeImagesOfATruncatedFile) {
     const size_t image = (log.size() - 2) / 2;
     for (const int level : {-1, 0, 6}) {
         const auto size = static_cast<uint32_t>(log.size());
-        const RecordedBytes good = level < 0 ? zipped("a.dat", log, size, test::zipChecksum(log))
-                                             : zipped("a.dat", deflatedOf(log, level), size, test::zipChecksum(log), 8);
+        const RecordedBytes good = level < 0
+                                       ? zipped("a.dat", log, size, test::zipChecksum(log))
+                                       : zipped("a.dat", deflateBytes(log, level), size, test::zipChecksum(log), 8);
         const auto path = write(good);
         EXPECT_THAT(readFile(path), SizeIs(2));
         for (size_t end = good.size() - 1; end > 35; --end) {
@@ -197,10 +198,10 @@ TEST_F(GlfFileTest, KeepsWholeImagesOfATruncatedFile) {
 }
 
 TEST_F(GlfFileTest, EveryDamagedByteGivesPingsOrOneError) {
-    EXPECT_GT(refusedOf(glfFile({glfRecord(smallImage()), glfRecord(smallImage(1))}), 4), 20u);
+    EXPECT_GT(countRefused(glfFile({glfRecord(smallImage()), glfRecord(smallImage(1))}), 4), 20u);
     const RecordedBytes log = glfLog({glfRecord(smallImage()), glfRecord(smallImage(1))});
     const auto size = static_cast<uint32_t>(log.size());
-    refusedOf(zipped("a.dat", deflatedOf(log, 6), size, test::zipChecksum(log), 8), 4);
+    countRefused(zipped("a.dat", deflateBytes(log, 6), size, test::zipChecksum(log), 8), 4);
 }
 
 TEST_F(GlfFileTest, NoticesAWrongByteOfTheSamplesByTheChecksum) {

@@ -145,7 +145,7 @@ TEST_F(JsfFileTest, KeepsWholeMessagesOfATruncatedFile) {
 }
 
 TEST_F(JsfFileTest, EveryDamagedByteGivesPingsOrOneError) {
-    EXPECT_GT(refusedOf(joined({sonarData(0, 0, 1), sonarData(0, 1, 1)}), 2, ": byte "), 10u);
+    EXPECT_GT(countRefused(joined({sonarData(0, 0, 1), sonarData(0, 1, 1)}), 2, ": byte "), 10u);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ struct RecordedFileTest : testing::Test {
         return all;
     }
     std::string refusal(const RecordedBytes& bytes) {
-        return test::errorOf<types::ConfigError>([&] { read(bytes); });
+        return test::computeError<types::ConfigError>([&] { read(bytes); });
     }
     bool isNoticed(const std::string& text) const {
         return std::ranges::any_of(notices_,
@@ -47,7 +47,7 @@ struct RecordedFileTest : testing::Test {
     }
     /** Damages each byte from `from` on: pings or one error with the file's name and `place` are read. Returns how
      *  often a file was refused. */
-    size_t refusedOf(const RecordedBytes& good, size_t from, const std::string& place = "") {
+    size_t countRefused(const RecordedBytes& good, size_t from, const std::string& place = "") {
         const auto path = write(good);
         std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
         const auto put = [&](size_t at, char byte) { file.seekp(static_cast<std::streamoff>(at)).put(byte).flush(); };

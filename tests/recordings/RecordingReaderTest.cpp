@@ -12,7 +12,7 @@ using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::SizeIs;
 /** Returns an XTF file of lines at whole seconds. */
 RecordedBytes xtfLines(int count) {
     const auto line = [](int i) {
-        types::Sonar ping = test::pingOf(2, 5, 0, 1'700'000'000'000'000 + i * 1'000'000);
+        types::Sonar ping = test::makePing(2, 5, 0, 1'700'000'000'000'000 + i * 1'000'000);
         ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
         return ping;
     };
@@ -47,19 +47,19 @@ TEST_F(RecordingReaderTest, EveryFormatHasItsOwnEndingAndSignature) {
 }
 
 TEST_F(RecordingReaderTest, AFileThatCannotBeReadIsOneErrorWithTheRemedy) {
-    const auto refusalOf = [&](const std::filesystem::path& file) {
-        return test::errorOf<types::ConfigError>([&] { RecordingReader::open(file); });
+    const auto getRefusal = [&](const std::filesystem::path& file) {
+        return test::computeError<types::ConfigError>([&] { RecordingReader::open(file); });
     };
-    EXPECT_THAT(refusalOf(folder_ / "no.xtf"),
+    EXPECT_THAT(getRefusal(folder_ / "no.xtf"),
                 AllOf(HasSubstr("no.xtf: does not exist; may be a "), HasSubstr(recordingEndings() + " file")));
-    EXPECT_THAT(refusalOf(folder_.path()), HasSubstr(": is a folder; give a recording in it"));
-    EXPECT_THAT(refusalOf(write({})), HasSubstr("line.xtf: is empty; may be a " + recordingEndings()));
+    EXPECT_THAT(getRefusal(folder_.path()), HasSubstr(": is a folder; give a recording in it"));
+    EXPECT_THAT(getRefusal(write({})), HasSubstr("line.xtf: is empty; may be a " + recordingEndings()));
 }
 
 TEST_F(RecordingReaderTest, WhereALogIsWantedARecordingIsAnErrorWithTheCommandThatImportsIt) {
     for (const RecordingFormat& format : recordingFormats()) {
         const std::string refusal =
-            test::errorOf<types::ConfigError>([&] { refuseRecording("a" + std::string(format.ending)); });
+            test::computeError<types::ConfigError>([&] { refuseRecording("a" + std::string(format.ending)); });
         EXPECT_EQ(
             refusal.find("a recording of " + std::string(format.device) + "; `insonify log import`") != refusal.npos,
             !format.ending.empty())
@@ -88,7 +88,7 @@ TEST_F(RecordingReaderTest, PingsAreNumberedAndTimedAndHaveTheirRange) {
 
 TEST_F(RecordingReaderTest, AFileWithoutAPingIsAnErrorAndDamageAfterOneANotice) {
     const auto reader = RecordingReader::open(write(xtfLines(0)));
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { reader->next(); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { reader->next(); }),
                 HasSubstr("line.xtf: holds no ping of a side-scan"));
     RecordedBytes bytes = xtfLines(3);
     const size_t packet = (bytes.size() - 1024) / 3;

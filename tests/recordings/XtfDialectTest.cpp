@@ -53,7 +53,7 @@ RecordedBytes header(const std::vector<Described>& described, size_t declared) {
     return bytes;
 }
 
-RecordedBytes packetOf(RecordedBytes bytes, uint8_t type) {
+RecordedBytes makePacket(RecordedBytes bytes, uint8_t type) {
     const size_t unit = xtf::packet::unit;
     bytes.resize((bytes.size() + unit - 1) / unit * unit);
     putAt(bytes, xtf::packet::mark, xtf::packet::magic);
@@ -95,7 +95,7 @@ RecordedBytes pingBytes(const std::vector<Described>& described, const MadePing&
                 putAt(bytes, place, value);
         }
     }
-    return packetOf(std::move(bytes), xtf::packet::sonar);
+    return makePacket(std::move(bytes), xtf::packet::sonar);
 }
 
 std::vector<uint32_t> counting(uint32_t from, size_t count) {
@@ -118,7 +118,7 @@ void expectBins(const std::vector<float>& bins, const Sampled& side, double widt
     }
 }
 
-std::vector<float> beamOf(const types::Sonar& ping, size_t beam) {
+std::vector<float> getBeam(const types::Sonar& ping, size_t beam) {
     const auto begin = ping.bins.begin() + static_cast<std::ptrdiff_t>(beam * ping.bin_count);
     return {begin, begin + ping.bin_count};
 }
@@ -154,7 +154,7 @@ struct XtfDialectTest : RecordedFileTest {
         for (const auto& side : sides)
             if (side) {
                 EXPECT_EQ(read.bearings[beam].deg(), &side == &sides[1] ? 90 : -90);
-                expectBins(beamOf(read, beam++), *side, width);
+                expectBins(getBeam(read, beam++), *side, width);
             }
     }
 };
@@ -278,7 +278,7 @@ TEST_F(XtfDialectTest, RandomDialectsAreReadAsFilledIn) {
                 const bool in_bytes = described[c].bytes() == 1;
                 ping.push_back({static_cast<uint16_t>(c), counting(in_bytes ? 7 : 1000, count), range});
             }
-            while (draw.once(2) && draw.once(2)) parts.push_back(packetOf(RecordedBytes(80), 42));
+            while (draw.once(2) && draw.once(2)) parts.push_back(makePacket(RecordedBytes(80), 42));
             parts.push_back(pingBytes(described, ping, i));
             const auto has_side = std::ranges::any_of(ping, [&](const Sampled& side) {
                 const uint8_t type = described[side.channel].type;
@@ -304,7 +304,7 @@ TEST_F(XtfDialectTest, TheGivenDialectsAreRead) {
     const std::filesystem::path folder = test::sharedFile("reports/xtf-dialects");
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "SKIPPED: " << folder << " is not there";
     const auto strongest = [](const types::Sonar& ping, size_t beam) {
-        const std::vector<float> bins = beamOf(ping, beam);
+        const std::vector<float> bins = getBeam(ping, beam);
         return ping.binStart(static_cast<double>(std::ranges::max_element(bins) - bins.begin()) + 0.5);
     };
     for (const char* name : {"few_declared.xtf", "uneven.xtf"}) {

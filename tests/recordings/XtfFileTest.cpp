@@ -25,7 +25,7 @@ constexpr size_t first_ping = xtf::file_header::size;
 
 /** Returns a line in which starboard counts up from 100, port from 1000. */
 types::Sonar line(int number, uint32_t bins = 5, double speed_of_sound = 1500) {
-    types::Sonar ping = test::pingOf(2, bins, 0, first_time + number * 500'000);
+    types::Sonar ping = test::makePing(2, bins, 0, first_time + number * 500'000);
     ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
     ping.beam_width = types::Angle::fromDeg(0.5);
     ping.beam_height = types::Angle::fromDeg(50);
@@ -49,7 +49,7 @@ types::Pose headed(double yaw_deg) {
 struct XtfFileTest : RecordedFileTest {
     XtfFileTest() : RecordedFileTest("line.xtf") {}
     /** Returns a file of these lines, all at one place. */
-    static std::vector<char> fileOf(const std::vector<types::Sonar>& lines, XtfSamples samples = XtfSamples::Uint16) {
+    static std::vector<char> getFile(const std::vector<types::Sonar>& lines, XtfSamples samples = XtfSamples::Uint16) {
         const XtfFormat format{samples, 450, "line.xtf"};
         std::vector<char> bytes = xtfHeader(format, lines.front());
         for (const types::Sonar& line : lines) appendXtfPing(format, line, {headed(30), 6.5, 0.5, 0}, bytes);
@@ -60,7 +60,7 @@ struct XtfFileTest : RecordedFileTest {
 TEST_F(XtfFileTest, ReadsAnOwnFileBackBinByBin) {
     for (const XtfSamples samples : {XtfSamples::Uint16, XtfSamples::Float32}) {
         const std::vector<types::Sonar> written{line(0), line(1), line(2)};
-        const std::vector<RecordedPing> lines = read(fileOf(written, samples));
+        const std::vector<RecordedPing> lines = read(getFile(written, samples));
         ASSERT_EQ(lines.size(), 3u);
         for (size_t i = 0; i < 3; ++i) {
             const types::Sonar& ping = lines[i].ping;
@@ -81,7 +81,7 @@ TEST_F(XtfFileTest, ReadsAnOwnFileBackBinByBin) {
 }
 
 TEST_F(XtfFileTest, ReadsAPoseBackInRocksFrames) {
-    const RecordedPing read_back = read(fileOf({line(0)})).front();
+    const RecordedPing read_back = read(getFile({line(0)})).front();
     const types::Pose &pose = read_back.sonar, expected = headed(30);
     EXPECT_NEAR(glm::length(pose.position - expected.position), 0, 1e-6);
     EXPECT_NEAR(std::abs(glm::dot(pose.orientation, expected.orientation)), 1, 1e-12);
@@ -91,7 +91,7 @@ TEST_F(XtfFileTest, ReadsAPoseBackInRocksFrames) {
 
 TEST_F(XtfFileTest, KeepsEveryPingIfSettingsChange) {
     const std::vector<types::Sonar> written{line(0), line(1, 7), line(2, 5, 1450), line(3)};
-    const std::vector<RecordedPing> lines = read(fileOf(written));
+    const std::vector<RecordedPing> lines = read(getFile(written));
     ASSERT_EQ(lines.size(), 4u);
     for (size_t i = 0; i < lines.size(); ++i) {
         EXPECT_EQ(lines[i].ping.bins, written[i].bins);
@@ -101,7 +101,7 @@ TEST_F(XtfFileTest, KeepsEveryPingIfSettingsChange) {
 
 TEST_F(XtfFileTest, KeepsRangesIfABinIsNotWholeMicroseconds) {
     types::Sonar fine = line(0);
-    std::vector<char> bytes = fileOf({fine});
+    std::vector<char> bytes = getFile({fine});
     for (const size_t channel : {0, 1})  // 19.5 us
         putAt(bytes,
               first_ping + ping_header::size + channel * (channel_header::size + 10) + channel_header::slant_range,
@@ -112,7 +112,7 @@ TEST_F(XtfFileTest, KeepsRangesIfABinIsNotWholeMicroseconds) {
 }
 
 TEST_F(XtfFileTest, ConvertsLatitudesAndLongitudesToMetres) {
-    std::vector<char> bytes = fileOf({line(0), line(1)});
+    std::vector<char> bytes = getFile({line(0), line(1)});
     putAt(bytes, xtf::file_header::nav_units, xtf::file_header::degrees);
     const size_t size = (bytes.size() - first_ping) / 2;
     for (const size_t i : {0, 1}) {
@@ -127,7 +127,7 @@ TEST_F(XtfFileTest, ConvertsLatitudesAndLongitudesToMetres) {
 }
 
 TEST_F(XtfFileTest, StartsProjectedCoordinatesAtTheirFirstPlace) {
-    std::vector<char> bytes = fileOf({line(0)});
+    std::vector<char> bytes = getFile({line(0)});
     putAt(bytes, first_ping + ping_header::sonar, 5'367'000.5);
     putAt(bytes, first_ping + ping_header::sonar + 8, 412'000.25);
     EXPECT_EQ(read(bytes).front().sonar.position, glm::dvec3(0, 0, -4));
@@ -135,7 +135,7 @@ TEST_F(XtfFileTest, StartsProjectedCoordinatesAtTheirFirstPlace) {
 }
 
 TEST_F(XtfFileTest, ReadsOtherWaysToStateTheSame) {
-    std::vector<char> bytes = fileOf({line(0)});
+    std::vector<char> bytes = getFile({line(0)});
     const size_t port = first_ping + ping_header::size, starboard = port + channel_header::size + 10;
     putAt(bytes, first_ping + ping_header::sound_speed, 750.0f);  // half of it
     for (const size_t side : {port, starboard})
@@ -151,7 +151,7 @@ TEST_F(XtfFileTest, ReadsOtherWaysToStateTheSame) {
 }
 
 TEST_F(XtfFileTest, NoticesUnknownAndOmittedData) {
-    std::vector<char> bytes = fileOf({line(0), line(1), line(2)});
+    std::vector<char> bytes = getFile({line(0), line(1), line(2)});
     const size_t size = (bytes.size() - first_ping) / 3;
     putAt(bytes, first_ping + xtf::packet::type, uint8_t{42});
     putAt(bytes, first_ping + size + ping_header::roll, std::numeric_limits<float>::quiet_NaN());
@@ -167,7 +167,7 @@ TEST_F(XtfFileTest, NoticesUnknownAndOmittedData) {
 }
 
 TEST_F(XtfFileTest, RefusesAWrongFileWithItsByte) {
-    const std::vector<char> good = fileOf({line(0)});
+    const std::vector<char> good = getFile({line(0)});
     const auto with = [&](size_t at, auto value) {
         std::vector<char> bytes = good;
         putAt(bytes, at, value);
@@ -180,7 +180,7 @@ TEST_F(XtfFileTest, RefusesAWrongFileWithItsByte) {
 }
 
 TEST_F(XtfFileTest, KeepsWholePingsOfATruncatedFile) {
-    const std::vector<char> good = fileOf({line(0), line(1)});
+    const std::vector<char> good = getFile({line(0), line(1)});
     const size_t packet = (good.size() - first_ping) / 2;
     const auto path = write(good);
     for (size_t size = good.size() - 1; size > 0; --size) {
@@ -196,7 +196,7 @@ TEST_F(XtfFileTest, KeepsWholePingsOfATruncatedFile) {
 }
 
 TEST_F(XtfFileTest, EveryDamagedByteGivesPingsOrOneError) {
-    EXPECT_GT(refusedOf(fileOf({line(0), line(1)}), 1, ": byte "), 10u) << "others cost a ping";
+    EXPECT_GT(countRefused(getFile({line(0), line(1)}), 1, ": byte "), 10u) << "others cost a ping";
 }
 
 TEST_F(XtfFileTest, ReadsAllPingsOfARealFile) {

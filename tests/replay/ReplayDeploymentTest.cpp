@@ -109,9 +109,9 @@ TEST(ReplayDeploymentTest, TwoReplaysGiveTheSameLogBitForBit) {
     Folder folder;
     writeLog(folder / "a.0.log");
     runIn(folder, again);
-    const std::vector<char> first = bytesOf(folder / "b.0.log");
+    const std::vector<char> first = toBytes(folder / "b.0.log");
     runIn(folder, again);
-    EXPECT_EQ(bytesOf(folder / "b.0.log"), first);
+    EXPECT_EQ(toBytes(folder / "b.0.log"), first);
 }
 
 TEST(ReplayDeploymentTest, AMissingLogIsTheOnlyDiagnostic) {
@@ -188,7 +188,7 @@ TEST(ReplayDeploymentTest, ASourceOfPosesThatCannotBeUsedIsReportedByCheck) {
     const Folder folder;
     eastwards().writeMcap(folder / "bag.mcap");
     for (const char* source : {"/odm", "odom->arm", "map->base_link"})
-        EXPECT_THAT(test::errorOf<types::ConfigError>([&] { runIn(folder, posesFrom(source)); }),
+        EXPECT_THAT(test::computeError<types::ConfigError>([&] { runIn(folder, posesFrom(source)); }),
                     testing::HasSubstr("there are: /odom ("));
 }
 

@@ -87,7 +87,7 @@ TEST(ReplayStepsTest, StepsBothWaysAddUp) {
 
 TEST(ReplayStepsTest, AReplayStartsThereAndLoopsBackToThere) {
     Recorded late(setBack, {.file = {}, .from = 57, .loop = true});
-    EXPECT_THAT(test::refusalsOf(late.bench.task), IsEmpty());
+    EXPECT_THAT(test::countRefusals(late.bench.task), IsEmpty());
     late.begin();
     EXPECT_NEAR(late.place(), 57, 1e-6);
     std::vector<double> places;
@@ -95,7 +95,8 @@ TEST(ReplayStepsTest, AReplayStartsThereAndLoopsBackToThere) {
     for (types::Pose pose; late.poses.port.readNew(pose);) places.push_back(pose.position.x);
     EXPECT_THAT(places, ElementsAre(57, 58, 59, 57, 58));
     Recorded beyond(setBack, {.file = {}, .from = 60});
-    EXPECT_THAT(test::refusalsOf(beyond.bench.task), ElementsAre("from: is 60 s; the log ends 59 s after its start"));
+    EXPECT_THAT(test::countRefusals(beyond.bench.task),
+                ElementsAre("from: is 60 s; the log ends 59 s after its start"));
 }
 
 /** Two hours without a sample, after a step back: the notice names a start that is behind the gap. */

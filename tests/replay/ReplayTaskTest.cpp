@@ -102,14 +102,14 @@ TEST(ReplayTaskTest, StreamsThatAreNotReplayedAreListed) {
 
 TEST(ReplayTaskTest, AMissingStreamIsReportedWithTheExistingStreams) {
     Bench bench;
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { bench.task.makeOutput("sonar.pong"); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { bench.task.makeOutput("sonar.pong"); }),
                 HasSubstr("vehicle.pose, sonar.ping"));
 }
 
 TEST(ReplayTaskTest, ReportsAFileThatIsNotALogBeforeAnythingStarts) {
     Bench bench;
     writeBytes(bench.folder / "x.0.log", std::vector<char>(100, 'g'));
-    EXPECT_THAT(test::refusalsOf(bench.task),
+    EXPECT_THAT(test::countRefusals(bench.task),
                 ElementsAre(testing::AllOf(testing::StartsWith("file: "), HasSubstr("is not a pocolog file"))));
     EXPECT_FALSE(bench.task.configure());
     EXPECT_NE(bench.task.configError(), nullptr);
@@ -117,7 +117,7 @@ TEST(ReplayTaskTest, ReportsAFileThatIsNotALogBeforeAnythingStarts) {
 
 TEST(ReplayTaskTest, ASampleThatCannotBeDecodedEndsInException) {
     Bench bench;
-    std::vector<char> bytes = bytesOf(bench.folder / "x.0.log");
+    std::vector<char> bytes = toBytes(bench.folder / "x.0.log");
     const uint64_t position = log::pocolog::Reader(bench.folder / "x.0.log").samples().front().position;
     bytes[position + 15] = '\x7f';  // top byte of the length of a name
     writeBytes(bench.folder / "x.0.log", bytes);

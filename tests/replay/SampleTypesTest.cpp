@@ -320,9 +320,9 @@ TYPED_TEST(SampleTypesTest, IsExportedTheSameFromEachFormat) {
     };
     exported("x.0.log", "a");
     exported("x.0.mcap", "b");
-    EXPECT_EQ(bytesOf(this->folder / "a.npz"), bytesOf(this->folder / "b.npz"));
+    EXPECT_EQ(toBytes(this->folder / "a.npz"), toBytes(this->folder / "b.npz"));
     if (std::is_same_v<TypeParam, types::Image>) return;
-    EXPECT_EQ(bytesOf(this->folder / "a.csv"), bytesOf(this->folder / "b.csv"));
+    EXPECT_EQ(toBytes(this->folder / "a.csv"), toBytes(this->folder / "b.csv"));
 }
 
 }  // namespace

@@ -8,16 +8,16 @@ namespace insonify::ros {
 namespace {
 
 template <class T>
-std::vector<char> bytesOf(const T& message) {
+std::vector<char> toBytes(const T& message) {
     std::vector<char> bytes;
     encode(message, bytes);
     return bytes;
 }
 
 /** Returns a message such as "Time(1 0)" in hexadecimal, without the header. */
-std::string bodyOf(const auto& message) {
+std::string getBody(const auto& message) {
     std::string text;
-    const std::vector<char> bytes = bytesOf(message);
+    const std::vector<char> bytes = toBytes(message);
     for (size_t i = 4; i < bytes.size(); ++i) {
         char digits[4];
         std::snprintf(digits, sizeof digits, "%02x", static_cast<uint8_t>(bytes[i]));
@@ -27,9 +27,9 @@ std::string bodyOf(const auto& message) {
 }
 
 template <class T>
-std::string diagnosticOf(const std::vector<char>& bytes) {
+std::string findDiagnostic(const std::vector<char>& bytes) {
     T message;
-    return test::errorOf<CdrError>([&] { decode(bytes, message); });
+    return test::computeError<CdrError>([&] { decode(bytes, message); });
 }
 
 PointCloud2 smallCloud() {
@@ -43,15 +43,15 @@ PointCloud2 smallCloud() {
 }
 
 TEST(CdrTest, AMessageBeginsWithItsEncoding) {
-    EXPECT_THAT(bytesOf(Time{1, 2}), testing::ElementsAre(0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0));
+    EXPECT_THAT(toBytes(Time{1, 2}), testing::ElementsAre(0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0));
 }
 
 TEST(CdrTest, EncodesATextAsLengthWithFinalNulAndCharacters) {
-    EXPECT_EQ(bodyOf(Header{{-1, 0x11223344}, "ab"}),
+    EXPECT_EQ(getBody(Header{{-1, 0x11223344}, "ab"}),
               "ffffffff44332211"
               "03000000"
               "616200");
-    EXPECT_EQ(bodyOf(Header{{0, 0}, ""}),
+    EXPECT_EQ(getBody(Header{{0, 0}, ""}),
               "0000000000000000"
               "01000000"
               "00");
@@ -62,17 +62,17 @@ TEST(CdrTest, AlignsNumbersFromTheStartOfTheBody) {
     PoseStamped pose;
     pose.header.frame_id = "w";
     pose.pose.position.x = 1;
-    EXPECT_EQ(bodyOf(pose).substr(0, 48),
+    EXPECT_EQ(getBody(pose).substr(0, 48),
               "0000000000000000"
               "02000000"
               "7700"
               "0000"
               "000000000000f03f");
     pose.header.frame_id = "wor";  // 8 + 4 + 4 bytes: no padding
-    EXPECT_EQ(bodyOf(pose).substr(24, 24),
+    EXPECT_EQ(getBody(pose).substr(24, 24),
               "776f7200"
               "000000000000f03f");
-    EXPECT_EQ(bytesOf(pose).size(), 4u + 16 + 7 * 8);
+    EXPECT_EQ(toBytes(pose).size(), 4u + 16 + 7 * 8);
 }
 
 TEST(CdrTest, DoesNotPadAnEmptySequenceOfDoubles) {
@@ -80,7 +80,7 @@ TEST(CdrTest, DoesNotPadAnEmptySequenceOfDoubles) {
     image.beam_directions.clear();
     image.ranges.clear();
     image.image.data = {9};
-    const std::string body = bodyOf(image);
+    const std::string body = getBody(image);
     // rx_beamwidths end at 20 + 8 + 8 + 12 = 48; then two counts, bool, padding, dtype, beams, count, one byte
     EXPECT_EQ(body.substr(2 * 48),
               "00000000"
@@ -93,7 +93,7 @@ TEST(CdrTest, DoesNotPadAnEmptySequenceOfDoubles) {
 }
 
 TEST(CdrTest, AlignsEachElementOfASequence) {
-    EXPECT_EQ(bodyOf(smallCloud()).substr(2 * 24),
+    EXPECT_EQ(getBody(smallCloud()).substr(2 * 24),
               "02000000"  // two fields
               "02000000"
               "7800"
@@ -120,13 +120,13 @@ TEST(CdrTest, AlignsEachElementOfASequence) {
 
 template <class T>
 void expectRoundTripAndNoTruncation(const T& message) {
-    const std::vector<char> bytes = bytesOf(message);
+    const std::vector<char> bytes = toBytes(message);
     T again;
     decode(bytes, again);
     EXPECT_EQ(again, message) << T::type_name;
     for (size_t size = 0; size < bytes.size(); ++size) {
         const std::vector<char> cut(bytes.begin(), bytes.begin() + static_cast<int64_t>(size));
-        EXPECT_NE(diagnosticOf<T>(cut), "") << T::type_name << " cut to " << size << " of " << bytes.size();
+        EXPECT_NE(findDiagnostic<T>(cut), "") << T::type_name << " cut to " << size << " of " << bytes.size();
     }
 }
 
@@ -162,36 +162,36 @@ TEST(CdrTest, DecodesWhatItEncodesAndRefusesTruncatedMessages) {
 }
 
 TEST(CdrTest, RandomBytesDoNoHarm) {
-    const std::vector<char> bytes = bytesOf(smallImage());
+    const std::vector<char> bytes = toBytes(smallImage());
     size_t refused = 0;
     for (size_t at = 0; at < bytes.size(); ++at)
         for (const int value : {0, 1, 127, 128, 255}) {
             std::vector<char> wrong = bytes;
             wrong[at] = static_cast<char>(value);
-            refused += !diagnosticOf<ProjectedSonarImage>(wrong).empty();
+            refused += !findDiagnostic<ProjectedSonarImage>(wrong).empty();
         }
     EXPECT_GT(refused, bytes.size() / 4);
 }
 
 TEST(CdrTest, ReportsADiagnosticWithItsPlace) {
-    std::vector<char> bytes = bytesOf(Header{{0, 0}, "ab"});
-    EXPECT_EQ(diagnosticOf<Header>({0, 0, 0, 0}), "byte 0: encoding 0 is not read, only 1: plain CDR, little endian");
+    std::vector<char> bytes = toBytes(Header{{0, 0}, "ab"});
+    EXPECT_EQ(findDiagnostic<Header>({0, 0, 0, 0}), "byte 0: encoding 0 is not read, only 1: plain CDR, little endian");
     bytes[12] = 100;
-    EXPECT_EQ(diagnosticOf<Header>(bytes), "byte 12: 100 elements are announced, more than the message holds");
+    EXPECT_EQ(findDiagnostic<Header>(bytes), "byte 12: 100 elements are announced, more than the message holds");
     bytes[12] = 2;
-    EXPECT_EQ(diagnosticOf<Header>(bytes), "byte 17: a text does not end in NUL");
-    bytes = bytesOf(smallCloud());
+    EXPECT_EQ(findDiagnostic<Header>(bytes), "byte 17: a text does not end in NUL");
+    bytes = toBytes(smallCloud());
     bytes.back() = 3;
-    EXPECT_EQ(diagnosticOf<PointCloud2>(bytes),
+    EXPECT_EQ(findDiagnostic<PointCloud2>(bytes),
               "byte " + std::to_string(bytes.size() - 1) + ": a truth value is 3, not 0 or 1");
 }
 
 TEST(CdrTest, AcceptsUpToThreeBytesOfPadding) {
-    std::vector<char> bytes = bytesOf(Time{1, 2});
+    std::vector<char> bytes = toBytes(Time{1, 2});
     bytes.resize(bytes.size() + 3);
-    EXPECT_EQ(diagnosticOf<Time>(bytes), "");
+    EXPECT_EQ(findDiagnostic<Time>(bytes), "");
     bytes.push_back(0);
-    EXPECT_EQ(diagnosticOf<Time>(bytes), "byte 12: the message has 4 bytes too many");
+    EXPECT_EQ(findDiagnostic<Time>(bytes), "byte 12: the message has 4 bytes too many");
 }
 
 }  // namespace

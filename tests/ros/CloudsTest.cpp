@@ -9,7 +9,7 @@
 namespace insonify::ros {
 namespace {
 
-std::vector<float> numbersOf(const PointCloud2& message) {
+std::vector<float> getNumbers(const PointCloud2& message) {
     std::vector<float> numbers(message.data.size() / sizeof(float));
     std::memcpy(numbers.data(), message.data.data(), message.data.size());
     return numbers;
@@ -40,9 +40,9 @@ TEST(CloudsTest, WritesPointsInTheAxesOfTheWorldFrame) {
     EXPECT_EQ(message.width, 2u);
     EXPECT_EQ(message.height, 1u);
     EXPECT_EQ(message.header.frame_id, "map");
-    EXPECT_THAT(numbersOf(message), testing::ElementsAre(-2, 3, -5, 0.25f, -0.5f, -1, -6, 0.125f));
+    EXPECT_THAT(getNumbers(message), testing::ElementsAre(-2, 3, -5, 0.25f, -0.5f, -1, -6, 0.125f));
     convert(twoPoints(), WorldFrame::Ned, message);
-    EXPECT_THAT(numbersOf(message), testing::ElementsAre(3, -2, 5, 0.25f, -1, -0.5f, 6, 0.125f));
+    EXPECT_THAT(getNumbers(message), testing::ElementsAre(3, -2, 5, 0.25f, -1, -0.5f, 6, 0.125f));
 }
 
 TEST(CloudsTest, RestoresPointsFromEveryFrame) {
@@ -112,7 +112,7 @@ TEST(CloudsTest, RefusesInvalidCloudsWithAReason) {
     const auto reason = [&](const auto& spoil) -> std::string {
         convert(twoPoints(), WorldFrame::AsIs, message);
         spoil();
-        return test::errorOf<std::invalid_argument>([&] { convert(message, WorldFrame::AsIs, cloud); });
+        return test::computeError<std::invalid_argument>([&] { convert(message, WorldFrame::AsIs, cloud); });
     };
     EXPECT_EQ(reason([&] {}), "");
     EXPECT_EQ(reason([&] { message.data.pop_back(); }), "the cloud does not hold the points that it announces");
@@ -129,7 +129,7 @@ TEST(CloudsTest, WritesAnOrderedCloudOfADistanceMapAndRestoresIt) {
     EXPECT_EQ(message.height, 2u);
     EXPECT_EQ(message.width, 2u);
     EXPECT_FALSE(message.is_dense);
-    const std::vector<float> numbers = numbersOf(message);
+    const std::vector<float> numbers = getNumbers(message);
     const double up = 0.5, port = 0.25;
     EXPECT_FLOAT_EQ(numbers[0], static_cast<float>(2 * std::cos(up) * std::cos(port)));
     EXPECT_FLOAT_EQ(numbers[1], static_cast<float>(2 * std::cos(up) * std::sin(port)));

@@ -26,7 +26,7 @@ types::SonarDetections smallDetections() {
     return detections;
 }
 
-SonarDetections messageOf(const auto& sample, const SonarOptions& options = {}) {
+SonarDetections makeMessage(const auto& sample, const SonarOptions& options = {}) {
     SonarDetections message;
     convert(sample, options, message);
     return message;
@@ -36,7 +36,7 @@ TEST(DetectionsTest, EveryFieldIsThatOfTheDefinition) {
     SonarOptions options;
     options.frequency_khz = 400;
     options.frame_id = "multibeam";
-    const SonarDetections message = messageOf(smallDetections(), options);
+    const SonarDetections message = makeMessage(smallDetections(), options);
     EXPECT_EQ(message.header, (Header{{1'700'000'000, 123'456'000}, "multibeam"})) << "when the ping was transmitted";
     EXPECT_EQ(message.ping_info, (PingInfo{400e3f, 1500, {0.35f}, {0.03f}}))
         << "Hz, m/s; the transmit beam is narrow along the track, the receive beams across";
@@ -57,7 +57,7 @@ TEST(DetectionsTest, BothAnglesGiveTheDirectionOfTheBeam) {
         types::SonarDetections detections;
         detections.speed_of_sound = 1500;
         detections.add({bearing}, {elevation}, 10, 1);
-        const SonarDetections message = messageOf(detections);
+        const SonarDetections message = makeMessage(detections);
         const auto tx = static_cast<double>(message.tx_angles[0]), rx = static_cast<double>(message.rx_angles[0]);
         // In the sonar's frame, x ahead, y to port, z up; looking down these are down, to port and forward.
         EXPECT_NEAR(std::sin(tx), std::sin(elevation), 1e-6) << "forward";
@@ -81,7 +81,7 @@ TEST(DetectionsTest, RandomDetectionsAreReadBackFromBytes) {
                      draw.once(5) ? types::SonarDetections::no_return : draw.between(0.01, 500),
                      static_cast<float>(draw.between(0, 1)));
         std::vector<char> bytes;
-        encode(messageOf(sent), bytes);
+        encode(makeMessage(sent), bytes);
         SonarDetections message;
         decode(bytes, message);
         types::SonarDetections read;
@@ -121,7 +121,7 @@ TEST(DetectionsTest, ReadsDetectionsOfOtherSonars) {
     const auto refusal = [&](auto change) {
         SonarDetections wrong = message;
         change(wrong);
-        return test::errorOf<std::invalid_argument>([&] { convert(wrong, read); });
+        return test::computeError<std::invalid_argument>([&] { convert(wrong, read); });
     };
     EXPECT_THAT(refusal([](auto& m) { m.rx_angles.clear(); }),
                 HasSubstr("sonar detections: 0 rx_angles for 2 travel times"));
@@ -130,7 +130,7 @@ TEST(DetectionsTest, ReadsDetectionsOfOtherSonars) {
     EXPECT_THAT(refusal([](auto& m) { m.tx_angles = {1}; }), HasSubstr("1 tx_angles for 2 travel times"));
     types::SonarDetections uneven = smallDetections();
     uneven.elevations.pop_back();
-    EXPECT_THAT(test::errorOf<std::invalid_argument>([&] { messageOf(uneven); }),
+    EXPECT_THAT(test::computeError<std::invalid_argument>([&] { makeMessage(uneven); }),
                 HasSubstr("has other numbers of detections than bearings"));
 }
 
@@ -138,7 +138,7 @@ TEST(DetectionsTest, APingBecomesTheTravelTimesOfItsFirstReturns) {
     types::Sonar ping = smallPing();
     ping.bins = {1.5f, 10, 100, 0.01f, 0.02f, 0.5f};  // 20 dB below the strongest: 1
     ping.timestamps = {ping.time + types::Time{4000}, ping.time};
-    const SonarDetections message = messageOf(ping);
+    const SonarDetections message = makeMessage(ping);
     EXPECT_THAT(message.two_way_travel_times, ElementsAre(FloatEq(0.0005f), IsNan())) << "0.375 m at 1500 m/s";
     EXPECT_THAT(message.flags, ElementsAre(DetectionFlag{0}, DetectionFlag{2})) << "2: bad by a filter";
     EXPECT_THAT(message.intensities, ElementsAre(1.5f, 0));
@@ -148,7 +148,7 @@ TEST(DetectionsTest, APingBecomesTheTravelTimesOfItsFirstReturns) {
 }
 
 TEST(DetectionsTest, TheDefinitionIsThatOfThePackage) {
-    EXPECT_THAT(schemaOf<SonarDetections>(),
+    EXPECT_THAT(describeSchema<SonarDetections>(),
                 testing::StartsWith("std_msgs/Header header\nmarine_acoustic_msgs/PingInfo ping_info\n"
                                     "marine_acoustic_msgs/DetectionFlag[] flags\nfloat32[] two_way_travel_times\n"
                                     "float32[] tx_delays\nfloat32[] intensities\nfloat32[] tx_angles\n"

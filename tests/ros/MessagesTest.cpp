@@ -27,7 +27,7 @@ public:
         const std::string number = std::to_string(count_++);
         std::vector<char> bytes;
         encode(message, bytes);
-        std::ofstream(folder_ / (number + ".msg")) << schemaOf<T>();
+        std::ofstream(folder_ / (number + ".msg")) << describeSchema<T>();
         std::ofstream(folder_ / (number + ".cdr")).write(bytes.data(), static_cast<int64_t>(bytes.size()));
         list_ << number << ' ' << T::type_name << ' ' << typeHash<T>() << std::endl;
     }
@@ -40,16 +40,17 @@ private:
 
 TEST(MessagesTest, ASchemaContainsTheMessageAndAllNestedMessages) {
     const std::string line = "\n" + std::string(80, '=') + "\nMSG: ";
-    EXPECT_EQ(schemaOf<PoseStamped>(), "std_msgs/Header header\ngeometry_msgs/Pose pose" + line +
-                                           "std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id" + line +
-                                           "builtin_interfaces/Time\nint32 sec\nuint32 nanosec" + line +
-                                           "geometry_msgs/Pose\ngeometry_msgs/Point position\n"
-                                           "geometry_msgs/Quaternion orientation" +
-                                           line + "geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z" + line +
-                                           "geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n");
-    EXPECT_EQ(schemaOf<DetectionFlag>(), std::string(DetectionFlag::constants) + "uint8 flag\n");
-    EXPECT_THAT(schemaOf<Odometry>(), testing::HasSubstr("float64[36] covariance\n"));
-    EXPECT_THAT(schemaOf<SonarRanges>(), testing::HasSubstr("geometry_msgs/Vector3[] beam_unit_vec\n"));
+    EXPECT_EQ(describeSchema<PoseStamped>(),
+              "std_msgs/Header header\ngeometry_msgs/Pose pose" + line +
+                  "std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id" + line +
+                  "builtin_interfaces/Time\nint32 sec\nuint32 nanosec" + line +
+                  "geometry_msgs/Pose\ngeometry_msgs/Point position\n"
+                  "geometry_msgs/Quaternion orientation" +
+                  line + "geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z" + line +
+                  "geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n");
+    EXPECT_EQ(describeSchema<DetectionFlag>(), std::string(DetectionFlag::constants) + "uint8 flag\n");
+    EXPECT_THAT(describeSchema<Odometry>(), testing::HasSubstr("float64[36] covariance\n"));
+    EXPECT_THAT(describeSchema<SonarRanges>(), testing::HasSubstr("geometry_msgs/Vector3[] beam_unit_vec\n"));
 }
 
 TEST(MessagesTest, RosbagsComputesTheSameHashesAndReadsTheSameValues) {

@@ -24,7 +24,7 @@ types::Imu smallImu() {
     return imu;
 }
 
-Imu imuOf(const auto& sample, WorldFrame frame) {
+Imu makeImu(const auto& sample, WorldFrame frame) {
     Imu message;
     convert(sample, frame, "imu", message);
     return message;
@@ -37,13 +37,13 @@ glm::dvec3 ahead(const Imu& message) {
 }
 
 TEST(NavigationTest, AnImuHasTheSameAttitudeInEveryWorld) {
-    EXPECT_LT(glm::distance(ahead(imuOf(smallImu(), WorldFrame::AsIs)), {0, 1, 0}), 1e-15);
-    EXPECT_LT(glm::distance(ahead(imuOf(smallImu(), WorldFrame::Enu)), {-1, 0, 0}), 1e-15);
-    EXPECT_LT(glm::distance(ahead(imuOf(smallImu(), WorldFrame::Ned)), {0, -1, 0}), 1e-15);
+    EXPECT_LT(glm::distance(ahead(makeImu(smallImu(), WorldFrame::AsIs)), {0, 1, 0}), 1e-15);
+    EXPECT_LT(glm::distance(ahead(makeImu(smallImu(), WorldFrame::Enu)), {-1, 0, 0}), 1e-15);
+    EXPECT_LT(glm::distance(ahead(makeImu(smallImu(), WorldFrame::Ned)), {0, -1, 0}), 1e-15);
 }
 
 TEST(NavigationTest, AnImuMeasuresInTheAxesOfItsBody) {
-    const Imu enu = imuOf(smallImu(), WorldFrame::Enu), ned = imuOf(smallImu(), WorldFrame::Ned);
+    const Imu enu = makeImu(smallImu(), WorldFrame::Enu), ned = makeImu(smallImu(), WorldFrame::Ned);
     EXPECT_EQ(enu.header.frame_id, "imu");
     EXPECT_EQ(enu.header.stamp, (Time{2, 1000}));
     EXPECT_EQ(enu.linear_acceleration, (Vector3{0.25, -0.5, 9.75}));
@@ -58,7 +58,7 @@ TEST(NavigationTest, RestoresAnImuFromEveryWorld) {
     for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
         const types::Imu imu = smallImu();
         types::Imu again;
-        convert(imuOf(imu, frame), frame, again);
+        convert(makeImu(imu, frame), frame, again);
         EXPECT_LT(glm::length(again.orientation - imu.orientation), 1e-15);
         EXPECT_EQ(again.angular_velocity, imu.angular_velocity);
         EXPECT_EQ(again.linear_acceleration, imu.linear_acceleration);
@@ -73,7 +73,7 @@ TEST(NavigationTest, RestoresAnImuFromEveryWorld) {
 TEST(NavigationTest, RocksSensorsHaveNoAttitude) {
     types::ImuSensors sensors, again;
     sensors.acc = {1, 2, 3};
-    const Imu message = imuOf(sensors, WorldFrame::Enu);
+    const Imu message = makeImu(sensors, WorldFrame::Enu);
     EXPECT_EQ(message.orientation_covariance[0], -1);
     EXPECT_EQ(message.orientation, Quaternion{});
     EXPECT_EQ(message.angular_velocity_covariance[0], -1) << "a rate that is not known";

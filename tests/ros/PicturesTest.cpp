@@ -17,9 +17,9 @@ types::Image smallPicture(types::ImageMode mode, uint32_t pixel_size) {
     return picture;
 }
 
-std::string refusalOf(const types::Image& picture) {
+std::string getRefusal(const types::Image& picture) {
     Image message;
-    return test::errorOf<std::invalid_argument>([&] { convert(picture, "", message); });
+    return test::computeError<std::invalid_argument>([&] { convert(picture, "", message); });
 }
 
 TEST(PicturesTest, ConvertsColoursAndGreysToRosEncodingsAndBack) {
@@ -43,11 +43,11 @@ TEST(PicturesTest, ConvertsColoursAndGreysToRosEncodingsAndBack) {
 }
 
 TEST(PicturesTest, RefusesModesWithoutAnEncoding) {
-    EXPECT_EQ(refusalOf(smallPicture(types::ImageMode{258}, 1)),
+    EXPECT_EQ(getRefusal(smallPicture(types::ImageMode{258}, 1)),
               "a picture of mode 258 with 1 bytes a pixel is not known: mono8, mono16, rgb8 and bgr8 are");
     types::Image picture = smallPicture(types::ImageMode::Bgr, 3);
     picture.image.pop_back();
-    EXPECT_EQ(refusalOf(picture), "the picture does not hold the pixels that it announces");
+    EXPECT_EQ(getRefusal(picture), "the picture does not hold the pixels that it announces");
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ std::tuple<SonarTruth, SonarReturns, SonarElements, SonarSettings> samples() {
 }
 
 template <class T>
-std::string nameOf(const T&) {
+std::string getName(const T&) {
     return fs::path(T::type_name).filename();
 }
 
@@ -121,9 +121,10 @@ TEST(RosPackagesTest, RosbagsReadsTheFilesWithTheHashesOfTheTopics) {
             const auto add = [&]<class T>(const T& message) {
                 std::vector<char> bytes;
                 encode(message, bytes);
-                const std::string name = nameOf(message);
+                const std::string name = getName(message);
                 const std::string text = content(test::sourceFile("ros2/insonify_msgs/msg/" + name + ".msg"));
-                std::ofstream(folder / (name + ".msg")) << text << schemaOf<T>().substr(definitionOf<T>().size());
+                std::ofstream(folder / (name + ".msg"))
+                    << text << describeSchema<T>().substr(describeDefinition<T>().size());
                 std::ofstream(folder / (name + ".cdr")).write(bytes.data(), static_cast<int64_t>(bytes.size()));
                 list << name << ' ' << T::type_name << ' ' << typeHash<T>() << std::endl;
             };
@@ -162,9 +163,9 @@ TEST(RosPackagesTest, CodeGeneratedByDebiansRosidlHasTheSameFieldsAndBytes) {
             const auto add = [&]<class T>(const T& message) {
                 std::vector<char> bytes;
                 encode(message, bytes);
-                std::ofstream(folder / (nameOf(message) + ".cdr"))
+                std::ofstream(folder / (getName(message) + ".cdr"))
                     .write(bytes.data(), static_cast<int64_t>(bytes.size()));
-                expected += shortName(T::type_name) + "\n" + definitionOf<T>();
+                expected += shortName(T::type_name) + "\n" + describeDefinition<T>();
             };
             (add(sample), ...);
         },

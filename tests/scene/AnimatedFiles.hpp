@@ -11,10 +11,10 @@ namespace insonify::scene {
 class Arrays {
 public:
     int floats(const std::string& type, const std::vector<float>& values) {
-        return add(type, 5126, values, widthOf(type));
+        return add(type, 5126, values, computeWidth(type));
     }
     int shorts(const std::string& type, const std::vector<uint16_t>& values) {
-        return add(type, 5123, values, widthOf(type));
+        return add(type, 5123, values, computeWidth(type));
     }
     int indices(const std::vector<uint32_t>& values) { return add("SCALAR", 5125, values, 1); }
 
@@ -25,7 +25,7 @@ public:
     }
 
 private:
-    static size_t widthOf(const std::string& type) {
+    static size_t computeWidth(const std::string& type) {
         return type == "SCALAR" ? 1 : type == "MAT4" ? 16 : static_cast<size_t>(type.back() - '0');
     }
     template <class T>

@@ -151,7 +151,8 @@ TEST_F(AnimationFileTest, VelocitiesAreThoseOfDifferences) {
             const types::Snapshot now = at(scene, time);
             std::vector<glm::vec3> velocities;
             const auto& mesh = scene->geometry->meshes[static_cast<size_t>(scene->geometry->objects[0].mesh)];
-            types::velocitiesOf(types::poseOf(now, now.deformed[0], *mesh.deformation), *mesh.deformation, velocities);
+            types::computeVelocities(types::getPose(now, now.deformed[0], *mesh.deformation), *mesh.deformation,
+                                     velocities);
             const auto posed = types::posedGeometry(now);
             const glm::dmat4 place =
                 now.moved.empty() ? posed->objects[0].world_from_object : now.moved[0].world_from_object;

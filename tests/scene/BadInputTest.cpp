@@ -11,7 +11,7 @@ namespace {
 
 struct BadInputTest : SceneFiles {
     void expectDiagnostic(const std::filesystem::path& file, const std::string& part) const {
-        const std::string diagnostic = diagnosticOf(file);
+        const std::string diagnostic = findDiagnostic(file);
         EXPECT_NE(diagnostic.find(file.string()), std::string::npos) << diagnostic;
         EXPECT_NE(diagnostic.find(part), std::string::npos) << diagnostic;
     }
@@ -21,7 +21,7 @@ struct BadInputTest : SceneFiles {
     /** A triangle with the given accessors and bufferViews. */
     static std::string triangle(const std::string& accessors, const std::string& views) {
         return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)" +
-               accessors + R"(],"bufferViews":[)" + views + "]," + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+               accessors + R"(],"bufferViews":[)" + views + "]," + buffers(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
     }
 };
 
@@ -31,10 +31,10 @@ const char* const good_view = R"({"buffer":0,"byteLength":36})";
 std::string glb(const std::string& json, const std::string& binary) {
     const auto chunk = [](const std::string& type, std::string bytes, char pad) {
         while (bytes.size() % 4 != 0) bytes += pad;
-        return bytesOf<uint32_t>({static_cast<uint32_t>(bytes.size())}) + type + bytes;
+        return toBytes<uint32_t>({static_cast<uint32_t>(bytes.size())}) + type + bytes;
     };
     const std::string chunks = chunk("JSON", json, ' ') + chunk(std::string("BIN\0", 4), binary, '\0');
-    return "glTF" + bytesOf<uint32_t>({2, static_cast<uint32_t>(12 + chunks.size())}) + chunks;
+    return "glTF" + toBytes<uint32_t>({2, static_cast<uint32_t>(12 + chunks.size())}) + chunks;
 }
 
 TEST_F(BadInputTest, ReportsMissingEmptyAndForeignFilesAndFolders) {
@@ -55,7 +55,7 @@ TEST_F(BadInputTest, EndingsInAnyCaseOfLettersBelongToTheSameReader) {
     };
     for (const SceneFormat& format : sceneFormats()) {
         const std::string ending(format.ending), lower = "x" + ending;
-        const std::string expected = diagnosticOf(write(lower, "neither JSON nor XML"));
+        const std::string expected = findDiagnostic(write(lower, "neither JSON nor XML"));
         EXPECT_THAT(expected, testing::Not(testing::HasSubstr("has extension"))) << ending;
         EXPECT_THAT(sceneEndings(), testing::HasSubstr(ending));
         for (int i = 0; i < 10; ++i) {
@@ -63,11 +63,11 @@ TEST_F(BadInputTest, EndingsInAnyCaseOfLettersBelongToTheSameReader) {
             SCOPED_TRACE(name);
             ASSERT_EQ(findSceneFormat(name), &format);
             EXPECT_EQ(isGltf(name), isGltf(lower));
-            std::string diagnostic = diagnosticOf(write(name, "neither JSON nor XML"));
+            std::string diagnostic = findDiagnostic(write(name, "neither JSON nor XML"));
             for (size_t at; name != lower && (at = diagnostic.find(name)) != std::string::npos;)
                 diagnostic.replace(at, name.size(), lower);
             EXPECT_EQ(diagnostic, expected);
-            EXPECT_THAT(diagnosticOf(folder_ / ("y" + respelled(ending))), testing::HasSubstr("did you mean "));
+            EXPECT_THAT(findDiagnostic(folder_ / ("y" + respelled(ending))), testing::HasSubstr("did you mean "));
         }
     }
     for (const char* other : {"x", "x.", "x.glb2", "x.gl", ".glb", "x.sdf.bak", "glb"}) {
@@ -86,7 +86,7 @@ TEST_F(BadInputTest, DoesNotReadImagesThatExhaustMemory) {
 
 /** A buffer is read as vertices: a model of somebody else must not show any file of the machine in this way. */
 TEST_F(BadInputTest, NamesThatLeaveTheFolderAreRefusedInEverySpelling) {
-    const std::string corners = bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const std::string corners = toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0});
     write("secret.bin", corners);
     write("scenes/own.bin", corners);
     write("scenes/sub/own.bin", corners);
@@ -95,8 +95,8 @@ TEST_F(BadInputTest, NamesThatLeaveTheFolderAreRefusedInEverySpelling) {
     std::filesystem::create_directory_symlink("..", folder_ / "scenes/up");
     const auto named = [&](const std::string& scene, const std::string& name) {
         const std::string views = triangle(good_accessor, good_view);
-        return diagnosticOf(write(scene, gltf(views.substr(0, views.find("\"buffers\"")) +
-                                              R"("buffers":[{"byteLength":36,"uri":")" + name + R"("}])")));
+        return findDiagnostic(write(scene, gltf(views.substr(0, views.find("\"buffers\"")) +
+                                                R"("buffers":[{"byteLength":36,"uri":")" + name + R"("}])")));
     };
     for (const char* name : {"own.bin", "./own.bin", "sub/own.bin", "sub/../own.bin", "sub%2f..%2Fown.bin", "near.bin"})
         EXPECT_EQ(named("scenes/case.gltf", name), "") << name;
@@ -115,7 +115,7 @@ TEST_F(BadInputTest, NamesThatLeaveTheFolderAreRefusedInEverySpelling) {
     std::filesystem::create_directory(folder_ / "install");
     for (const char* file : {"case.gltf", "own.bin"})
         std::filesystem::create_symlink(folder_ / "scenes" / file, folder_ / "install" / file);
-    EXPECT_EQ(diagnosticOf(folder_ / "install/case.gltf"), "");
+    EXPECT_EQ(findDiagnostic(folder_ / "install/case.gltf"), "");
 }
 
 TEST_F(BadInputTest, AnImageOutsideOfTheFolderIsAWarning) {
@@ -151,7 +151,7 @@ TEST_F(BadInputTest, GigabytesDeclaredInAKilobyteAreRefusedWithoutBeingAllocated
     expectGltfDiagnostic(
         triangle(R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":18446744073709551615})", good_view),
         "run over");
-    expectDiagnostic(write("4g.glb", "glTF" + bytesOf<uint32_t>({2, 0xffffffff, 0xfffffff0}) + "JSON{}"), "truncated");
+    expectDiagnostic(write("4g.glb", "glTF" + toBytes<uint32_t>({2, 0xffffffff, 0xfffffff0}) + "JSON{}"), "truncated");
 }
 
 TEST_F(BadInputTest, LimitsPrimitivesThatRepeatTheSameData) {
@@ -218,7 +218,7 @@ TEST_F(BadInputTest, IndicesOfTrianglesAndAttributesOfOtherLengthsAreRefused) {
             "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
                          {"bufferView":1,"componentType":5121,"type":"SCALAR","count":3}],
             "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}],)" +
-               buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<uint8_t>({0, 1, 3}));
+               buffers(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + toBytes<uint8_t>({0, 1, 3}));
     };
     expectGltfDiagnostic(indexed(R"("indices":1)"),
                          "meshes[0].primitives[0].indices: hold 3; the primitive has 3 vertices");
@@ -245,7 +245,7 @@ TEST_F(BadInputTest, AFileCutOffAnywhereIsAnErrorOrAScene) {
         R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
         "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]})",
-        bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+        toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
     EXPECT_EQ(loadScene(write("whole.glb", whole))->triangleCount(), 1u);
     for (size_t size = 0; size < whole.size(); ++size)
         EXPECT_THROW(loadScene(write("cut.glb", whole.substr(0, size))), types::ConfigError) << size;
@@ -263,7 +263,7 @@ TEST_F(BadInputTest, DamagedBytesGiveAnErrorOrASoundScene) {
                          {"componentType":5126,"type":"VEC2","count":3,
                           "sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":0}}}],
             "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}],"buffers":[{"byteLength":40}]})",
-            bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<uint8_t>({0, 1, 2, 0}))};
+            toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + toBytes<uint8_t>({0, 1, 2, 0}))};
     std::mt19937 random(7);
     size_t scenes = 0;
     const size_t rounds = std::getenv("INSONIFY_FUZZ") ? std::stoul(std::getenv("INSONIFY_FUZZ")) : 250;

@@ -24,7 +24,7 @@ types::Mesh waves(uint32_t n, double amplitude) {
             const uint32_t a = i * (n + 1) + j, b = a + n + 1;
             indices.insert(indices.end(), {a, b, b + 1, a, b + 1, a + 1});
         }
-    return test::meshOf(std::move(positions), std::move(indices));
+    return test::getMesh(std::move(positions), std::move(indices));
 }
 
 types::Mesh built(types::Mesh mesh) {
@@ -54,7 +54,7 @@ TEST(ConesTest, OnlyAClosedMeshWoundOutwardHasBacksThatAreHidden) {
     for (const glm::vec3& p : inside_out.positions) both.positions.push_back(0.5f * p);
     for (uint32_t index : inside_out.indices)
         both.indices.push_back(index + static_cast<uint32_t>(ball.positions.size()));
-    EXPECT_FALSE(hasCones(built(test::meshOf(both.positions, both.indices))));
+    EXPECT_FALSE(hasCones(built(test::getMesh(both.positions, both.indices))));
 }
 
 TEST(ConesTest, FromWithinAConeOnlyBacksOfItsClusterAreSeen) {

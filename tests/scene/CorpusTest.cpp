@@ -60,7 +60,7 @@ TEST_F(CorpusTest, KnownModelsHaveTheirTrianglesAndSize) {
     };
     for (const auto& [file, expected] : known) {
         const auto geometry = load(file);
-        const Bounds bounds = boundsOf(*geometry);
+        const Bounds bounds = getBounds(*geometry);
         EXPECT_EQ(geometry->triangleCount(), expected.first) << file;
         EXPECT_LT(glm::distance(bounds.low, expected.second.low) + glm::distance(bounds.high, expected.second.high),
                   1e-6)
@@ -89,7 +89,7 @@ TEST_F(CorpusTest, TheArrowsOfTheOrientationTestPointAtTheirTargets) {
     const auto wayFromAxis = [&](const std::string& name, int axis) {
         const auto object = std::ranges::find(geometry->objects, name, &types::Object::name);
         EXPECT_NE(object, geometry->objects.end()) << name;
-        const Bounds bounds = boundsOf(*geometry, *object);
+        const Bounds bounds = getBounds(*geometry, *object);
         glm::dvec3 centre = (bounds.low + bounds.high) / 2.0;
         centre[axis] = 0;
         return glm::normalize(centre);
@@ -132,13 +132,13 @@ TEST_F(CorpusTest, AFoxWalks) {
     ASSERT_EQ(scene->animations->all.size(), 3u);
     const double duration = scene->animations->all[1].duration;
     EXPECT_EQ(scene->animations->all[1].name, "Walk");
-    const Bounds rest = boundsOf(*scene->geometry);
+    const Bounds rest = getBounds(*scene->geometry);
     for (const double share : {0.0, 0.3, 0.7}) {
         const types::Snapshot snapshot = playedAt(scene, "Walk", share * duration);
         ASSERT_EQ(snapshot.deformed.size(), 1u);
         const auto posed = types::posedGeometry(snapshot);
         expectSoundMesh(posed->meshes[1], posed->materials.size());
-        const Bounds bounds = boundsOf(*posed);
+        const Bounds bounds = getBounds(*posed);
         const double size = glm::length(bounds.high - bounds.low) / glm::length(rest.high - rest.low);
         EXPECT_NEAR(size, 1, 0.15) << share;
         EXPECT_NE(posed->meshes[1].positions, scene->geometry->meshes[0].positions);

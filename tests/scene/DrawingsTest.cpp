@@ -194,7 +194,7 @@ struct GltfDrawingsTest : SceneFiles {
                                    hidden + R"(}],
             "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]},
                       {"primitives":[{"attributes":{"POSITION":0},"material":1},{"attributes":{"POSITION":0},"material":0}]}],)" +
-                                   triangle(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 3})))));
+                                   triangle(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 2, 3})))));
     }
 };
 
@@ -224,7 +224,7 @@ TEST_F(GltfDrawingsTest, TheOpacityOfAnObjectIsThatOfItsMostOpaqueMaterial) {
     const Scene water = readScene(write("w.gltf", gltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":"Plane"}],
         "materials":[{"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.25]}}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],)" +
-                                                       triangle(bytesOf<float>({0, 0, 0, 90, 0, 0, 0, 0, 90})))));
+                                                       triangle(toBytes<float>({0, 0, 0, 90, 0, 0, 0, 0, 90})))));
     EXPECT_EQ(water.drawings.at(0).transparency, 0.75);
     EXPECT_EQ(withoutOmitted(water, at_zero).geometry->objects.size(), 0u);
     EXPECT_EQ(withoutOmitted(water, {}).geometry->objects.size(), 1u);
@@ -234,7 +234,7 @@ TEST_F(GltfDrawingsTest, TheOpacityOfAnObjectIsThatOfItsMostOpaqueMaterial) {
 const std::string hull_and_wall =
     R"("scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"name":"hull"},{"mesh":0,"name":"wall"}],
        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)" +
-    triangle(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 3}));
+    triangle(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 2, 3}));
 
 struct OmitTaskTest : SceneTaskFiles {
     OmitTaskTest() : SceneTaskFiles(hull_and_wall) {}

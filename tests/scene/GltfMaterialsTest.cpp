@@ -33,9 +33,9 @@ struct GltfMaterialsTest : SceneFiles {
                          {"bufferView":3,"componentType":5126,"type":"VEC4","count":3}],
             "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},
                            {"buffer":0,"byteOffset":60,"byteLength":36},{"buffer":0,"byteOffset":96,"byteLength":48}],)" +
-            buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<float>({0, 1, 1, 1, 0, 0}) +
-                    bytesOf<float>({0, 0, 2, 0, 0, 2, 0, 0, 2}) +
-                    bytesOf<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1})));
+            buffers(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + toBytes<float>({0, 1, 1, 1, 0, 0}) +
+                    toBytes<float>({0, 0, 2, 0, 0, 2, 0, 0, 2}) +
+                    toBytes<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1})));
     }
 };
 
@@ -70,15 +70,15 @@ TEST_F(GltfMaterialsTest, AShellIsOfMatterOrOfNumbers) {
 }
 
 TEST_F(GltfMaterialsTest, AFillIsOfATableOrOfNumbers) {
-    const auto fillOf = [this](const std::string& fill) {
+    const auto getFill = [this](const std::string& fill) {
         const types::Shell shell =
             acoustics(R"({"shell":{"thickness_mm":3,"material":"pvc",)" + fill + "}}").shell.value();
         return std::array{shell.fill_density, shell.fill_speed, shell.fill_loss};
     };
-    EXPECT_EQ(fillOf(R"("fill":"water")"), (std::array{0., 0., 0.}));
-    EXPECT_EQ(fillOf(R"("fill":"oil","fill_loss":1e-3)"), (std::array{825., 1371., 1e-3}));
-    EXPECT_EQ(fillOf(R"("fill":"sand","fill_density":2000)"), (std::array{2000., 1650., 0.0147}));
-    EXPECT_EQ(fillOf(R"("fill_density":900,"fill_sound_speed":1300)"), (std::array{900., 1300., 0.}));
+    EXPECT_EQ(getFill(R"("fill":"water")"), (std::array{0., 0., 0.}));
+    EXPECT_EQ(getFill(R"("fill":"oil","fill_loss":1e-3)"), (std::array{825., 1371., 1e-3}));
+    EXPECT_EQ(getFill(R"("fill":"sand","fill_density":2000)"), (std::array{2000., 1650., 0.0147}));
+    EXPECT_EQ(getFill(R"("fill_density":900,"fill_sound_speed":1300)"), (std::array{900., 1300., 0.}));
 }
 
 TEST_F(GltfMaterialsTest, AWrongValueOfAShellIsOneErrorAndNotAlsoMissing) {
@@ -131,7 +131,7 @@ struct SurfaceMapsTest : SceneFiles {
             "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
                          {"bufferView":1,"componentType":5126,"type":"VEC2","count":3}],
             "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24}],)" +
-               buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<float>({0, 1, 1, 1, 0, 0}));
+               buffers(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + toBytes<float>({0, 1, 1, 1, 0, 0}));
     }
     static constexpr const char* coloured = R"(,"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})";
 };
@@ -353,7 +353,7 @@ TEST_F(GltfMaterialsTest, IndicesOfTexturesImagesSamplersAndMaterialsAreChecked)
 }
 
 TEST_F(GltfMaterialsTest, FileNamesMayHaveSpaces) {
-    write("the floor.bin", bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    write("the floor.bin", toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
     const auto geometry = load(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
         "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"the%20floor.bin"}])");
@@ -362,7 +362,7 @@ TEST_F(GltfMaterialsTest, FileNamesMayHaveSpaces) {
 
 TEST_F(GltfMaterialsTest, NamesOfFilesWithPercentSignsAreTakenAsTheyStand) {
     const auto triangles = [&](const std::string& name, const std::string& uri) {
-        write(name, bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+        write(name, toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
         const auto geometry = load(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
             "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
             "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri" : ")" +

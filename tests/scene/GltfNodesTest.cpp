@@ -10,7 +10,7 @@ namespace {
 const std::string triangle = R"("meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0}}]}],
     "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
     "bufferViews":[{"buffer":0,"byteLength":36}],)" +
-                             buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 0}));
+                             buffers(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 2, 0}));
 
 struct GltfNodesTest : SceneFiles {
     types::GeometryPtr nodes(const std::string& json) const { return load(R"("nodes":)" + json + "," + triangle); }
@@ -75,7 +75,7 @@ TEST_F(GltfNodesTest, InstancesOfAnExtensionAreObjects) {
         "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
         "bufferViews":[{"buffer":0,"byteLength":36}],)" +
-             buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 0})));
+             buffers(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 2, 0})));
     ASSERT_EQ(geometry->objects.size(), 3u);
     EXPECT_EQ(geometry->objects[1].name, "rocks[1]");
     expectNear(worldPoint(geometry->objects[2], {0, 0, 0}), {0, 0, 2});
@@ -126,7 +126,7 @@ TEST_F(GltfNodesTest, APartIsTheNodeWithoutItsPlaceAndRotationButWithItsScale) {
         {"name":"boat","mesh":0,"translation":[9,9,9],"rotation":[0.6,0,0,0.8],"scale":[-2,3,4],"children":[1]},
         {"name":"mast","mesh":0,"translation":[0,5,0]},{"name":"quay","mesh":0}],)" +
                                                           triangle)));
-    const std::vector<Part> parts = partsOf(scene, findNode(scene, "boat"));
+    const std::vector<Part> parts = getParts(scene, findNode(scene, "boat"));
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_EQ(scene.geometry->objects[parts[1].object].name, "mast");
     const auto at = [](const Part& part, glm::dvec3 p) { return glm::dvec3(part.body_from_object * glm::dvec4(p, 1)); };
@@ -138,7 +138,7 @@ TEST_F(GltfNodesTest, AMatrixNodeKeepsItsMirrorAsAPart) {
     const Scene scene = readScene(write("case.gltf", gltf(R"("nodes":[
         {"name":"m","mesh":0,"matrix":[-2,0,0,0, 0,1,0,0, 0,0,1,0, 3,4,5,1]}],)" +
                                                           triangle)));
-    const Part part = partsOf(scene, 0).at(0);
+    const Part part = getParts(scene, 0).at(0);
     expectNear(glm::dvec3(part.body_from_object * glm::dvec4(1, 1, 0, 1)), {-2, 0, 1});
 }
 

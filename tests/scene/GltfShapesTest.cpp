@@ -4,12 +4,12 @@
 namespace insonify::scene {
 namespace {
 
-const std::string square = bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
+const std::string square = toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
 const std::string one_node = R"("nodes":[{"mesh":0}],)";
 
 struct GltfShapesTest : SceneFiles {
     /** The square as a primitive of this mode, with these indices. */
-    types::GeometryPtr squareOf(int mode, const std::string& indices, int component_type, size_t count) const {
+    types::GeometryPtr makeSquare(int mode, const std::string& indices, int component_type, size_t count) const {
         return load(one_node + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":)" +
                     std::to_string(mode) + R"(}]}],"accessors":[
                     {"bufferView":0,"componentType":5126,"type":"VEC3","count":4},
@@ -29,9 +29,9 @@ struct GltfShapesTest : SceneFiles {
 };
 
 TEST_F(GltfShapesTest, ListStripAndFanMakeTheSameSquareWithTheSameFront) {
-    const auto list = squareOf(4, bytesOf<uint16_t>({0, 1, 2, 2, 1, 3}), 5123, 6);
-    const auto strip = squareOf(5, bytesOf<uint16_t>({0, 1, 2, 3}), 5123, 4);
-    const auto fan = squareOf(6, bytesOf<uint16_t>({0, 1, 3, 2}), 5123, 4);
+    const auto list = makeSquare(4, toBytes<uint16_t>({0, 1, 2, 2, 1, 3}), 5123, 6);
+    const auto strip = makeSquare(5, toBytes<uint16_t>({0, 1, 2, 3}), 5123, 4);
+    const auto fan = makeSquare(6, toBytes<uint16_t>({0, 1, 3, 2}), 5123, 4);
     for (const auto& geometry : {list, strip, fan}) {
         expectSound(*geometry);
         EXPECT_EQ(geometry->triangleCount(), 2u);
@@ -40,21 +40,21 @@ TEST_F(GltfShapesTest, ListStripAndFanMakeTheSameSquareWithTheSameFront) {
 }
 
 TEST_F(GltfShapesTest, IndicesMayHaveOneTwoOrFourBytes) {
-    for (const auto& geometry : {squareOf(4, bytesOf<uint8_t>({0, 1, 2, 2, 1, 3}), 5121, 6),
-                                 squareOf(4, bytesOf<uint16_t>({0, 1, 2, 2, 1, 3}), 5123, 6),
-                                 squareOf(4, bytesOf<uint32_t>({0, 1, 2, 2, 1, 3}), 5125, 6)})
+    for (const auto& geometry : {makeSquare(4, toBytes<uint8_t>({0, 1, 2, 2, 1, 3}), 5121, 6),
+                                 makeSquare(4, toBytes<uint16_t>({0, 1, 2, 2, 1, 3}), 5123, 6),
+                                 makeSquare(4, toBytes<uint32_t>({0, 1, 2, 2, 1, 3}), 5125, 6)})
         EXPECT_DOUBLE_EQ(signedArea(*geometry), -1);
 }
 
 TEST_F(GltfShapesTest, MaxIndexRestartsAStripButIsOutOfRangeInAList) {
-    const auto restarted = squareOf(5, bytesOf<uint16_t>({0, 1, 2, 0xffff, 2, 1, 3}), 5123, 7);
+    const auto restarted = makeSquare(5, toBytes<uint16_t>({0, 1, 2, 0xffff, 2, 1, 3}), 5123, 7);
     EXPECT_EQ(restarted->triangleCount(), 2u);
     EXPECT_DOUBLE_EQ(signedArea(*restarted), -1);
-    EXPECT_THROW(squareOf(4, bytesOf<uint16_t>({0, 1, 0xffff}), 5123, 3), types::ConfigError);
+    EXPECT_THROW(makeSquare(4, toBytes<uint16_t>({0, 1, 0xffff}), 5123, 3), types::ConfigError);
 }
 
 TEST_F(GltfShapesTest, OmitsPointsAndLinesWithANotice) {
-    const auto points = squareOf(0, bytesOf<uint16_t>({0, 1, 2}), 5123, 3);
+    const auto points = makeSquare(0, toBytes<uint16_t>({0, 1, 2}), 5123, 3);
     EXPECT_EQ(points->triangleCount(), 0u);
     EXPECT_TRUE(hasNotice(*points, "points or lines"));
     EXPECT_TRUE(hasNotice(*points, "an empty sea"));
@@ -74,8 +74,8 @@ TEST_F(GltfShapesTest, InterleavedAttributesAreReadWithTheirStride) {
     const auto geometry = load(one_node + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"byteOffset":4,"componentType":5126,"type":"VEC3","count":3}],
         "bufferViews":[{"buffer":0,"byteLength":48,"byteStride":16}],)" +
-                               buffers(bytesOf<float>({9, 0, 0, 0, 9, 2, 0, 0, 9, 0, 3, 0})));
-    EXPECT_EQ(boundsOf(*geometry).high, glm::dvec3(2, 0, 3));
+                               buffers(toBytes<float>({9, 0, 0, 0, 9, 2, 0, 0, 9, 0, 3, 0})));
+    EXPECT_EQ(getBounds(*geometry).high, glm::dvec3(2, 0, 3));
 }
 
 TEST_F(GltfShapesTest, SparseValuesReplaceBaseValuesAndAnAbsentBaseIsZero) {
@@ -83,11 +83,11 @@ TEST_F(GltfShapesTest, SparseValuesReplaceBaseValuesAndAnAbsentBaseIsZero) {
         R"("sparse":{"count":2,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":2}}}],
         "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":2},
                        {"buffer":0,"byteOffset":52,"byteLength":24}],)" +
-        buffers(square + bytesOf<uint8_t>({1, 2, 0, 0}) + bytesOf<float>({5, 0, 0, 0, 7, 0}));
+        buffers(square + toBytes<uint8_t>({1, 2, 0, 0}) + toBytes<float>({5, 0, 0, 0, 7, 0}));
     const std::string mesh = one_node + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{)";
     const std::string accessor = R"("componentType":5126,"type":"VEC3","count":3,)";
-    EXPECT_EQ(boundsOf(*load(mesh + R"("bufferView":0,)" + accessor + sparse)).high, glm::dvec3(5, 0, 7));
-    EXPECT_EQ(boundsOf(*load(mesh + accessor + sparse)).high, glm::dvec3(5, 0, 7));
+    EXPECT_EQ(getBounds(*load(mesh + R"("bufferView":0,)" + accessor + sparse)).high, glm::dvec3(5, 0, 7));
+    EXPECT_EQ(getBounds(*load(mesh + accessor + sparse)).high, glm::dvec3(5, 0, 7));
 }
 
 TEST_F(GltfShapesTest, AZeroFilledMeshHasNoAreaAndIsAnEmptySea) {
@@ -99,13 +99,13 @@ TEST_F(GltfShapesTest, AZeroFilledMeshHasNoAreaAndIsAnEmptySea) {
 
 TEST_F(GltfShapesTest, QuantisedPositionsAreScaledOnlyWhenNormalised) {
     const auto quantised = [this](const char* normalized) {
-        return boundsOf(*load(
+        return getBounds(*load(
             one_node + R"("extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"],
             "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
             "accessors":[{"bufferView":0,"componentType":5122,"normalized":)" +
             std::string(normalized) +
             R"(,"type":"VEC3","count":3}],"bufferViews":[{"buffer":0,"byteLength":24,"byteStride":8}],)" +
-            buffers(bytesOf<int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0}))));
+            buffers(toBytes<int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0}))));
     };
     EXPECT_EQ(quantised("true").high.x, 1);
     EXPECT_EQ(quantised("true").low.z, -1);
@@ -118,8 +118,8 @@ TEST_F(GltfShapesTest, TrianglesWithDamagedVerticesAreDroppedAndCountedOnce) {
     const auto geometry = load(one_node + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":9}],
         "bufferViews":[{"buffer":0,"byteLength":108}],)" +
-                               buffers(square.substr(0, 36) + bytesOf<float>({nan, 0, 0, 1, 0, 0, 0, 1, 0}) +
-                                       bytesOf<float>({0, 0, 0, inf, 0, 0, 0, 1, 0})));
+                               buffers(square.substr(0, 36) + toBytes<float>({nan, 0, 0, 1, 0, 0, 0, 1, 0}) +
+                                       toBytes<float>({0, 0, 0, inf, 0, 0, 0, 1, 0})));
     expectSound(*geometry);
     EXPECT_EQ(geometry->triangleCount(), 1u);
     EXPECT_TRUE(hasNotice(*geometry, "not a finite number: 2"));

@@ -46,7 +46,7 @@ TEST(MaterialNamesTest, ANameOfTwoHasBoth) {
 }
 
 struct TakeNamesTest : ::testing::Test {
-    static types::GeometryPtr sceneOf(std::vector<types::Material> materials) {
+    static types::GeometryPtr makeScene(std::vector<types::Material> materials) {
         auto geometry = std::make_shared<types::Geometry>();
         geometry->materials = std::move(materials);
         return geometry;
@@ -54,13 +54,13 @@ struct TakeNamesTest : ::testing::Test {
 };
 
 TEST_F(TakeNamesTest, UnknownNamesLeaveTheSceneUnchanged) {
-    const auto geometry = sceneOf({{.name = "hull"}, {.name = "steel", .lambert_db = -20, .has_acoustics = true}});
+    const auto geometry = makeScene({{.name = "hull"}, {.name = "steel", .lambert_db = -20, .has_acoustics = true}});
     EXPECT_EQ(applyMaterialNames(geometry), geometry);
 }
 
 TEST_F(TakeNamesTest, MaterialsWithoutAcousticsAreTakenWithOneNotice) {
-    const auto geometry =
-        sceneOf({{.name = "Steel.001"}, {.name = "hull"}, {.name = "Sand"}, {.name = "steel_glass"}, {.name = "PVC"}});
+    const auto geometry = makeScene(
+        {{.name = "Steel.001"}, {.name = "hull"}, {.name = "Sand"}, {.name = "steel_glass"}, {.name = "PVC"}});
     const auto named = applyMaterialNames(geometry);
     EXPECT_EQ(named->materials[0].matter, "steel");
     EXPECT_FLOAT_EQ(named->materials[0].reflection, 0.936f);
@@ -80,7 +80,7 @@ TEST_F(TakeNamesTest, MaterialsWithoutAcousticsAreTakenWithOneNotice) {
 TEST_F(TakeNamesTest, ANoticeOfManyMaterialsStaysShort) {
     std::vector<types::Material> materials;
     for (int i = 0; i < 500; ++i) materials.push_back({.name = "steel_" + std::to_string(i)});
-    const auto named = applyMaterialNames(sceneOf(materials));
+    const auto named = applyMaterialNames(makeScene(materials));
     ASSERT_EQ(named->notices.size(), 1u);
     EXPECT_THAT(named->notices[0], HasSubstr("\"steel_19\" as steel and 480 more"));
 }

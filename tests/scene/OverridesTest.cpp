@@ -17,7 +17,7 @@ struct OverridesTest : SceneFiles {
         acoustics.lambert_db = db;
         return acoustics;
     }
-    static float lambertOf(const types::Geometry& geometry, size_t object) {
+    static float getLambert(const types::Geometry& geometry, size_t object) {
         const types::Mesh& mesh = geometry.meshes.at(static_cast<size_t>(geometry.objects.at(object).mesh));
         return geometry.materials.at(static_cast<size_t>(mesh.clusters.at(0).material)).lambert_db;
     }
@@ -32,16 +32,16 @@ TEST_F(OverridesTest, WithoutAnyTheGeometryIsTheSame) {
 TEST_F(OverridesTest, AMaterialChangesInAllMeshes) {
     const auto geometry = overrideMaterials(walls(), {{"stone", lambert(-9)}}, diagnostics_);
     EXPECT_TRUE(diagnostics_.empty());
-    EXPECT_FLOAT_EQ(lambertOf(*geometry, 0), -9);
-    EXPECT_FLOAT_EQ(lambertOf(*geometry, 1), -9);
+    EXPECT_FLOAT_EQ(getLambert(*geometry, 0), -9);
+    EXPECT_FLOAT_EQ(getLambert(*geometry, 1), -9);
 }
 
 TEST_F(OverridesTest, AModelOverridesItsSubtreeAndPrecedesItsMaterial) {
     const auto geometry = overrideMaterials(walls(), {{"group", lambert(-3)}, {"stone", lambert(-9)}}, diagnostics_);
     EXPECT_TRUE(diagnostics_.empty());
     expectSound(*geometry);
-    EXPECT_FLOAT_EQ(lambertOf(*geometry, 0), -9);
-    EXPECT_FLOAT_EQ(lambertOf(*geometry, 1), -3);
+    EXPECT_FLOAT_EQ(getLambert(*geometry, 0), -9);
+    EXPECT_FLOAT_EQ(getLambert(*geometry, 1), -3);
 }
 
 TEST_F(OverridesTest, AnUnknownNameIsADiagnosticThatListsTheKnown) {

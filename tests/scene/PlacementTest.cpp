@@ -89,23 +89,26 @@ TEST_F(PlacementTest, PlacingKeepsShapesAndTheTreeOfNodes) {
 
 TEST_F(PlacementTest, ANodeThatPosesMoveIsAffectedByUpAlone) {
     const Scene file = scene();
-    const auto bodyOf = [](const Scene& scene) { return partsOf(scene, findNode(scene, "boat"))[0].body_from_object; };
+    const auto getBody = [](const Scene& scene) {
+        return getParts(scene, findNode(scene, "boat"))[0].body_from_object;
+    };
     const Scene turned = placed(file, {.position = {7, 8, 9}, .yaw_deg = 33, .frame = WorldFrame::Enu});
     for (int column = 0; column < 4; ++column)
-        EXPECT_LT(glm::distance(bodyOf(turned)[column], bodyOf(file)[column]), 1e-12) << column;
+        EXPECT_LT(glm::distance(getBody(turned)[column], getBody(file)[column]), 1e-12) << column;
     const glm::dvec4 tip =
-        bodyOf(placed(file, {.up = UpAxis::Z})) * glm::dvec4(file.geometry->meshes[0].positions[2], 1);
+        getBody(placed(file, {.up = UpAxis::Z})) * glm::dvec4(file.geometry->meshes[0].positions[2], 1);
     expectNear(glm::dvec3(tip), {0, 1, 0});
 }
 
 TEST_F(PlacementTest, DescribesTheOrientationInOneLine) {
     const Scene file = scene();
-    EXPECT_EQ(layOf(file, {}, WorldFrame::AsIs), "the file's x is north, its -z west, its y up");
-    EXPECT_EQ(layOf(file, {}, WorldFrame::Enu),
+    EXPECT_EQ(describeLay(file, {}, WorldFrame::AsIs), "the file's x is north, its -z west, its y up");
+    EXPECT_EQ(describeLay(file, {}, WorldFrame::Enu),
               "the file's x is north, its -z west, its y up; x of the poses, in enu, is along its z, y along its x");
-    EXPECT_EQ(layOf(file, {.frame = WorldFrame::Enu}, WorldFrame::Enu),
+    EXPECT_EQ(describeLay(file, {.frame = WorldFrame::Enu}, WorldFrame::Enu),
               "the file's -z is north, its -x west, its y up; x of the poses, in enu, is along its x, y along its -z");
-    EXPECT_THAT(layOf(file, {.yaw_deg = 45}, WorldFrame::AsIs), testing::HasSubstr("the file's (0.707, 0, 0.707) is"));
+    EXPECT_THAT(describeLay(file, {.yaw_deg = 45}, WorldFrame::AsIs),
+                testing::HasSubstr("the file's (0.707, 0, 0.707) is"));
 }
 
 TEST_F(PlacementTest, TheTaskPlacesItsSceneAndReportsIt) {
@@ -151,7 +154,7 @@ TEST_F(PlacementTest, AScaledNodeScalesItsSubtreeAboutItsOrigin) {
         expectNear(corner(same), before);
         // A pose of the body does not change the scale.
         const Scene large = scaled(file, {{"mast", 3}}, none);
-        const Part was = partsOf(file, 1).front(), is = partsOf(large, 1).front();
+        const Part was = getParts(file, 1).front(), is = getParts(large, 1).front();
         for (int column = 0; column < 3; ++column)
             expectNear(glm::dvec3(is.body_from_object[column]), 3.0 * glm::dvec3(was.body_from_object[column]));
         EXPECT_TRUE(none.empty());

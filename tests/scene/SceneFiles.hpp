@@ -19,8 +19,8 @@
 namespace insonify::scene {
 
 template <class T>
-std::string bytesOf(std::initializer_list<T> values) {
-    return test::bytesOf(std::span(values));
+std::string toBytes(std::initializer_list<T> values) {
+    return test::toBytes(std::span(values));
 }
 
 /** `"buffers":[...]` of one buffer with these bytes. */
@@ -30,7 +30,7 @@ inline std::string buffers(const std::string& bytes) {
 }
 
 /** `"accessors":[...],"bufferViews":[...],"buffers":[...]`: accessor 0 is the corners of a triangle. */
-inline std::string triangle(const std::string& corners = bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0})) {
+inline std::string triangle(const std::string& corners = toBytes<float>({0, 0, 0, 1, 0, 0, 0, 1, 0})) {
     return R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
         "bufferViews":[{"buffer":0,"byteLength":36}],)" +
            buffers(corners);
@@ -47,7 +47,7 @@ struct SceneFiles : ::testing::Test {
     types::GeometryPtr load(const std::string& rest) const { return loadScene(write("case.gltf", gltf(rest))); }
     static std::string gltf(const std::string& rest) { return R"({"asset":{"version":"2.0"},)" + rest + "}"; }
     /** Returns the diagnostic of a file; empty if there is none. */
-    std::string diagnosticOf(const std::filesystem::path& file) const {
+    std::string findDiagnostic(const std::filesystem::path& file) const {
         try {
             loadScene(file);
             return "";
@@ -55,7 +55,9 @@ struct SceneFiles : ::testing::Test {
             return error.what();
         }
     }
-    std::string diagnosticOfGltf(const std::string& rest) const { return diagnosticOf(write("case.gltf", gltf(rest))); }
+    std::string diagnosticOfGltf(const std::string& rest) const {
+        return findDiagnostic(write("case.gltf", gltf(rest)));
+    }
 
     const Folder owned_;
     const std::filesystem::path folder_ = owned_.path();
@@ -80,7 +82,7 @@ struct Bounds {
 };
 /** Bounds of the whole geometry, or of one object given after it. */
 template <class... Object>
-Bounds boundsOf(const types::Geometry& geometry, const Object&... object) {
+Bounds getBounds(const types::Geometry& geometry, const Object&... object) {
     Bounds bounds;
     for (const glm::dvec3 corner : worldCorners(geometry, object...)) {
         bounds.low = glm::min(bounds.low, corner);

@@ -21,7 +21,7 @@ glm::dquat turn(double deg, glm::dvec3 axis) { return glm::angleAxis(types::radi
 
 void expectAt(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-9) << a.x << " " << a.y << " " << a.z; }
 
-glm::dvec3 placeOf(const types::MovedObject& moved) { return glm::dvec3(moved.world_from_object[3]); }
+glm::dvec3 getPlace(const types::MovedObject& moved) { return glm::dvec3(moved.world_from_object[3]); }
 
 TEST_F(SceneTaskTest, EachPoseGivesASnapshotOfItsTimeAndTheSharedGeometry) {
     config_.water_surface = 1.5;
@@ -86,10 +86,10 @@ TEST_F(SceneTaskTest, ANodeFollowsItsPortWithItsScaleAndSubtree) {
     ASSERT_EQ(snapshot->moved.size(), 2u);
     const types::MovedObject& hull = snapshot->moved[0];
     EXPECT_EQ(snapshot->geometry->objects[hull.object].name, "boat");
-    expectAt(placeOf(hull), {100, 0, 0});
+    expectAt(getPlace(hull), {100, 0, 0});
     // x of the model is x of the body, which looks along y of the world now; scale 2
     expectAt(glm::dvec3(hull.world_from_object * glm::dvec4(1, 0, 0, 1)), {100, 2, 0});
-    expectAt(placeOf(snapshot->moved[1]), {100, 0, 10});
+    expectAt(getPlace(snapshot->moved[1]), {100, 0, 10});
 }
 
 TEST_F(SceneTaskTest, TheInnermostNodeWithAPoseDecides) {
@@ -101,8 +101,8 @@ TEST_F(SceneTaskTest, TheInnermostNodeWithAPoseDecides) {
     boat_.port.write(at(1, {100, 0, 0}));
     const auto snapshot = ping(at(2, {0, 0, 0}));
     ASSERT_EQ(snapshot->moved.size(), 2u);
-    expectAt(placeOf(snapshot->moved[0]), {100, 0, 0});
-    expectAt(placeOf(snapshot->moved[1]), {7, 7, 7});
+    expectAt(getPlace(snapshot->moved[0]), {100, 0, 0});
+    expectAt(getPlace(snapshot->moved[1]), {7, 7, 7});
 }
 
 TEST_F(SceneTaskTest, OnlyNodesOfTheFileHaveAPort) {
@@ -142,7 +142,7 @@ TEST_F(SceneTaskTest, AnUnusablePoseOfANodeLeavesItWhereItWas) {
     boat_.port.write(at(2, {types::Pose::unknown, 0, 0}));
     const auto snapshot = ping(at(2, {0, 0, 0}));
     ASSERT_TRUE(snapshot);
-    expectAt(placeOf(snapshot->moved.at(0)), {5, 0, 0});
+    expectAt(getPlace(snapshot->moved.at(0)), {5, 0, 0});
     EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
 }
 

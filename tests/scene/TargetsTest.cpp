@@ -114,10 +114,11 @@ TEST_F(TargetsTest, PlacesOnTheEarthThatHaveNoMeaningAreRefused) {
     config_.datum = datum;
     EXPECT_EQ(diagnostic(), "");
     wreck.position = glm::dvec3(0);
-    EXPECT_THAT(test::refusalsOf(wreck), testing::ElementsAre(HasSubstr("geodetic: is given, and position as well")));
+    EXPECT_THAT(test::countRefusals(wreck),
+                testing::ElementsAre(HasSubstr("geodetic: is given, and position as well")));
     wreck.position.reset();
     wreck.attached_to = "boat";
-    EXPECT_THAT(test::refusalsOf(wreck),
+    EXPECT_THAT(test::countRefusals(wreck),
                 testing::ElementsAre(HasSubstr("geodetic: is given, and attached_to as well")));
 }
 

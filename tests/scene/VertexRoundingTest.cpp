@@ -23,12 +23,12 @@ types::Mesh pipeAt(double distance, double facet) {
         const uint32_t a = 2 * i, b = 2 * ((i + 1) % around);
         indices.insert(indices.end(), {a, b, b + 1, a, b + 1, a + 1});
     }
-    return test::meshOf(positions, indices);
+    return test::getMesh(positions, indices);
 }
 
 TEST(VertexRoundingTest, StepsAreThoseOfFloatsAndTurnNormalsByTheirShareOfAFacet) {
     for (const double distance : {700.0, 1000.0, 3000.0, 1e5}) {
-        const auto rounding = roundingOf(pipeAt(distance, 0.002));
+        const auto rounding = findRounding(pipeAt(distance, 0.002));
         ASSERT_TRUE(rounding) << distance;
         EXPECT_NEAR(rounding->farthest, distance + 0.15, 0.01);
         EXPECT_EQ(rounding->step, std::exp2(std::floor(std::log2(distance)) - 23));
@@ -40,22 +40,22 @@ TEST(VertexRoundingTest, StepsAreThoseOfFloatsAndTurnNormalsByTheirShareOfAFacet
 }
 
 TEST(VertexRoundingTest, NothingIsSaidOfMeshesThatAreGoodOrThatWouldNotGain) {
-    EXPECT_FALSE(roundingOf(pipeAt(0, 0.002)));
-    EXPECT_FALSE(roundingOf(pipeAt(100, 0.002)));
-    EXPECT_FALSE(roundingOf(pipeAt(1000, 0.05)));
-    EXPECT_FALSE(roundingOf(test::ground(-1000)));
-    EXPECT_FALSE(roundingOf(test::wall(20000)));
-    EXPECT_FALSE(roundingOf({}));
+    EXPECT_FALSE(findRounding(pipeAt(0, 0.002)));
+    EXPECT_FALSE(findRounding(pipeAt(100, 0.002)));
+    EXPECT_FALSE(findRounding(pipeAt(1000, 0.05)));
+    EXPECT_FALSE(findRounding(test::ground(-1000)));
+    EXPECT_FALSE(findRounding(test::wall(20000)));
+    EXPECT_FALSE(findRounding({}));
 }
 
 TEST(VertexRoundingTest, ANoticeNamesTheObjectsAndTheirPoseDoesNotMatter) {
-    auto geometry = test::sceneOf({pipeAt(1000, 0.002), pipeAt(0, 0.002)}, 0, {{0, 0, 0}, {1e5, 0, 0}});
+    auto geometry = test::makeScene({pipeAt(1000, 0.002), pipeAt(0, 0.002)}, 0, {{0, 0, 0}, {1e5, 0, 0}});
     noteRounding(geometry);
     ASSERT_EQ(geometry->notices.size(), 1u);
     EXPECT_THAT(geometry->notices[0],
                 testing::AllOf(testing::HasSubstr("object_0, up to 1000 m away in steps of 0.061 mm"),
                                testing::Not(testing::HasSubstr("object_1"))));
-    types::GeometryPtr good = test::sceneOf({pipeAt(0, 0.002)}, 0, {{1e6, 0, 0}});
+    types::GeometryPtr good = test::makeScene({pipeAt(0, 0.002)}, 0, {{1e6, 0, 0}});
     const types::GeometryPtr before = good;
     noteRounding(good);
     EXPECT_EQ(good, before) << "no copy";

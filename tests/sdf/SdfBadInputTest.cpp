@@ -18,15 +18,16 @@ struct SdfBadInputTest : SdfFiles {
 
 TEST_F(SdfBadInputTest, ReportsFilesThatAreNotSdf) {
     std::filesystem::create_directory(folder_ / "folder.world");
-    expectDiagnostic(diagnosticOf(folder_ / "missing.world"), "does not exist; looked for at ");
-    expectDiagnostic(diagnosticOf(folder_ / "folder.world"), "is not a file");
-    expectDiagnostic(diagnosticOf(write("empty.sdf", "")), "is no XML: it is empty");
-    expectDiagnostic(diagnosticOf(write("cut.sdf", "<sdf version='1.9'>\n<world name='w'>\n<model")),
+    expectDiagnostic(findDiagnostic(folder_ / "missing.world"), "does not exist; looked for at ");
+    expectDiagnostic(findDiagnostic(folder_ / "folder.world"), "is not a file");
+    expectDiagnostic(findDiagnostic(write("empty.sdf", "")), "is no XML: it is empty");
+    expectDiagnostic(findDiagnostic(write("cut.sdf", "<sdf version='1.9'>\n<world name='w'>\n<model")),
                      "cut.sdf:3: is no XML: a tag is not finished (<model>)");
-    expectDiagnostic(diagnosticOf(write("page.world", "<html><body>404</body></html>")),
+    expectDiagnostic(findDiagnostic(write("page.world", "<html><body>404</body></html>")),
                      "holds neither a world nor a model");
-    expectDiagnostic(diagnosticOf(write("none.world", "<sdf version='1.9'/>")), "holds neither a world nor a model");
-    expectDiagnostic(diagnosticOf(write("noise.world", bytesOf<uint64_t>({~0ull, 0x1234567890abcdef}))), "is no XML: ");
+    expectDiagnostic(findDiagnostic(write("none.world", "<sdf version='1.9'/>")), "holds neither a world nor a model");
+    expectDiagnostic(findDiagnostic(write("noise.world", toBytes<uint64_t>({~0ull, 0x1234567890abcdef}))),
+                     "is no XML: ");
 }
 
 TEST_F(SdfBadInputTest, ReportsAnUnreadableValueWithItsLineAndReason) {
@@ -136,7 +137,7 @@ TEST_F(SdfBadInputTest, EveryTruncationAndDamageIsASceneOrAnError) {
                "<insonify:acoustics><sediment>clay</sediment></insonify:acoustics>") +
         "</link><link name='k'/><joint name='j' type='revolute'><parent>l</parent><child>k</child>"
         "<axis><xyz>0 0 1</xyz></axis></joint></model></world></sdf>";
-    ASSERT_EQ(diagnosticOf(write("whole.world", whole)), "");
+    ASSERT_EQ(findDiagnostic(write("whole.world", whole)), "");
     std::minstd_rand random(3);
     size_t scenes = 0, diagnostics = 0;
     for (int i = 0; i < 100; ++i) {

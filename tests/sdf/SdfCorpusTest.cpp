@@ -54,19 +54,19 @@ TEST_F(SdfCorpusTest, TheWorldsWithoutTheirModelsLoadWithNotices) {
 }
 
 TEST_F(SdfCorpusTest, TheCinderBlockInInchesHasItsSizeInMetres) {
-    const Bounds bounds = boundsOf(*loadScene(sdf_data / "dave/models/mossy_cinder_block/model.sdf"));
+    const Bounds bounds = getBounds(*loadScene(sdf_data / "dave/models/mossy_cinder_block/model.sdf"));
     const glm::dvec3 inches(51.36, 24, 24);  // of the .dae; the visual scales it by 1.1
     EXPECT_LT(glm::distance(bounds.high - bounds.low, inches * 0.0254 * 1.1), 1e-6);
 }
 
 TEST_F(SdfCorpusTest, TheIncludePoseMovesMangaliaToItsPlace) {
-    const Bounds alone = boundsOf(*loadScene(sdf_data / "uuv/models/mangalia/model.sdf"));
+    const Bounds alone = getBounds(*loadScene(sdf_data / "uuv/models/mangalia/model.sdf"));
     const Scene scene = readScene(sdf_data / "uuv/worlds/mangalia.world");
     const auto& objects = scene.geometry->objects;
     Bounds placed;
     for (const types::Object& object : objects)
         if (object.name.starts_with("mangalia_terrain")) {
-            const Bounds one = boundsOf(*scene.geometry, object);
+            const Bounds one = getBounds(*scene.geometry, object);
             placed = {glm::min(placed.low, one.low), glm::max(placed.high, one.high)};
         }
     const glm::dvec3 shift(-572.0074568380, 537.7086925743, 0);
@@ -82,7 +82,7 @@ TEST_F(SdfCorpusTest, ARealSeaFloorOfSixteenBitsHasItsRelief) {
                               .geometry;
     expectSound(*geometry);
     EXPECT_EQ(geometry->triangleCount(), 2u * 256 * 256);
-    expectBounds(boundsOf(*geometry), {-256, -256, 0}, {256, 256, 0.975});
+    expectBounds(getBounds(*geometry), {-256, -256, 0}, {256, 256, 0.975});
 }
 
 }  // namespace

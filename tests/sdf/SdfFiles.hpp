@@ -19,7 +19,7 @@ struct SdfFiles : SceneFiles {
     Scene world(const std::string& body, const std::string& version = "1.9") const {
         return readScene(writeWorld(body, version));
     }
-    std::string diagnosticOfWorld(const std::string& body) const { return diagnosticOf(writeWorld(body)); }
+    std::string diagnosticOfWorld(const std::string& body) const { return findDiagnostic(writeWorld(body)); }
 
     /** A model of one link with one visual, each named, at its model's origin. */
     static std::string model(const std::string& name, const std::string& geometry, const std::string& more = "") {
@@ -47,7 +47,7 @@ inline void expectBounds(const Bounds& bounds, glm::dvec3 low, glm::dvec3 high, 
 }
 
 /** Volume inside a closed surface whose faces look outward [m^3]. */
-inline double volumeOf(const types::Geometry& geometry) {
+inline double computeVolume(const types::Geometry& geometry) {
     const auto corners = worldCorners(geometry);
     double volume = 0;
     for (size_t i = 0; i < corners.size(); i += 3)

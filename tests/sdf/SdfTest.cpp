@@ -8,12 +8,12 @@ using namespace scene;
 namespace {
 
 struct SdfTest : SdfFiles {
-    static std::vector<std::string> namesOf(const std::vector<Part>& parts, const Scene& scene) {
+    static std::vector<std::string> getNames(const std::vector<Part>& parts, const Scene& scene) {
         std::vector<std::string> names;
         for (const Part& part : parts) names.push_back(scene.geometry->objects[part.object].name);
         return names;
     }
-    static std::string parentOf(const Scene& scene, const std::string& name) {
+    static std::string getParent(const Scene& scene, const std::string& name) {
         const int node = findNode(scene, name);
         if (node < 0) return "no such node";
         const int parent = scene.nodes[static_cast<size_t>(node)].parent;
@@ -34,7 +34,7 @@ TEST_F(SdfTest, ABoxIsPlacedByModelLinkAndVisual) {
         world("<model name='m'>" + pose("10 0 0 0 0 1.5707963267948966") + "<link name='l'>" + pose("3 0 0 0 0 0") +
               visual("v", box_, pose("0 0 5 1.5707963267948966 0 0")) + "</link></model>");
     // in the visual the box turns about x: 2 x 6 x 4; the model turns it about z: 6 x 2 x 4 about (10, 3, 5)
-    expectBounds(boundsOf(*scene.geometry), {7, 2, 3}, {13, 4, 7});
+    expectBounds(getBounds(*scene.geometry), {7, 2, 3}, {13, 4, 7});
     expectSound(*scene.geometry);
     EXPECT_EQ(scene.geometry->objects.at(0).name, "m::l::v");
     EXPECT_TRUE(scene.geometry->notices.empty());
@@ -46,7 +46,7 @@ TEST_F(SdfTest, PosesAreRelativeToTheFrameThatTheyName) {
                               "</frame><link name='l'><pose relative_to='top'>2 0 0 0 0 0</pose>" + visual("v", box_) +
                               "</link></model>");
     // f turns x to y: the model is at (10, 1, 0), its link at (10, 3, 7)
-    expectBounds(boundsOf(*scene.geometry), {8, 2, 4}, {12, 4, 10});
+    expectBounds(getBounds(*scene.geometry), {8, 2, 4}, {12, 4, 10});
 }
 
 TEST_F(SdfTest, IncludedAndNestedModelsHaveTheirScopes) {
@@ -56,10 +56,10 @@ TEST_F(SdfTest, IncludedAndNestedModelsHaveTheirScopes) {
                    "<include><uri>model://inner</uri><name>arm</name><pose>0 0 3 0 0 0</pose></include></model>");
     const Scene scene = world("<include><uri>model://outer</uri><name>rov</name>" + pose("5 0 0 0 0 0") + "</include>");
     EXPECT_TRUE(scene.geometry->notices.empty());
-    expectBounds(boundsOf(*scene.geometry), {4, -2, 0}, {6, 2, 6});
-    EXPECT_EQ(parentOf(scene, "rov"), "");
-    EXPECT_EQ(parentOf(scene, "rov::arm"), "rov");
-    EXPECT_EQ(parentOf(scene, "rov::arm::hull"), "rov::arm");
+    expectBounds(getBounds(*scene.geometry), {4, -2, 0}, {6, 2, 6});
+    EXPECT_EQ(getParent(scene, "rov"), "");
+    EXPECT_EQ(getParent(scene, "rov::arm"), "rov");
+    EXPECT_EQ(getParent(scene, "rov::arm::hull"), "rov::arm");
     EXPECT_EQ(scene.geometry->objects.at(0).name, "rov::arm::hull::skin");
 }
 
@@ -68,14 +68,14 @@ TEST_F(SdfTest, AnIncludeIsPlacedByItsPlacementFrame) {
                            visual("v", box_) + "</link></model>");
     const Scene scene = world("<include><uri>model://post</uri><placement_frame>foot</placement_frame>" +
                               pose("1 1 0 0 0 0") + "</include>");
-    expectBounds(boundsOf(*scene.geometry), {0, -1, 0}, {2, 3, 6});
+    expectBounds(getBounds(*scene.geometry), {0, -1, 0}, {2, 3, 6});
 }
 
 TEST_F(SdfTest, AModelsPoseMovesAllThatIsInIt) {
     const Scene scene = world("<model name='m'>" + pose("10 0 0 0 0 1") + "<link name='l'>" + pose("0 0 2 0 0 0") +
                               visual("v", box_) + "</link></model>" + model("other", box_));
-    const std::vector<Part> parts = partsOf(scene, findNode(scene, "m"));
-    ASSERT_EQ(namesOf(parts, scene), Names{"m::l::v"});
+    const std::vector<Part> parts = getParts(scene, findNode(scene, "m"));
+    ASSERT_EQ(getNames(parts, scene), Names{"m::l::v"});
     // the body is the model's frame: its own pose, yaw and place, no longer counts
     const glm::dmat4 scaled = glm::scale(glm::translate(glm::dmat4(1), {0, 0, 2}), {2, 4, 6});
     for (int column = 0; column < 4; ++column)
@@ -86,26 +86,26 @@ TEST_F(SdfTest, AJointAttachesALinkToItsParent) {
     const Scene scene =
         world("<model name='arm'>" + ("<link name='hand'>" + pose("4 0 0 0 0 0") + visual("v", box_) + "</link>") +
               link("elbow") + link("base") + joint("elbow", "hand") + joint("base", "elbow") + "</model>");
-    EXPECT_EQ(parentOf(scene, "arm::base"), "arm");
-    EXPECT_EQ(parentOf(scene, "arm::elbow"), "arm::base");
-    EXPECT_EQ(parentOf(scene, "arm::hand"), "arm::elbow");
-    EXPECT_EQ(namesOf(partsOf(scene, findNode(scene, "arm::elbow")), scene), Names{"arm::hand::v"});
-    expectBounds(boundsOf(*scene.geometry), {3, -2, -3}, {5, 2, 3});
+    EXPECT_EQ(getParent(scene, "arm::base"), "arm");
+    EXPECT_EQ(getParent(scene, "arm::elbow"), "arm::base");
+    EXPECT_EQ(getParent(scene, "arm::hand"), "arm::elbow");
+    EXPECT_EQ(getNames(getParts(scene, findNode(scene, "arm::elbow")), scene), Names{"arm::hand::v"});
+    expectBounds(getBounds(*scene.geometry), {3, -2, -3}, {5, 2, 3});
 }
 
 TEST_F(SdfTest, AJointAttachesANestedModelToItsParent) {
     writeModel("gripper", model("gripper", box_));
     const Scene scene = world("<model name='rov'>" + link("wrist") + "<include><uri>model://gripper</uri>" +
                               pose("1 0 0 0 0 0") + "</include>" + joint("wrist", "gripper::hull") + "</model>");
-    EXPECT_EQ(parentOf(scene, "rov::gripper"), "rov::wrist");
-    EXPECT_EQ(namesOf(partsOf(scene, findNode(scene, "rov::wrist")), scene), Names{"rov::gripper::hull::skin"});
+    EXPECT_EQ(getParent(scene, "rov::gripper"), "rov::wrist");
+    EXPECT_EQ(getNames(getParts(scene, findNode(scene, "rov::wrist")), scene), Names{"rov::gripper::hull::skin"});
 }
 
 TEST_F(SdfTest, JointsInACircleEndAtTheModel) {
     const Scene scene =
         world("<model name='m'>" + link("a") + link("b") + joint("a", "b") + joint("b", "a") + "</model>");
-    EXPECT_EQ(parentOf(scene, "m::b"), "m");
-    EXPECT_EQ(parentOf(scene, "m::a"), "m::b");
+    EXPECT_EQ(getParent(scene, "m::b"), "m");
+    EXPECT_EQ(getParent(scene, "m::a"), "m::b");
 }
 
 TEST_F(SdfTest, NamesOfOldWorldsMayHoldColons) {
@@ -113,17 +113,17 @@ TEST_F(SdfTest, NamesOfOldWorldsMayHoldColons) {
     const Scene scene = world("<model name='a::b'><link name='x::l'>" + pose("1 0 0 0 0 0") + visual("v::v", box_) +
                                   "</link>" + link("tip") + joint("x::l", "tip") + "</model>",
                               "1.6");
-    EXPECT_EQ(parentOf(scene, "a::b::x::l"), "a::b::x");
-    EXPECT_EQ(parentOf(scene, "a::b::tip"), "a::b::x::l");
+    EXPECT_EQ(getParent(scene, "a::b::x::l"), "a::b::x");
+    EXPECT_EQ(getParent(scene, "a::b::tip"), "a::b::x::l");
     EXPECT_EQ(scene.geometry->objects.at(0).name, "a::b::x::l::v::v");
-    expectBounds(boundsOf(*scene.geometry), {0, -2, -3}, {2, 2, 3});
+    expectBounds(getBounds(*scene.geometry), {0, -2, -3}, {2, 2, 3});
 }
 
 TEST_F(SdfTest, NamesWithColonsThatLibsdformatRefusesAreReadWithUnderscores) {
     const std::string body = model("a::b", "<mesh><uri>plate.obj</uri></mesh>");
     write("plate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const Scene scene = world(body, "1.9");
-    expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {1, 1, 0});
+    expectBounds(getBounds(*scene.geometry), {0, 0, 0}, {1, 1, 0});
     EXPECT_GE(findNode(scene, "a__b"), 0);
     EXPECT_TRUE(hasNotice(*scene.geometry, "names are read with \"__\" for \"::\""));
     // in this case it throws an object that is no std::exception
@@ -131,7 +131,7 @@ TEST_F(SdfTest, NamesWithColonsThatLibsdformatRefusesAreReadWithUnderscores) {
                                 "<joint name='x::j' type='revolute'><parent>x::l</parent><child>x::k</child><axis>"
                                 "<xyz>0 0 1</xyz></axis></joint></model>",
                             "1.4");
-    EXPECT_EQ(parentOf(old, "m::x__k"), "m::x__l");
+    EXPECT_EQ(getParent(old, "m::x__k"), "m::x__l");
     EXPECT_TRUE(hasNotice(*old.geometry, "cannot be read as SDF: SDF ASSERTION Error: <xyz>'s attribute"));
 }
 
@@ -141,7 +141,7 @@ TEST_F(SdfTest, AModelAloneIsASceneAndFindsItsOwnFiles) {
     writeModel("anchor",
                model("anchor", "<mesh><uri>model://anchor/meshes/fluke.obj</uri></mesh>", pose("0 0 2 0 0 0")));
     const Scene scene = readScene(folder_ / "anchor/model.sdf");
-    expectBounds(boundsOf(*scene.geometry), {0, 0, 2}, {1, 1, 2});
+    expectBounds(getBounds(*scene.geometry), {0, 0, 2}, {1, 1, 2});
     EXPECT_GE(findNode(scene, "anchor"), 0);
 }
 
@@ -157,7 +157,7 @@ TEST_F(SdfTest, UnsupportedPartsOfAWorldAreNotices) {
     const Scene scene =
         world(model("m", box_) + "<state world_name='w'><model name='m'>" + pose("9 0 0 0 0 0") +
               "</model></state><actor name='diver'><skin><filename>diver.dae</filename></skin></actor>");
-    expectBounds(boundsOf(*scene.geometry), {-1, -2, -3}, {1, 2, 3});
+    expectBounds(getBounds(*scene.geometry), {-1, -2, -3}, {1, 2, 3});
     EXPECT_TRUE(hasNotice(*scene.geometry, "the poses of <state> are not used"));
     EXPECT_TRUE(hasNotice(*scene.geometry, "actors omitted: 1"));
 }
@@ -190,7 +190,7 @@ TEST_F(SdfTest, AModelInTheCacheOfFuelIsRead) {
           "<sdf version='1.9'>" + model("post", box_) + "</sdf>");
     const Scene scene = world("<include><uri>https://fuel.gazebosim.org/1.0/Open/models/Post</uri>" +
                               pose("5 0 0 0 0 0") + "</include>");
-    expectBounds(boundsOf(*scene.geometry), {4, -2, -3}, {6, 2, 3});
+    expectBounds(getBounds(*scene.geometry), {4, -2, -3}, {6, 2, 3});
 }
 
 TEST_F(SdfTest, APopulationHasTheCopiesThatGazeboPlaces) {
@@ -205,14 +205,14 @@ TEST_F(SdfTest, APopulationHasTheCopiesThatGazeboPlaces) {
     ASSERT_EQ(grid.geometry->objects.size(), 6u);
     EXPECT_GE(findNode(grid, "m_clone_5"), 0);
     // The region is turned by 90 degrees: its x is along y. The copies are not turned.
-    expectBounds(boundsOf(*grid.geometry), {10 - 5 - 0.5, 20 - 0.5, 29.5}, {10.5, 20 + 8 + 0.5, 30.5}, 1e-5);
+    expectBounds(getBounds(*grid.geometry), {10 - 5 - 0.5, 20 - 0.5, 29.5}, {10.5, 20 + 8 + 0.5, 30.5}, 1e-5);
     const Scene row = world(population("<type>linear-x</type>", box, "3"));
-    expectBounds(boundsOf(*row.geometry), {10 - 2 - 0.5, 19.5, 31 - 0.5}, {10 - 2 + 0.5, 24.5, 31.5}, 1e-5);
+    expectBounds(getBounds(*row.geometry), {10 - 2 - 0.5, 19.5, 31 - 0.5}, {10 - 2 + 0.5, 24.5, 31.5}, 1e-5);
     for (const char* type : {"random", "uniform"})
         for (const std::string& region : {box, cylinder}) {
             const Scene drawn = world(population(std::string("<type>") + type + "</type>", region, "40"));
             ASSERT_EQ(drawn.geometry->objects.size(), 40u);
-            const Bounds bounds = boundsOf(*drawn.geometry);
+            const Bounds bounds = getBounds(*drawn.geometry);
             const glm::dvec3 low = region == box ? glm::dvec3(6, 20, 30) : glm::dvec3(7, 17, 29),
                              high = region == box ? glm::dvec3(10, 26, 32) : glm::dvec3(13, 23, 31);
             for (int axis = 0; axis < 3; ++axis) {
@@ -272,17 +272,17 @@ TEST_F(SdfTest, FaultsInWhatASonarDoesNotNeedAreNoObstacle) {
     for (const auto& [what, text] : files) {
         SCOPED_TRACE(what);
         const Scene alone = readScene(write("alone.sdf", text));
-        expectBounds(boundsOf(*alone.geometry), {-1, -2, -3}, {1, 2, 3});
+        expectBounds(getBounds(*alone.geometry), {-1, -2, -3}, {1, 2, 3});
         writeModel("bad", "");
         write("bad/model.sdf", text);
         const Scene included =
             world("<include><uri>model://bad</uri>" + pose("7 0 0 0 0 0") + "</include>" + model("n", box_));
-        expectBounds(boundsOf(*included.geometry), {-1, -2, -3}, {8, 2, 3});
+        expectBounds(getBounds(*included.geometry), {-1, -2, -3}, {8, 2, 3});
         EXPECT_TRUE(hasNotice(*included.geometry, "is read without what a sonar does not need"));
     }
     const Scene padded =
         readScene(write("alone.sdf", "<sdf version='1.6'>" + model("m", box_, pose("5 0 0 0 0")) + "</sdf>"));
-    expectBounds(boundsOf(*padded.geometry), {4, -2, -3}, {6, 2, 3});
+    expectBounds(getBounds(*padded.geometry), {4, -2, -3}, {6, 2, 3});
     EXPECT_TRUE(hasNotice(*padded.geometry, "must have 6 values, but 5 were found"));
 }
 
@@ -293,13 +293,13 @@ TEST_F(SdfTest, AMendedModelFindsItsMeshes) {
                           "</link></model>");
     write("bad/meshes/plate.obj", "v 0 0 0\nv 1 0 0\nv 1 2 3\nf 1 2 3\n");
     const Scene scene = world("<include><uri>model://bad</uri></include>");
-    expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {1, 2, 12});
+    expectBounds(getBounds(*scene.geometry), {0, 0, 0}, {1, 2, 12});
 }
 
 TEST_F(SdfTest, ConesAreReadThoughTheyAreNewerThanTheLibrary) {
     const Scene scene = world(model("m", "<cone><radius>2</radius><length>6</length></cone>"));
-    expectBounds(boundsOf(*scene.geometry), {-2, -2, -3}, {2, 2, 3}, 1e-5);
-    EXPECT_NEAR(volumeOf(*scene.geometry), 3.14159 * 4 * 6 / 3, 0.1);
+    expectBounds(getBounds(*scene.geometry), {-2, -2, -3}, {2, 2, 3}, 1e-5);
+    EXPECT_NEAR(computeVolume(*scene.geometry), 3.14159 * 4 * 6 / 3, 0.1);
     EXPECT_TRUE(hasNotice(*world(model("m", "<polyline><height>1</height><point>0 0</point></polyline>")).geometry,
                           "its geometry, <polyline>, is not supported"));
 }
@@ -332,7 +332,7 @@ TEST_F(SdfTest, LibsdformatPrintsNothing) {
     testing::internal::CaptureStdout();
     world("<include><uri>model://sun</uri></include>");
     diagnosticOfWorld("<model name='m'>" + pose("1 2 x") + "</model>");
-    diagnosticOf(write("urdf.sdf", "<html/>"));
+    findDiagnostic(write("urdf.sdf", "<html/>"));
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }

@@ -13,7 +13,7 @@ namespace {
 
 struct SdfVisualsTest : SdfFiles {
     types::GeometryPtr shape(const std::string& geometry) const { return world(model("m", geometry)).geometry; }
-    static const types::Material& materialOf(const types::Geometry& geometry, size_t object) {
+    static const types::Material& getMaterial(const types::Geometry& geometry, size_t object) {
         const types::Mesh& mesh = geometry.meshes.at(static_cast<size_t>(geometry.objects.at(object).mesh));
         return geometry.materials.at(static_cast<size_t>(mesh.clusters.at(0).material));
     }
@@ -27,8 +27,8 @@ const double faceted = std::sin(2 * std::numbers::pi / 64) * 64 / (2 * std::numb
 
 TEST_F(SdfVisualsTest, ABoxHasItsSize) {
     const auto geometry = shape("<box><size>2 4 6</size></box>");
-    expectBounds(boundsOf(*geometry), {-1, -2, -3}, {1, 2, 3});
-    EXPECT_NEAR(volumeOf(*geometry), 48, 1e-5);
+    expectBounds(getBounds(*geometry), {-1, -2, -3}, {1, 2, 3});
+    EXPECT_NEAR(computeVolume(*geometry), 48, 1e-5);
     EXPECT_EQ(geometry->triangleCount(), 12u);
 }
 
@@ -37,8 +37,8 @@ TEST_F(SdfVisualsTest, TheCornersOfASphereAreOnIt) {
     expectSound(*geometry);
     for (const glm::dvec3 corner : worldCorners(*geometry)) EXPECT_NEAR(glm::length(corner), 3, 1e-6);
     const double volume = 4 * std::numbers::pi / 3 * 27;
-    EXPECT_LT(volumeOf(*geometry), volume);
-    EXPECT_GT(volumeOf(*geometry), volume * 0.995);
+    EXPECT_LT(computeVolume(*geometry), volume);
+    EXPECT_GT(computeVolume(*geometry), volume * 0.995);
 }
 
 TEST_F(SdfVisualsTest, AnEllipsoidIsASphereOfThreeRadii) {
@@ -49,8 +49,8 @@ TEST_F(SdfVisualsTest, AnEllipsoidIsASphereOfThreeRadii) {
 
 TEST_F(SdfVisualsTest, ACylinderIsAlongZ) {
     const auto geometry = shape("<cylinder><radius>0.5</radius><length>4</length></cylinder>");
-    expectBounds(boundsOf(*geometry), {-0.5, -0.5, -2}, {0.5, 0.5, 2});
-    EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * faceted, 1e-5);
+    expectBounds(getBounds(*geometry), {-0.5, -0.5, -2}, {0.5, 0.5, 2});
+    EXPECT_NEAR(computeVolume(*geometry), std::numbers::pi * 0.25 * 4 * faceted, 1e-5);
     EXPECT_EQ(geometry->triangleCount(), 4u * 64);
 }
 
@@ -61,14 +61,15 @@ TEST_F(SdfVisualsTest, ACapsuleIsACylinderBetweenHalfSpheres) {
         const double beyond = std::max(0.0, std::abs(corner.z) - 2);
         EXPECT_NEAR(glm::length(glm::dvec3(corner.x, corner.y, beyond)), 0.5, 1e-6);
     }
-    const double half_spheres = volumeOf(*shape("<sphere><radius>0.5</radius></sphere>"));
-    EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * faceted + half_spheres, 1e-5);
+    const double half_spheres = computeVolume(*shape("<sphere><radius>0.5</radius></sphere>"));
+    EXPECT_NEAR(computeVolume(*geometry), std::numbers::pi * 0.25 * 4 * faceted + half_spheres, 1e-5);
 }
 
 TEST_F(SdfVisualsTest, APlaneIsPerpendicularToItsNormal) {
-    expectBounds(boundsOf(*shape("<plane><normal>0 0 1</normal><size>20 10</size></plane>")), {-10, -5, 0}, {10, 5, 0});
+    expectBounds(getBounds(*shape("<plane><normal>0 0 1</normal><size>20 10</size></plane>")), {-10, -5, 0},
+                 {10, 5, 0});
     const auto wall = shape("<plane><normal>1 0 0</normal><size>20 10</size></plane>");
-    expectBounds(boundsOf(*wall), {0, -5, -10}, {0, 5, 10});
+    expectBounds(getBounds(*wall), {0, -5, -10}, {0, 5, 10});
     const auto corners = worldCorners(*wall);
     EXPECT_GT(glm::cross(corners[1] - corners[0], corners[2] - corners[0]).x, 0);
 }
@@ -88,12 +89,12 @@ TEST_F(SdfVisualsTest, TheAcousticTagHasTheKeysOfGltf) {
         world("<model name='a'><link name='l'>" +
               visual("v", box_, acoustics("<sediment>rough_rock</sediment><roughness_slope>0.2</roughness_slope>")) +
               visual("u", box_, "<insonify:acoustics material='steel'/>") + visual("w", box_) + "</link></model>");
-    EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 0).lambert_db, -5);
-    EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 0).roughness_slope.value(), 0.2f);
-    EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 1).reflection, 0.936f);
-    EXPECT_EQ(materialOf(*scene.geometry, 1).matter, "steel");
-    EXPECT_TRUE(materialOf(*scene.geometry, 1).has_acoustics);
-    EXPECT_FALSE(materialOf(*scene.geometry, 2).has_acoustics);
+    EXPECT_FLOAT_EQ(getMaterial(*scene.geometry, 0).lambert_db, -5);
+    EXPECT_FLOAT_EQ(getMaterial(*scene.geometry, 0).roughness_slope.value(), 0.2f);
+    EXPECT_FLOAT_EQ(getMaterial(*scene.geometry, 1).reflection, 0.936f);
+    EXPECT_EQ(getMaterial(*scene.geometry, 1).matter, "steel");
+    EXPECT_TRUE(getMaterial(*scene.geometry, 1).has_acoustics);
+    EXPECT_FALSE(getMaterial(*scene.geometry, 2).has_acoustics);
 }
 
 TEST_F(SdfVisualsTest, AShellIsABlockOfElements) {
@@ -102,7 +103,7 @@ TEST_F(SdfVisualsTest, AShellIsABlockOfElements) {
                "</link></model>";
     };
     const Scene scene = world(shell("<thickness_mm>2</thickness_mm><material>glass</material><fill>air</fill>"));
-    EXPECT_EQ(materialOf(*scene.geometry, 0).shell.value(), (types::Shell{0.002, 2500, 5660, 3420, 5e-4, true}));
+    EXPECT_EQ(getMaterial(*scene.geometry, 0).shell.value(), (types::Shell{0.002, 2500, 5660, 3420, 5e-4, true}));
     EXPECT_NE(diagnosticOfWorld(shell("<material>glass</material>")).find("shell.thickness_mm: is missing"),
               std::string::npos);
 }
@@ -129,9 +130,9 @@ TEST_F(SdfVisualsTest, MaterialsAreOverriddenByScriptNameAndByModel) {
     types::Diagnostics diagnostics;
     const auto geometry = overrideMaterials(scene, {{"Gazebo/Wood", wood}, {"rov", steel}}, diagnostics);
     EXPECT_TRUE(diagnostics.empty());
-    EXPECT_FLOAT_EQ(materialOf(*geometry, 0).lambert_db, -30);
-    EXPECT_FLOAT_EQ(materialOf(*geometry, 1).reflection, 0.936f);
-    EXPECT_FALSE(materialOf(*geometry, 2).has_acoustics);
+    EXPECT_FLOAT_EQ(getMaterial(*geometry, 0).lambert_db, -30);
+    EXPECT_FLOAT_EQ(getMaterial(*geometry, 1).reflection, 0.936f);
+    EXPECT_FALSE(getMaterial(*geometry, 2).has_acoustics);
 }
 
 TEST_F(SdfVisualsTest, AScriptNameSelectsItsMatter) {
@@ -139,8 +140,8 @@ TEST_F(SdfVisualsTest, AScriptNameSelectsItsMatter) {
     const Scene scene = world("<model name='pier'><link name='l'>" + visual("v", box_, script) + "</link></model>" +
                               model("rov", box_));
     const auto geometry = applyMaterialNames(scene.geometry);
-    EXPECT_EQ(materialOf(*geometry, 0).matter, "wood");
-    EXPECT_FALSE(materialOf(*geometry, 1).has_acoustics);
+    EXPECT_EQ(getMaterial(*geometry, 0).matter, "wood");
+    EXPECT_FALSE(getMaterial(*geometry, 1).has_acoustics);
 }
 
 TEST_F(SdfVisualsTest, AHeightmapIsAGridOfItsPixels) {
@@ -163,7 +164,7 @@ TEST_F(SdfVisualsTest, AHeightmapOfManyPixelsIsReadInSteps) {
     write("plain.pgm", "P5 4097 3 255\n" + std::string(4097 * 3, '\xff'));
     const auto geometry = shape("<heightmap><uri>plain.pgm</uri><size>20 10 5</size></heightmap>");
     EXPECT_EQ(geometry->triangleCount(), 2u * 2048 * 2);
-    expectBounds(boundsOf(*geometry), {-10, -5, 5}, {10, 5, 5});
+    expectBounds(getBounds(*geometry), {-10, -5, 5}, {10, 5, 5});
 }
 
 TEST_F(SdfVisualsTest, AnUnsupportedVisualIsANotice) {

@@ -47,7 +47,7 @@ struct TwoVehiclesTest : SdfFiles {
                 types::Object object = snapshot->geometry->objects.at(moved.object);
                 if (!object.name.starts_with(model + "::")) continue;
                 object.world_from_object = glm::inverse(snapshot->sonar.worldFromBody()) * moved.world_from_object;
-                bounds = boundsOf(*snapshot->geometry, object);
+                bounds = getBounds(*snapshot->geometry, object);
             }
             return bounds;
         }

@@ -27,7 +27,7 @@ struct UrdfTest : SdfFiles {
                (type == "fixed" ? "" : "<axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/>") +
                "</joint>\n";
     }
-    static const types::Object& objectOf(const Scene& scene, const std::string& node) {
+    static const types::Object& getObject(const Scene& scene, const std::string& node) {
         const int index = findNode(scene, node);
         for (size_t i = 0; i < scene.object_nodes.size(); ++i)
             if (scene.object_nodes[i] == index) return scene.geometry->objects[i];
@@ -46,10 +46,10 @@ TEST_F(UrdfTest, KeepsLinksWithoutInertiaAtTheirPlaces) {
     ASSERT_EQ(scene.geometry->objects.size(), 3u);
     for (const char* const name : {"rov", "rov::base", "rov::upper", "rov::camera"})
         EXPECT_GE(findNode(scene, name), 0) << name;
-    expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::base")), {-0.1, -0.2, -0.3}, {0.1, 0.2, 0.3});
+    expectBounds(getBounds(*scene.geometry, getObject(scene, "rov::base")), {-0.1, -0.2, -0.3}, {0.1, 0.2, 0.3});
     // Turned by 90 degrees about y, its length along x; the fixed camera is at its end.
-    expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::upper")), {1, -0.1, -0.1}, {2, 0.1, 0.1}, 2e-3);
-    expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::camera")), {1.95, -0.05, -0.05}, {2.05, 0.05, 0.05},
+    expectBounds(getBounds(*scene.geometry, getObject(scene, "rov::upper")), {1, -0.1, -0.1}, {2, 0.1, 0.1}, 2e-3);
+    expectBounds(getBounds(*scene.geometry, getObject(scene, "rov::camera")), {1.95, -0.05, -0.05}, {2.05, 0.05, 0.05},
                  2e-3);
     EXPECT_EQ(scene.nodes[static_cast<size_t>(findNode(scene, "rov::camera"))].parent, findNode(scene, "rov::upper"))
         << "what moves the upper arm moves the camera";
@@ -64,7 +64,7 @@ TEST_F(UrdfTest, SeveralVisualsHaveTheMaterialsThatTheyName) {
                                         "<material name='rubber'><color rgba='0 0 0 1'/></material>"));
     ASSERT_EQ(scene.geometry->objects.size(), 2u);
     for (const types::Object& object : scene.geometry->objects) {
-        const bool is_upper = boundsOf(*scene.geometry, object).low.z > 1;
+        const bool is_upper = getBounds(*scene.geometry, object).low.z > 1;
         const types::Mesh& mesh = scene.geometry->meshes[static_cast<size_t>(object.mesh)];
         EXPECT_EQ(scene.geometry->materials[static_cast<size_t>(mesh.clusters[0].material)].name,
                   is_upper ? "rubber" : "steel");
@@ -82,7 +82,7 @@ TEST_F(UrdfTest, MeshesAreFoundByPackageAndByPath) {
             readScene(robot(link("base", "<mesh filename='" + std::string(name) + "' scale='0.5 0.5 0.5'/>")));
         ASSERT_EQ(scene.geometry->objects.size(), 1u)
             << name << ": " << testing::PrintToString(types::lines(scene.geometry->notices));
-        expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {1, 1, 0});
+        expectBounds(getBounds(*scene.geometry), {0, 0, 0}, {1, 1, 0});
     }
     const Scene without = readScene(robot(link("base", "<mesh filename='package://absent/fin.stl'/>")));
     EXPECT_TRUE(without.geometry->objects.empty());
@@ -90,15 +90,15 @@ TEST_F(UrdfTest, MeshesAreFoundByPackageAndByPath) {
 }
 
 TEST_F(UrdfTest, RefusesOtherXmlAtItsLine) {
-    EXPECT_THAT(diagnosticOf(write("cut.urdf", "<robot name='r'>\n<link name='a'>\n</robot>")),
+    EXPECT_THAT(findDiagnostic(write("cut.urdf", "<robot name='r'>\n<link name='a'>\n</robot>")),
                 testing::AllOf(HasSubstr("cut.urdf:2"), HasSubstr("is no XML (XML_ERROR_MISMATCHED_ELEMENT)")));
-    EXPECT_THAT(diagnosticOf(write("empty.urdf", "")), HasSubstr("is no XML (XML_ERROR_EMPTY_DOCUMENT)"));
-    EXPECT_THAT(diagnosticOf(write("world.urdf", "<sdf version='1.9'/>")), HasSubstr("holds no <robot>"));
-    EXPECT_THAT(diagnosticOf(robot("")), HasSubstr("is a robot without links"));
-    EXPECT_THAT(diagnosticOf(robot("<xacro:macro name='leg'/>")), HasSubstr("expand it: xacro IN > OUT.urdf"));
-    EXPECT_THAT(diagnosticOf(robot(link("a", small_) + joint("j", "fixed", "a", "b", "xyz='0 0 0'"))),
+    EXPECT_THAT(findDiagnostic(write("empty.urdf", "")), HasSubstr("is no XML (XML_ERROR_EMPTY_DOCUMENT)"));
+    EXPECT_THAT(findDiagnostic(write("world.urdf", "<sdf version='1.9'/>")), HasSubstr("holds no <robot>"));
+    EXPECT_THAT(findDiagnostic(robot("")), HasSubstr("is a robot without links"));
+    EXPECT_THAT(findDiagnostic(robot("<xacro:macro name='leg'/>")), HasSubstr("expand it: xacro IN > OUT.urdf"));
+    EXPECT_THAT(findDiagnostic(robot(link("a", small_) + joint("j", "fixed", "a", "b", "xyz='0 0 0'"))),
                 HasSubstr("arm.urdf"));
-    EXPECT_THAT(diagnosticOf(folder_ / "none.urdf"), HasSubstr("does not exist"));
+    EXPECT_THAT(findDiagnostic(folder_ / "none.urdf"), HasSubstr("does not exist"));
 }
 
 TEST_F(UrdfTest, AMeshOfAPackageThatIsNotFoundKeepsItsName) {

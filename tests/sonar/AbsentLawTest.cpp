@@ -9,7 +9,7 @@
 #include "components/sonar/tasks/AltimeterTask.hpp"
 #include "components/sonar/tasks/Sonar3dTask.hpp"
 #include "tests/support/ClosedForms.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -21,26 +21,26 @@ namespace {
 
 using acoustics::Weighting;
 using std::numbers::pi;
-using test::lawOf;
-using test::pingOf;
+using test::getLaw;
+using test::makePing;
 using types::radians;
 
 constexpr double depth = 4, from = 14, to = 20;  // of a flat bottom, and the slant ranges that are compared [m]
 
 SonarConfig litFan(int beams, double width_deg) {
     SonarConfig config =
-        test::sonarOf({.beams = beams, .width_deg = width_deg, .height_deg = 40, .bins = 220, .rows = 512});
+        test::getSonar({.beams = beams, .width_deg = width_deg, .height_deg = 40, .bins = 220, .rows = 512});
     config.quality.columns_per_beam = 2;
     return config;
 }
 
-double powerOf(const acoustics::BeamLaw& law, double azimuth) {
+double computePower(const acoustics::BeamLaw& law, double azimuth) {
     return acoustics::BeamPattern(law).power(std::remainder(azimuth, 2 * pi), 0);
 }
 
 /** Returns the integral of the transmit law over a beam's box [rad]. */
 double sentInto(const acoustics::BeamLaw& law, double bearing, double width) {
-    return test::integral(bearing - width / 2, bearing + width / 2, [&](double a) { return powerOf(law, a); });
+    return test::integral(bearing - width / 2, bearing + width / 2, [&](double a) { return computePower(law, a); });
 }
 
 double heardBy(const types::Sonar& ping, size_t beam) {
@@ -55,8 +55,8 @@ double heardBy(const types::Sonar& ping, size_t beam) {
 /** Every beam has the energy of its box times what is sent: mu H^2 (r1^-4 - r2^-4) / 4 times the integral. Returns
  *  whether any beam was compared. */
 bool expectBoxes(const SonarConfig& config, double tolerance) {
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-static_cast<float>(depth))}));
-    const types::Sonar ping = pingOf(config, snapshot);
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::ground(-static_cast<float>(depth))}));
+    const types::Sonar ping = makePing(config, snapshot);
     const double ring = depth * depth * test::inverseFourth(from, to);
     bool compared = false;
     for (size_t row = 0; row < ping.beam_count; ++row) {
@@ -73,8 +73,8 @@ bool expectBoxes(const SonarConfig& config, double tolerance) {
 TEST(AbsentLawTest, WithoutAReceiveLawEachBeamHearsItsBoxTimesWhatIsSent) {
     for (const double width_deg : {60.0, 8.0}) {
         SonarConfig config = litFan(6, 30);
-        config.beam_pattern.emplace().transmit.azimuth = lawOf(Weighting::Gaussian, width_deg);
-        for (const SonarConfig& way : test::everyWay(config)) EXPECT_TRUE(expectBoxes(way, 0.01));
+        config.beam_pattern.emplace().transmit.azimuth = getLaw(Weighting::Gaussian, width_deg);
+        for (const SonarConfig& way : test::everyRenderer(config)) EXPECT_TRUE(expectBoxes(way, 0.01));
     }
 }
 
@@ -95,7 +95,7 @@ TEST(AbsentLawTest, BoxesOfAnyTableOfBearingsHearWhatIsSentIntoThem) {
                 config.bearings_deg.push_back(std::remainder(first + i * step + between(-1, 1), 360));
             std::ranges::shuffle(config.bearings_deg, random);
         }
-        config.beam_pattern.emplace().transmit.azimuth = lawOf(Weighting::Gaussian, between(40, 150));
+        config.beam_pattern.emplace().transmit.azimuth = getLaw(Weighting::Gaussian, between(40, 150));
         compared += expectBoxes(config, 0.01) ? 1 : 0;
     }
     EXPECT_GT(compared, 6);
@@ -108,19 +108,20 @@ TEST(AbsentLawTest, APointIsHeardByTheBeamWhoseBoxHoldsItAloneWithAnyGeometryAnd
             config.visibility = Visibility::Cpu;
             config.frequency_khz = 600;
             config.beam_geometry = geometry;
-            config.beam_pattern.emplace().transmit.azimuth = lawOf(Weighting::Gaussian, 20);
+            config.beam_pattern.emplace().transmit.azimuth = getLaw(Weighting::Gaussian, 20);
             if (coherent) config.speckle.emplace().coherent = true;
-            types::Snapshot snapshot = test::snapshotOf(test::openWater());
+            types::Snapshot snapshot = test::makeSnapshot(test::openWater());
             const double azimuth = radians(-7.3);
             snapshot.targets = {{10.05 * glm::dvec3(std::cos(azimuth), std::sin(azimuth), 0), 0}};
-            const types::Sonar ping = pingOf(config, snapshot);
+            const types::Sonar ping = makePing(config, snapshot);
             for (size_t beam = 0; beam < 6; ++beam) {
                 const double level = heardBy(ping, beam),
                              all = double{*std::max_element(ping.bins.begin() + static_cast<long>(beam * 220),
                                                             ping.bins.begin() + static_cast<long>(beam * 220 + 220))};
                 EXPECT_EQ(level, 0);
                 if (beam == 1)
-                    EXPECT_NEAR(all * std::pow(10.05, 4) / powerOf(lawOf(Weighting::Gaussian, 20), azimuth), 1, 0.01);
+                    EXPECT_NEAR(all * std::pow(10.05, 4) / computePower(getLaw(Weighting::Gaussian, 20), azimuth), 1,
+                                0.01);
                 else
                     EXPECT_EQ(all, 0) << beam;
             }
@@ -132,7 +133,7 @@ TEST(AbsentLawTest, ASingleBeamAndAGridHaveBoxesToo) {
     altimeter.sonar = litFan(1, 10);
     altimeter.sonar.field_of_view_deg.reset();
     altimeter.sonar.beam_width_deg = 10;
-    altimeter.sonar.beam_pattern.emplace().transmit.azimuth = lawOf(Weighting::Gaussian, 12);
+    altimeter.sonar.beam_pattern.emplace().transmit.azimuth = getLaw(Weighting::Gaussian, 12);
     EXPECT_TRUE(expectBoxes(altimeter.beam(), 0.005));
     Sonar3dConfig grid;  // its rows are an upright fan: transmit.elevation is sent along the fan
     grid.sonar = litFan(1, 10);
@@ -140,7 +141,7 @@ TEST(AbsentLawTest, ASingleBeamAndAGridHaveBoxesToo) {
     grid.vertical = {6, 30};
     grid.horizontal = {4, 160};
     grid.sonar.beam_height_deg = 5;
-    grid.sonar.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 25);
+    grid.sonar.beam_pattern.emplace().transmit.elevation = getLaw(Weighting::Gaussian, 25);
     SonarConfig upright = grid.upright();
     upright.quality.rows = 256;
     EXPECT_TRUE(expectBoxes(upright, 0.005));
@@ -148,14 +149,14 @@ TEST(AbsentLawTest, ASingleBeamAndAGridHaveBoxesToo) {
 
 TEST(AbsentLawTest, ThePlanSaysThatBeamsReceiveBoxesAndTheBeamPrintedIsTheirs) {
     SonarConfig config = litFan(6, 30);
-    config.beam_pattern.emplace().transmit.azimuth = lawOf(Weighting::Gaussian, 60);
+    config.beam_pattern.emplace().transmit.azimuth = getLaw(Weighting::Gaussian, 60);
     SonarRenderer renderer(config, test::openWater());
     EXPECT_THAT(renderer.plan().notices, testing::Contains(testing::HasSubstr("its own 5 deg")));
     const Directivity& pattern = *renderer.renderPlan().directivity;
     EXPECT_NEAR(types::degrees(pattern.halfPowerAzimuth()), 5, 0.01);
     EXPECT_EQ(pattern.azimuth(radians(2.6), 0), 0);
     EXPECT_GT(pattern.azimuth(radians(2.4), 0), 0.99);
-    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
+    config.beam_pattern.emplace().receive.azimuth = getLaw(Weighting::Hann, 3);
     EXPECT_THAT(SonarRenderer(config, test::openWater()).plan().notices,
                 testing::Not(testing::Contains(testing::HasSubstr("alike"))));
 }
@@ -166,21 +167,21 @@ TEST(AbsentLawTest, OneLawInElevationAndAReceiveLawInAzimuthAreTheWholePattern) 
         SonarConfig config = litFan(6, 30);
         config.visibility = Visibility::Cpu;
         config.beam_height_deg = 20;
-        const acoustics::BeamLaw law = lawOf(Weighting::Gaussian, 30);
+        const acoustics::BeamLaw law = getLaw(Weighting::Gaussian, 30);
         (sent ? config.beam_pattern.emplace().transmit : config.beam_pattern.emplace().receive).elevation = law;
-        types::Snapshot snapshot = test::snapshotOf(test::openWater());
+        types::Snapshot snapshot = test::makeSnapshot(test::openWater());
         const double elevation = radians(13);
         snapshot.targets = {{10.05 * glm::dvec3(std::cos(elevation), 0.01, std::sin(elevation)), 0}};
-        const types::Sonar ping = pingOf(config, snapshot);
-        const double heard = test::sumOf(ping);
-        EXPECT_NEAR(heard * std::pow(10.05, 4) / powerOf(law, elevation), 1, 0.01);
+        const types::Sonar ping = makePing(config, snapshot);
+        const double heard = test::computeSum(ping);
+        EXPECT_NEAR(heard * std::pow(10.05, 4) / computePower(law, elevation), 1, 0.01);
     }
 }
 
 TEST(AbsentLawTest, ATransmitterWithoutALawRadiatesEvenlyOverFanAndAperture) {
     SonarConfig config = litFan(6, 30);
-    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
-    config.beam_pattern->receive.elevation = lawOf(Weighting::Hann, 10);
+    config.beam_pattern.emplace().receive.azimuth = getLaw(Weighting::Hann, 3);
+    config.beam_pattern->receive.elevation = getLaw(Weighting::Hann, 10);
     const SentPower sent(config);
     const auto towards = [&](double azimuth_deg, double elevation_deg) {
         const double a = radians(azimuth_deg), e = radians(elevation_deg);

@@ -24,7 +24,7 @@ types::GeometryPtr balls() {
         meshes.push_back(test::sphere(0.5f, 16));
         positions.emplace_back(i, 5, 0);
     }
-    return test::sceneOf(std::move(meshes), -10, positions);
+    return test::makeScene(std::move(meshes), -10, positions);
 }
 
 /** Returns snapshots of a sonar that looks to starboard first, and then turns to port, where the objects are. */
@@ -32,7 +32,7 @@ std::vector<types::SnapshotPtr> turning() {
     const types::GeometryPtr geometry = balls();
     std::vector<types::SnapshotPtr> snapshots;
     for (int i = 0; i < 40; ++i) {
-        types::Snapshot snapshot = test::snapshotOf(geometry, {0.1 * i, 0, 0}, -1.5 + 0.1 * i);
+        types::Snapshot snapshot = test::makeSnapshot(geometry, {0.1 * i, 0, 0}, -1.5 + 0.1 * i);
         snapshot.time = types::Time::fromSeconds(1 + 0.1 * i);
         glm::dmat4 place(1);
         place[3] = glm::dvec4(2, 4, 0.01 * i, 1);

@@ -14,7 +14,7 @@ namespace insonify::sonar {
 namespace {
 
 using test::ground;
-using test::sceneOf;
+using test::makeScene;
 
 constexpr double bin = 0.03;  // 20 us at 1500 m/s [m]
 
@@ -33,7 +33,7 @@ struct AltimeterTaskTest : test::TaskBench<AltimeterTask, types::SnapshotPtr, ty
     /** Returns the range at a height above a bottom, with the vehicle pitched and rolled [deg]. */
     types::Range rangeAt(double height, double pitch = 0, double roll = 0) {
         types::Snapshot snapshot =
-            test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}, 0, types::radians(pitch), types::radians(roll));
+            test::makeSnapshot(makeScene({ground(0)}), {0, 0, height}, 0, types::radians(pitch), types::radians(roll));
         snapshot.sonar.orientation *= glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
         return answerTo(std::make_shared<types::Snapshot>(snapshot));
     }
@@ -90,7 +90,7 @@ TEST_F(AltimeterTaskTest, MeasuresTheFootOfThePerpendicularOverASlope) {
         const double t = types::radians(tilt);
         const glm::vec3 u(std::cos(t), 0, std::sin(t)), v(0, 1, 0);
         types::Snapshot snapshot =
-            test::snapshotOf(sceneOf({test::quad(-500.f * u - 500.f * v, 1000.f * u, 1000.f * v)}), {0, 0, height});
+            test::makeSnapshot(makeScene({test::quad(-500.f * u - 500.f * v, 1000.f * u, 1000.f * v)}), {0, 0, height});
         snapshot.sonar.orientation = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
         const types::Range reported = answerTo(std::make_shared<types::Snapshot>(snapshot));
         EXPECT_NEAR(reported.range, height * std::cos(t), bin) << tilt;
@@ -116,7 +116,7 @@ TEST_F(AltimeterTaskTest, TheRangeIsUnknownWithoutAReturn) {
  * every second scene, else out of reach as well. */
 std::vector<types::GeometryPtr> scenesOfTiles(size_t count) {
     std::vector<types::Mesh> meshes(1, test::hills(60));
-    const auto always = sceneOf(std::move(meshes), -20);
+    const auto always = makeScene(std::move(meshes), -20);
     std::vector<types::GeometryPtr> scenes;
     for (size_t i = 0; i < count; ++i) {
         auto scene = std::make_shared<types::Geometry>(*always);
@@ -141,7 +141,7 @@ struct TooNearTest : AltimeterTaskTest {
         AltimeterTaskTest::startWith(config);
     }
     bool isTooNear(const types::GeometryPtr& scene) {
-        types::Snapshot snapshot = test::snapshotOf(scene);
+        types::Snapshot snapshot = test::makeSnapshot(scene);
         snapshot.sonar.orientation = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
         return answerTo(std::make_shared<types::Snapshot>(snapshot)).range == types::Range::too_near;
     }

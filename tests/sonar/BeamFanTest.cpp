@@ -66,15 +66,15 @@ types::Sonar plainPing(SonarConfig config, const types::Snapshot& snapshot) {
     return ping;
 }
 
-std::vector<float> beamOf(const types::Sonar& ping, uint32_t k) {
+std::vector<float> getBeam(const types::Sonar& ping, uint32_t k) {
     return {ping.bins.begin() + k * ping.bin_count, ping.bins.begin() + (k + 1) * ping.bin_count};
 }
 
 /** Inside of a room of 24 x 20 m, 6 m high, in the middle of which the sonar is. */
 types::Snapshot room(double yaw = 0) {
-    auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::block()}));
+    auto geometry = std::make_shared<types::Geometry>(*test::makeScene({test::block()}));
     geometry->objects[0].world_from_object = glm::scale(glm::dmat4(1), {12.0, 10.0, 3.0});
-    return test::snapshotOf(geometry, {}, yaw);
+    return test::makeSnapshot(geometry, {}, yaw);
 }
 
 }  // namespace
@@ -193,7 +193,7 @@ TEST(BeamFanTest, NoBeamIsEmptyIfBeamsAreNarrowerThanColumns) {
 
     const auto ping = plainPing(plainFan(110, 1000, 1), room());
     for (uint32_t k = 0; k < ping.beam_count; ++k) {
-        const auto beam = beamOf(ping, k);
+        const auto beam = getBeam(ping, k);
         EXPECT_GT(std::accumulate(beam.begin(), beam.end(), 0.0), 0) << k;
     }
 }
@@ -205,27 +205,27 @@ TEST(BeamFanTest, ABeamOfAFullTurnIsThatOfASonarOfTenDegrees) {
     for (int first : {0, 55, 117, 175, 236, 350}) {
         const auto few = plainPing(narrow, room(radians(first + 5 - 180)));
         for (uint32_t k = 0; k < 10; ++k)
-            EXPECT_LT(test::relativeL2(beamOf(all, static_cast<uint32_t>(first) + k), beamOf(few, k)), 1e-3)
+            EXPECT_LT(test::relativeL2(getBeam(all, static_cast<uint32_t>(first) + k), getBeam(few, k)), 1e-3)
                 << first + k;
     }
 }
 
 TEST(BeamFanTest, AWallThroughThreeFrustaHasNoSeam) {
     // Rotated by ten beams, the same bearings of the world are at other places in the frusta.
-    const auto wall = test::sceneOf({test::quad({10, -300, -50}, {0, 600, 0}, {0, 0, 100})});
+    const auto wall = test::makeScene({test::quad({10, -300, -50}, {0, 600, 0}, {0, 0, 100})});
     SonarConfig config = plainFan(150, 150, 4);
     config.quality.rows = 512;
-    const auto straight = plainPing(config, test::snapshotOf(wall));
-    const auto turned = plainPing(config, test::snapshotOf(wall, {}, radians(10)));
+    const auto straight = plainPing(config, test::makeSnapshot(wall));
+    const auto turned = plainPing(config, test::makeSnapshot(wall, {}, radians(10)));
     for (uint32_t k = 10; k < 140; ++k)
-        EXPECT_LT(test::relativeL2(beamOf(straight, k), beamOf(turned, k - 10)), 1e-3) << k;
+        EXPECT_LT(test::relativeL2(getBeam(straight, k), getBeam(turned, k - 10)), 1e-3) << k;
 }
 
 TEST(BeamFanTest, LevelGroundIsTheSameInEveryBeamOfThreeFrusta) {
     SonarConfig config = plainFan(150, 150, 4);
     config.quality.rows = 512;
-    const auto ping = plainPing(config, test::snapshotOf(test::sceneOf({test::ground(-5)})));
-    for (uint32_t k = 0; k < 150; ++k) EXPECT_LT(test::relativeL2(beamOf(ping, k), beamOf(ping, 75)), 1e-3) << k;
+    const auto ping = plainPing(config, test::makeSnapshot(test::makeScene({test::ground(-5)})));
+    for (uint32_t k = 0; k < 150; ++k) EXPECT_LT(test::relativeL2(getBeam(ping, k), getBeam(ping, 75)), 1e-3) << k;
 }
 
 }  // namespace insonify::sonar

@@ -97,7 +97,7 @@ SonarConfig sonarWith(acoustics::BeamLaw law) {
     return config;
 }
 
-acoustics::BeamLaw widthOf(double degrees, acoustics::Weighting weighting = acoustics::Weighting::Hann) {
+acoustics::BeamLaw computeWidth(double degrees, acoustics::Weighting weighting = acoustics::Weighting::Hann) {
     acoustics::BeamLaw law;
     law.weighting = weighting;
     law.width_deg = degrees;
@@ -105,7 +105,7 @@ acoustics::BeamLaw widthOf(double degrees, acoustics::Weighting weighting = acou
 }
 
 TEST(DirectivityTest, AStraightArraysBeamsWidenAsTheyAreSteeredAndThoseOfACurvedArrayDoNot) {
-    SonarConfig config = sonarWith(widthOf(2));
+    SonarConfig config = sonarWith(computeWidth(2));
     const Directivity curved(config);
     config.beam_geometry = BeamGeometry::Conical;
     const Directivity straight(config);
@@ -117,7 +117,7 @@ TEST(DirectivityTest, AStraightArraysBeamsWidenAsTheyAreSteeredAndThoseOfACurved
 }
 
 TEST(DirectivityTest, CellsReachToTheFloorAndAreFinerThanBeams) {
-    SonarConfig config = sonarWith(widthOf(2));
+    SonarConfig config = sonarWith(computeWidth(2));
     config.field_of_view_deg = 60;
     config.beam_count = 60;
     const SonarConfig sampled = sampledConfig(config, Directivity(config), true);
@@ -132,7 +132,7 @@ TEST(DirectivityTest, CellsReachToTheFloorAndAreFinerThanBeams) {
 
 TEST(DirectivityTest, SidelobesInElevationReachBeyondTheGivenAperture) {
     SonarConfig config;
-    config.beam_pattern.emplace().receive.elevation = widthOf(20, acoustics::Weighting::Uniform);
+    config.beam_pattern.emplace().receive.elevation = computeWidth(20, acoustics::Weighting::Uniform);
     const SonarConfig sampled = sampledConfig(config, Directivity(config), true);
     EXPECT_GT(sampled.beam_height_deg, 150);
     EXPECT_EQ(sampled.beams(), config.beams()) << "without a law in azimuth, beams are boxes";

@@ -6,7 +6,7 @@
 
 #include "components/sonar/renderer/BinExplanation.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "tests/support/RandomSonars.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -21,12 +21,12 @@ using test::RandomSonar;
 using testing::HasSubstr;
 using types::radians;
 
-double sumOf(const BinExplanation& explained) {
+double computeSum(const BinExplanation& explained) {
     return std::accumulate(explained.parts.begin(), explained.parts.end(), 0.0,
                            [](double sum, const BinPart& part) { return sum + part.intensity; });
 }
 
-const BinPart* partOf(const BinExplanation& explained, const std::string& name) {
+const BinPart* getPart(const BinExplanation& explained, const std::string& name) {
     const auto found = std::ranges::find(explained.parts, name, &BinPart::name);
     return found == explained.parts.end() ? nullptr : &*found;
 }
@@ -49,7 +49,7 @@ void expectSum(const PingTask& task, const types::Sonar& ping, size_t at, bool i
     SCOPED_TRACE(fmt::format("beam {}, bin {}\n{}", at / ping.bin_count, at % ping.bin_count, text(explained)));
     EXPECT_EQ(explained.is_mean, is_coherent);
     EXPECT_NEAR(explained.intensity, ping.bins[at], is_coherent ? 1e30 : 1e-5 * ping.bins[at]);
-    EXPECT_NEAR(sumOf(explained), explained.intensity, 1e-4 * explained.intensity);
+    EXPECT_NEAR(computeSum(explained), explained.intensity, 1e-4 * explained.intensity);
     const bool has_surface = std::ranges::any_of(
         explained.parts, [](const BinPart& part) { return part.of_surface && part.of_surface->is_in_beam; });
     EXPECT_NE(has_surface, !explained.why_no_surface.empty());
@@ -66,13 +66,13 @@ TEST(BinExplanationTest, ThePartsOfABinSumUpToItForEverySonar) {
     test::forEachSonar(18, [](const RandomSonar& drawn, Draw& draw) {
         for (const RandomSonar& one : {drawn, withPaths(drawn, draw)}) {
             test::SonarBench bench(one);
-            const types::Sonar ping = bench.pingsOf(one.scene()).back();
+            const types::Sonar ping = bench.getPings(one.scene()).back();
             for (const size_t at : someBins(ping, draw)) expectSum(bench.task(), ping, at, one.is_coherent);
         }
     });
 }
 
-std::string explanationOf(PingTask& task, double bearing_deg, double range) {
+std::string getExplanation(PingTask& task, double bearing_deg, double range) {
     std::string found;
     EXPECT_TRUE(test::becomesTrue([&] { return !(found = task.explain(bearing_deg, range)).empty(); }));
     return found;
@@ -83,7 +83,7 @@ TEST(BinExplanationTest, ARunningSonarExplainsItsLastPingWhileItGoesOn) {
         test::SonarBench bench(one);
         PingTask& task = bench.task();
         EXPECT_THROW(task.explain(0, 5), std::runtime_error) << "before the first ping";
-        const types::Sonar ping = bench.pingsOf(one.scene()).back();
+        const types::Sonar ping = bench.getPings(one.scene()).back();
         for (const size_t at : someBins(ping, draw)) {
             const size_t beam = at / ping.bin_count, bin = at % ping.bin_count;
             const double bearing = ping.bearings[beam].deg(),
@@ -91,36 +91,36 @@ TEST(BinExplanationTest, ARunningSonarExplainsItsLastPingWhileItGoesOn) {
             const PingTask::RenderedBeam rendered = task.renderedBeam(beam);
             EXPECT_EQ(task.explain(bearing, range), "") << "it has just begun";
             EXPECT_EQ(task.explain(bearing, range / 2), "") << "another place waits";
-            EXPECT_THAT(explanationOf(task, bearing, range),
+            EXPECT_THAT(getExplanation(task, bearing, range),
                         testing::AllOf(
                             testing::StartsWith("ping at "), HasSubstr(fmt::format(" bin {} at ", bin)),
                             testing::EndsWith(text(explainBin(rendered.config, rendered.scene, rendered.beam, bin)))));
-            EXPECT_THAT(explanationOf(task, bearing, range / 2), testing::StartsWith("ping at "));
+            EXPECT_THAT(getExplanation(task, bearing, range / 2), testing::StartsWith("ping at "));
         }
         EXPECT_EQ(task.explain(ping.bearings[0].deg(), 1), "");
-        bench.pingsOf(one.scene());  // meanwhile
+        bench.getPings(one.scene());  // meanwhile
         for (const double wrong : {-1.0, 1e6, std::nan("")})
-            EXPECT_THROW(explanationOf(task, ping.bearings[0].deg(), wrong), std::runtime_error) << wrong;
+            EXPECT_THROW(getExplanation(task, ping.bearings[0].deg(), wrong), std::runtime_error) << wrong;
     });
 }
 
 TEST(BinExplanationTest, ASonarHasNoBinBesideItsFan) {
     RandomSonar one = test::randomSonar(6);  // a fan of at most 140 deg
     test::SonarBench bench(one);
-    bench.pingsOf(one.scene());
+    bench.getPings(one.scene());
     EXPECT_THROW(bench.task().explain(180, 5), std::runtime_error);
     EXPECT_THROW(bench.task().explain(std::nan(""), 5), std::runtime_error);
 }
 
 /** 16 beams of 5 deg, 200 bins of 0.1 m, 60 deg high. */
 SonarConfig explainedFan() {
-    return test::sonarOf({.beams = 16, .width_deg = 80, .height_deg = 60, .bins = 200, .rows = 512, .columns = 4});
+    return test::getSonar({.beams = 16, .width_deg = 80, .height_deg = 60, .bins = 200, .rows = 512, .columns = 4});
 }
 
 /** Ground 3 m below the sonar, and on it a plate, 5 m ahead and 2 m high. */
 types::Snapshot plateOnGround() {
     auto scene = std::make_shared<types::Geometry>(
-        *test::sceneOf({test::ground(-3), test::quad({5, -20, -3}, {0, 40, 0}, {0, 0, 2})}, -12));
+        *test::makeScene({test::ground(-3), test::quad({5, -20, -3}, {0, 40, 0}, {0, 0, 2})}, -12));
     scene->materials[0].name = "gravel";
     types::Material steel = scene->materials[0];
     steel.name = "steel";
@@ -129,7 +129,7 @@ types::Snapshot plateOnGround() {
     scene->meshes[1].clusters[0].material = 1;
     scene->objects[0].name = "floor";
     scene->objects[1].name = "plate";
-    return test::snapshotOf(scene);
+    return test::makeSnapshot(scene);
 }
 
 class BinExplanationOfAPlate : public testing::TestWithParam<int> {
@@ -137,7 +137,7 @@ protected:
     BinExplanation at(double range, size_t beam = 8) const {
         return explainBin(config, plateOnGround(), beam, static_cast<size_t>(range / 0.1));
     }
-    SonarConfig config = test::everyWay(explainedFan())[static_cast<size_t>(GetParam())];
+    SonarConfig config = test::everyRenderer(explainedFan())[static_cast<size_t>(GetParam())];
 };
 
 /** At slant range r the plate is seen at the elevation -acos(5 / r). Its diagonal is there at z = -2, at 5.39 m. */
@@ -186,13 +186,13 @@ TEST_P(BinExplanationOfAPlate, NamesWhatIsNoSurface) {
     config.pulse->ring_down->level_db = -20;
     config.pulse->ring_down->decay_db_per_m = 40;
     const BinExplanation near = at(0.25), middle = at(3.05), plate = at(5.25);
-    ASSERT_NE(partOf(near, "transmit ring-down"), nullptr) << text(near);
+    ASSERT_NE(getPart(near, "transmit ring-down"), nullptr) << text(near);
     EXPECT_EQ(near.parts[0].name, "transmit ring-down");
-    EXPECT_EQ(partOf(middle, "transmit ring-down"), nullptr) << text(middle);
+    EXPECT_EQ(getPart(middle, "transmit ring-down"), nullptr) << text(middle);
     EXPECT_THAT(middle.parts[0].name, HasSubstr("reverberation"));
     EXPECT_THAT(middle.why_no_surface, HasSubstr("before the first surface"));
     EXPECT_EQ(plate.parts.at(0).name, "plate");
-    EXPECT_NEAR(sumOf(plate), plate.intensity, 1e-5 * plate.intensity);
+    EXPECT_NEAR(computeSum(plate), plate.intensity, 1e-5 * plate.intensity);
 }
 
 /** A beam with a pattern receives the plate through its sidelobes as well. */
@@ -200,8 +200,8 @@ TEST_P(BinExplanationOfAPlate, SaysThatAnEchoCameThroughSidelobes) {
     acoustics::BeamLaw law;
     law.width_deg = 3;
     config.beam_pattern.emplace().receive.azimuth = law;
-    auto scene = std::make_shared<types::Geometry>(*test::sceneOf({test::sphere(0.3f, 16)}, 0, {{6, 3, 0}}));
-    const BinExplanation explained = explainBin(config, test::snapshotOf(scene), 3, 66);  // the sphere is at 26.6 deg
+    auto scene = std::make_shared<types::Geometry>(*test::makeScene({test::sphere(0.3f, 16)}, 0, {{6, 3, 0}}));
+    const BinExplanation explained = explainBin(config, test::makeSnapshot(scene), 3, 66);  // the sphere is at 26.6 deg
     ASSERT_EQ(explained.parts.size(), 1u) << text(explained);
     const SurfaceEcho& echo = explained.parts[0].of_surface.value();
     EXPECT_FALSE(echo.is_in_beam);
@@ -215,17 +215,17 @@ TEST_P(BinExplanationOfAPlate, RefusesABeamOrABinThatIsNotThere) {
     EXPECT_THROW(at(20.05), std::out_of_range);
 }
 
-std::string nameOfWay(const testing::TestParamInfo<int>& info) {
+std::string nameRenderer(const testing::TestParamInfo<int>& info) {
     return std::vector{"Rays", "Drawn", "DrawnAndDepositedOnTheDevice"}[static_cast<size_t>(info.param)];
 }
-INSTANTIATE_TEST_SUITE_P(Ways, BinExplanationOfAPlate, testing::Range(0, 3), nameOfWay);
+INSTANTIATE_TEST_SUITE_P(Ways, BinExplanationOfAPlate, testing::Range(0, 3), nameRenderer);
 
 /** The image of a plate in the water surface: out directly and back by it, in a bin behind the plate's own. */
 TEST(BinExplanationTest, NamesTheKindOfPath) {
     SonarConfig config = explainedFan();
     config.visibility = Visibility::Cpu;
     config.multipath.emplace().surface.emplace().wind_m_s = 0;
-    types::Snapshot scene = test::snapshotOf(test::sceneOf({test::quad({10, -2, -1}, {0, 4, 0}, {0, 0, 1})}));
+    types::Snapshot scene = test::makeSnapshot(test::makeScene({test::quad({10, -2, -1}, {0, 4, 0}, {0, 0, 1})}));
     scene.water_surface = 2;
     std::set<std::string> paths;
     for (size_t bin = 95; bin < 125; ++bin)
@@ -236,14 +236,14 @@ TEST(BinExplanationTest, NamesTheKindOfPath) {
 }
 
 TEST(BinExplanationTest, NamesAWallThatSoundHasPassed) {
-    auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::wall(5), test::wall(8)}));
+    auto geometry = std::make_shared<types::Geometry>(*test::makeScene({test::wall(5), test::wall(8)}));
     geometry->materials.push_back(geometry->materials[0]);
     geometry->materials[1].shell = {.thickness = 0.002, .density = 1100, .sound_speed = 1700};
     geometry->meshes[0].clusters[0].material = 1;
     SonarConfig config = explainedFan();
     config.visibility = Visibility::Cpu;
     config.frequency_khz = 100;
-    const BinExplanation explained = explainBin(config, test::snapshotOf(geometry), 8, 80);
+    const BinExplanation explained = explainBin(config, test::makeSnapshot(geometry), 8, 80);
     ASSERT_FALSE(explained.parts.empty());
     EXPECT_EQ(explained.parts[0].name, "object_1");
     EXPECT_EQ(explained.parts[0].of_surface->path, "through a wall");

@@ -65,7 +65,7 @@ types::GeometryPtr withFloor(const types::GeometryPtr& geometry) {
     return scene.geometry;
 }
 
-std::unique_ptr<scene::Bathymetry> floorOf(const std::string& file, double reach, int tile) {
+std::unique_ptr<scene::Bathymetry> makeFloor(const std::string& file, double reach, int tile) {
     scene::BathymetryConfig config;
     config.easting = config.northing = 0;
     config.reach = reach;
@@ -98,16 +98,16 @@ std::vector<std::pair<std::string, SonarConfig>> sonars() {
 TEST(ChangingSceneTest, AMissionOverTilesMatchesNewRenderersForEachTile) {
     const Folder folder;
     const std::string file = survey(folder, 120, 700);
-    const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
+    const types::GeometryPtr rest = withFloor(test::makeScene({test::block()}, -10, {{30, -60, -9}}));
     for (const auto& [name, config] : sonars()) {
-        const auto floor = floorOf(file, 30, 6);
-        const auto fresh_floor = floorOf(file, 30, 6);
+        const auto floor = makeFloor(file, 30, 6);
+        const auto fresh_floor = makeFloor(file, 30, 6);
         std::unique_ptr<SonarRenderer> kept;
         types::GeometryPtr before;
         int changes = 0;
         double received = 0;
         for (double way = 40; way < 660; way += 3) {
-            types::Snapshot snapshot = test::snapshotOf(floor->about({way, -60, -4}, rest), {way, -60, -4}, 0, 0.5);
+            types::Snapshot snapshot = test::makeSnapshot(floor->about({way, -60, -4}, rest), {way, -60, -4}, 0, 0.5);
             snapshot.ahead = floor->ahead();
             snapshot.water_surface = 0;
             if (!kept) kept = std::make_unique<SonarRenderer>(config, snapshot.geometry);
@@ -141,7 +141,7 @@ TEST(ChangingSceneTest, ObjectsThatAppearDisappearAndMoveMatchNewRenderers) {
                     geometry->objects.push_back({fmt::format("new {}", mesh), static_cast<int>(mesh),
                                                  glm::translate(glm::dmat4(1), at), evenly(random, 0, 1) < 0.7});
                 }
-                types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 0}, evenly(random, -0.5, 0.5));
+                types::Snapshot snapshot = test::makeSnapshot(geometry, {0, 0, 0}, evenly(random, -0.5, 0.5));
                 snapshot.water_surface = 3;
                 snapshot.moved = {{1, glm::translate(glm::dmat4(1), {evenly(random, 6, 12), 2, -1})}};
                 kept.setGeometry(geometry);
@@ -152,7 +152,7 @@ TEST(ChangingSceneTest, ObjectsThatAppearDisappearAndMoveMatchNewRenderers) {
 }
 
 TEST(ChangingSceneTest, AMaterialOfANewObjectChangesThePlanAndThePings) {
-    const auto bare = std::make_shared<types::Geometry>(*test::sceneOf({test::ground(-4), test::sphere(1, 30)}, -20));
+    const auto bare = std::make_shared<types::Geometry>(*test::makeScene({test::ground(-4), test::sphere(1, 30)}, -20));
     bare->objects[1].world_from_object = glm::translate(glm::dmat4(1), {8, 0, -1});
     auto shiny = std::make_shared<types::Geometry>(*bare);
     shiny->materials.push_back(shiny->materials[0]);
@@ -168,24 +168,24 @@ TEST(ChangingSceneTest, AMaterialOfANewObjectChangesThePlanAndThePings) {
     of_shiny.setQuality(48, 3);
     for (int turn = 0; turn < 3; ++turn) {
         EXPECT_EQ(kept.setGeometry(bare), turn > 0);
-        EXPECT_EQ(binsWith(kept, test::snapshotOf(bare)), binsWith(of_bare, test::snapshotOf(bare)));
+        EXPECT_EQ(binsWith(kept, test::makeSnapshot(bare)), binsWith(of_bare, test::makeSnapshot(bare)));
         EXPECT_TRUE(kept.setGeometry(shiny));
-        EXPECT_EQ(binsWith(kept, test::snapshotOf(shiny)), binsWith(of_shiny, test::snapshotOf(shiny)));
+        EXPECT_EQ(binsWith(kept, test::makeSnapshot(shiny)), binsWith(of_shiny, test::makeSnapshot(shiny)));
         EXPECT_EQ(kept.renderPlan().config.rows(), 48) << "quality is kept";
     }
-    EXPECT_NE(binsWith(of_bare, test::snapshotOf(bare)), binsWith(of_shiny, test::snapshotOf(shiny)));
+    EXPECT_NE(binsWith(of_bare, test::makeSnapshot(bare)), binsWith(of_shiny, test::makeSnapshot(shiny)));
 }
 
 TEST(ChangingSceneTest, KeepsMeshesTreesAndThreads) {
     const Folder folder;
-    const auto floor = floorOf(survey(folder, 120, 300), 30, 8);
-    const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
+    const auto floor = makeFloor(survey(folder, 120, 300), 30, 8);
+    const types::GeometryPtr rest = withFloor(test::makeScene({test::block()}, -10, {{30, -60, -9}}));
     types::GeometryPtr before = floor->about({60, -60, -4}, rest);
     SonarRenderer renderer(wideFan(), before);
-    binsWith(renderer, test::snapshotOf(before, {60, -60, -4}, 0, 0.5));
+    binsWith(renderer, test::makeSnapshot(before, {60, -60, -4}, 0, 0.5));
     size_t running = 0;
     for (double way = 61; way < 200; way += 1) {
-        types::Snapshot snapshot = test::snapshotOf(floor->about({way, -60, -4}, rest), {way, -60, -4}, 0, 0.5);
+        types::Snapshot snapshot = test::makeSnapshot(floor->about({way, -60, -4}, rest), {way, -60, -4}, 0, 0.5);
         snapshot.ahead = floor->ahead();
         std::vector<std::weak_ptr<MeshFacts>> kept;
         std::vector<std::weak_ptr<MeshTree>> trees;
@@ -220,8 +220,8 @@ struct ChosenQualityTest : test::TaskBench<SonarTask, types::SnapshotPtr, types:
 
 TEST_F(ChosenQualityTest, IsKeptForTheNextTile) {
     const Folder folder;
-    const auto floor = floorOf(survey(folder, 120, 300), 30, 8);
-    const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
+    const auto floor = makeFloor(survey(folder, 120, 300), 30, 8);
+    const types::GeometryPtr rest = withFloor(test::makeScene({test::block()}, -10, {{30, -60, -9}}));
     SonarConfig config = wideFan();
     config.quality = {};
     config.quality.target_error = 0.01;
@@ -230,7 +230,7 @@ TEST_F(ChosenQualityTest, IsKeptForTheNextTile) {
     std::pair<int, int> chosen;
     for (int i = 0; i < 40; ++i) {
         const glm::dvec3 at(60 + 2.5 * i, -60, -4);
-        auto snapshot = std::make_shared<types::Snapshot>(test::snapshotOf(floor->about(at, rest), at, 0, 0.5));
+        auto snapshot = std::make_shared<types::Snapshot>(test::makeSnapshot(floor->about(at, rest), at, 0, 0.5));
         snapshot->time.microseconds += 1'000'000 * i;
         scenes.insert(snapshot->geometry);
         ASSERT_TRUE(answerTo(snapshot)) << task_.lastError();

@@ -15,19 +15,19 @@ namespace insonify::sonar {
 namespace {
 
 using test::expectForm;
-using test::pingOf;
+using test::makePing;
 using types::radians;
 
 /** Bins of whole microseconds at 1000 m/s: 0.1 m is 100 us. */
-SonarConfig sonarOf(double fov_deg, double height_deg, int beams, double bin, int bins) {
+SonarConfig getSonar(double fov_deg, double height_deg, int beams, double bin, int bins) {
     const int columns = std::max(2, 512 / beams);
-    return test::sonarOf({.beams = beams,
-                          .width_deg = fov_deg,
-                          .height_deg = height_deg,
-                          .bins = bins,
-                          .bin = bin,
-                          .rows = 512,
-                          .columns = columns});
+    return test::getSonar({.beams = beams,
+                           .width_deg = fov_deg,
+                           .height_deg = height_deg,
+                           .bins = bins,
+                           .bin = bin,
+                           .rows = 512,
+                           .columns = columns});
 }
 
 SonarConfig published(SonarConfig config) {
@@ -39,41 +39,41 @@ SonarConfig published(SonarConfig config) {
 
 TEST(ClosedFormTest, FlatBottomUnderALevelFanIsTheSameInAllBeams) {
     const double height = 5, fov = 130, elevation = radians(20);
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5)}));
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::ground(-5)}));
     for (int beams : {64, 256}) {
         const double delta = radians(fov / beams);
-        expectForm(pingOf(sonarOf(fov, 40, beams, 0.1, 500), snapshot), test::flatBottom(height, elevation, delta),
+        expectForm(makePing(getSonar(fov, 40, beams, 0.1, 500), snapshot), test::flatBottom(height, elevation, delta),
                    test::flatBottomWithoutCosine(height, elevation, delta));
     }
 }
 
 TEST(ClosedFormTest, AnyPlaneFacingDiscShowsOmegaOverRToTheFifth) {
     const double distance = 10, edge = 10.4, radius = std::sqrt(edge * edge - distance * distance);
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::disc(distance, radius)}, -10));
-    expectForm(pingOf(sonarOf(40, 40, 1, 0.1, 120), snapshot), test::planeDisc(distance, edge, 0.1),
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::disc(distance, radius)}, -10));
+    expectForm(makePing(getSonar(40, 40, 1, 0.1, 120), snapshot), test::planeDisc(distance, edge, 0.1),
                test::planeDisc(distance, edge, 0.105));
 }
 
 TEST(ClosedFormTest, RolledPlaneHasTheSameEnergyPerRangeAsALevelOneInAConeOfAllBearings) {
     // A plane ahead, rotated about the line of sight, is the facing disc again: no bin may depend on roll.
     const double distance = 10, edge = 10.4, radius = std::sqrt(edge * edge - distance * distance);
-    const auto geometry = test::sceneOf({test::disc(distance, radius)});
-    const auto config = sonarOf(40, 40, 1, 0.1, 120);
-    const test::Form straight = test::formOf(pingOf(config, test::snapshotOf(geometry)));
-    expectForm(pingOf(config, test::snapshotOf(geometry, {}, 0, 0, 0.3)), straight, test::times(1.02, straight));
+    const auto geometry = test::makeScene({test::disc(distance, radius)});
+    const auto config = getSonar(40, 40, 1, 0.1, 120);
+    const test::Form straight = test::getForm(makePing(config, test::makeSnapshot(geometry)));
+    expectForm(makePing(config, test::makeSnapshot(geometry, {}, 0, 0, 0.3)), straight, test::times(1.02, straight));
 }
 
 TEST(ClosedFormTest, PitchedPlaneFollowsTheThinBeamForm) {
     const double height = 5, pitch = radians(30), half = radians(20), delta = radians(1);
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5)}), {}, 0, pitch);
-    expectForm(pingOf(sonarOf(1, 40, 1, 0.1, 300), snapshot), test::pitchedBottom(height, pitch, half, delta, pitch),
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::ground(-5)}), {}, 0, pitch);
+    expectForm(makePing(getSonar(1, 40, 1, 0.1, 300), snapshot), test::pitchedBottom(height, pitch, half, delta, pitch),
                test::pitchedBottom(height, pitch, half, delta, 0));
 }
 
 TEST(ClosedFormTest, SphereFollowsItsRangeDensity) {
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::sphere(1, 256)}, 0, {{10, 0, 0}}));
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::sphere(1, 256)}, 0, {{10, 0, 0}}));
     // Bins of 0.2 m: at the limb one pixel spans 0.1 m of range, so that narrower bins would test the silhouette.
-    expectForm(pingOf(sonarOf(12, 12, 1, 0.2, 60), snapshot), test::sphereEcho(1, 10),
+    expectForm(makePing(getSonar(12, 12, 1, 0.2, 60), snapshot), test::sphereEcho(1, 10),
                test::times(1.03, test::sphereEcho(1, 10)));
 }
 
@@ -81,8 +81,8 @@ TEST(ClosedFormTest, BinsAtTheLimbOfASphereAreRightToTheirPixels) {
     // The last pixel before the limb is 4 mm wide and spans sqrt(2 * 1 m * 4 mm), 0.09 m of range, on a sphere of 1 m:
     // there a bin of 0.025 m depends on single pixels, each rasterised as the plane of its triangle.
     const double limb = std::sqrt(99.0), pixel = 0.09;
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::sphere(1, 512)}, 0, {{10, 0, 0}}));
-    const types::Sonar ping = pingOf(sonarOf(12, 12, 1, 0.025, 480), snapshot);
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::sphere(1, 512)}, 0, {{10, 0, 0}}));
+    const types::Sonar ping = makePing(getSonar(12, 12, 1, 0.025, 480), snapshot);
     const test::Form form = test::sphereEcho(1, 10);
     double at_limb = 0, right_at_limb = 0, beyond = 0, all = 0;
     for (uint32_t k = 364; k < ping.bin_count; ++k) {  // from 9.1 m on: nearer, facets of the ball fill single bins
@@ -116,20 +116,20 @@ struct RandomSphere {
         place = glm::mat4_cast(glm::normalize(glm::dquat(axis.w, axis.x, axis.y, axis.z)));
         place[3] = glm::dvec4(distance * std::cos(elevation) * std::cos(azimuth),
                               distance * std::cos(elevation) * std::sin(azimuth), distance * std::sin(elevation), 1);
-        config = test::sonarOf({.beams = 64,
-                                .width_deg = 32,
-                                .height_deg = 32,
-                                .bins = static_cast<int>((distance + 2 * radius) / bin),
-                                .bin = bin,
-                                .rows = rows,
-                                .columns = columns});
+        config = test::getSonar({.beams = 64,
+                                 .width_deg = 32,
+                                 .height_deg = 32,
+                                 .bins = static_cast<int>((distance + 2 * radius) / bin),
+                                 .bin = bin,
+                                 .rows = rows,
+                                 .columns = columns});
         config.visibility = Visibility::Cpu;
     }
     /** Energies of all beams together by bin. */
     std::vector<double> receive(types::Sonar& ping) const {
-        auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({mesh}));
+        auto geometry = std::make_shared<types::Geometry>(*test::makeScene({mesh}));
         geometry->objects[0].world_from_object = place;
-        ping = pingOf(config, test::snapshotOf(geometry));
+        ping = makePing(config, test::makeSnapshot(geometry));
         std::vector<double> sums(ping.bin_count);
         for (size_t i = 0; i < ping.bins.size(); ++i) sums[i % ping.bin_count] += static_cast<double>(ping.bins[i]);
         return sums;
@@ -177,7 +177,7 @@ TEST(ClosedFormTest, NoEchoIsBeforeASphereOrBehindItsLimb) {
                 EXPECT_NEAR(last, right, 0.02 * right);
             }
             sphere.mesh.indices.resize(sphere.mesh.indices.size() - 3);  // open, and so of planes
-            sphere.mesh = study::meshOf(sphere.mesh.positions, sphere.mesh.indices);
+            sphere.mesh = study::getMesh(sphere.mesh.positions, sphere.mesh.indices);
             const std::vector<double> planes = sphere.receive(ping);
             for (uint32_t k = 0; k < ping.bin_count; ++k)
                 if (ping.binStart(k) >= end) behind_planes = std::max(behind_planes, planes[k] / peak);
@@ -212,12 +212,12 @@ TEST(ClosedFormTest, FacetsBendAsTheSmoothClosedBodyDoes) {
         EXPECT_TRUE(facetCurves(ball, glm::dmat3(1)).empty()) << "open";
     }
     EXPECT_TRUE(facetCurves(test::ground(-5), glm::dmat3(1)).empty());
-    EXPECT_TRUE(facetCurves(study::tilesOf(study::FractalFloor{}, 8).front(), glm::dmat3(1)).empty());
+    EXPECT_TRUE(facetCurves(study::makeTiles(study::FractalFloor{}, 8).front(), glm::dmat3(1)).empty());
 }
 
 TEST(ClosedFormTest, WallAheadFollowsTheThinVerticalBeamForm) {
     const double distance = 10, half = radians(20), delta = radians(1);
-    expectForm(pingOf(sonarOf(1, 40, 1, 0.1, 150), test::snapshotOf(test::sceneOf({test::wall(10)}))),
+    expectForm(makePing(getSonar(1, 40, 1, 0.1, 150), test::makeSnapshot(test::makeScene({test::wall(10)}))),
                test::thinBeamOnWall(distance, half, delta), test::thinBeamOnFadingWall(distance, half, delta));
 }
 
@@ -225,20 +225,20 @@ TEST(ClosedFormTest, TwoObjectsAtOneRangeDoubleTheEnergyButNotThePublishedMean) 
     const types::Mesh ball = test::sphere(0.3f, 64);
     const double up = radians(6);
     const glm::dvec3 high(10 * std::cos(up), 0, 10 * std::sin(up)), low(10 * std::cos(up), 0, -10 * std::sin(up));
-    const auto one = test::snapshotOf(test::sceneOf({ball}, 0, {high}));
-    const auto two = test::snapshotOf(test::sceneOf({ball, ball}, 0, {high, low}));
-    const auto config = sonarOf(10, 20, 1, 0.1, 120);
-    const test::Form single = test::formOf(pingOf(config, one));
-    expectForm(pingOf(config, two), test::times(2, single), single);
-    const test::Form mean = test::formOf(pingOf(published(config), one));
-    expectForm(pingOf(published(config), two), mean, test::times(2, mean));
+    const auto one = test::makeSnapshot(test::makeScene({ball}, 0, {high}));
+    const auto two = test::makeSnapshot(test::makeScene({ball, ball}, 0, {high, low}));
+    const auto config = getSonar(10, 20, 1, 0.1, 120);
+    const test::Form single = test::getForm(makePing(config, one));
+    expectForm(makePing(config, two), test::times(2, single), single);
+    const test::Form mean = test::getForm(makePing(published(config), one));
+    expectForm(makePing(published(config), two), mean, test::times(2, mean));
 }
 
 TEST(ClosedFormTest, ShadowBehindAScreenEndsWhereTheTopRayMeetsTheBottom) {
     // A screen of height h is on the bottom at horizontal distance R; the sonar is at height H.
     const double height = 5, screen = 2, ground_range = 15;
-    const auto geometry = test::sceneOf({test::ground(-5), test::quad({15, -50, -5}, {0, 100, 0}, {0, 0, 2})});
-    const auto ping = pingOf(sonarOf(1, 60, 1, 0.1, 400), test::snapshotOf(geometry));
+    const auto geometry = test::makeScene({test::ground(-5), test::quad({15, -50, -5}, {0, 100, 0}, {0, 0, 2})});
+    const auto ping = makePing(getSonar(1, 60, 1, 0.1, 400), test::makeSnapshot(geometry));
     const auto first_dark = static_cast<size_t>(std::hypot(ground_range, height) / 0.1) + 2;
     size_t end = first_dark;
     while (end < 400 && ping.bins[end] == 0) ++end;
@@ -249,21 +249,21 @@ TEST(ClosedFormTest, ShadowBehindAScreenEndsWhereTheTopRayMeetsTheBottom) {
 TEST(ClosedFormTest, AMeshEchoesAsItsTilesDo) {
     study::StudyScene scene = study::roughFloor();
     scene.config.visibility = Visibility::Cpu;
-    std::vector<types::Mesh> tiles = study::tilesOf(study::FractalFloor{}, 8);  // of 64 x 64 squares
+    std::vector<types::Mesh> tiles = study::makeTiles(study::FractalFloor{}, 8);  // of 64 x 64 squares
     std::vector<glm::dvec3> a_millimetre_apart;
     for (size_t i = 0; i < tiles.size(); ++i)
         a_millimetre_apart.push_back(1e-3 *
                                      glm::dvec3(static_cast<double>(i / 8) - 4, static_cast<double>(i % 8) - 4, 0));
     types::Snapshot cut = scene.snapshot, apart = scene.snapshot;
-    cut.geometry = study::sceneOf(tiles);
-    apart.geometry = study::sceneOf(std::move(tiles), std::move(a_millimetre_apart));
+    cut.geometry = study::makeScene(tiles);
+    apart.geometry = study::makeScene(std::move(tiles), std::move(a_millimetre_apart));
     scene.config.quality.columns_per_beam = 2;
     for (const int rows : {128, 256}) {
         scene.config.quality.rows = rows;
-        const types::Sonar whole = pingOf(scene.config, scene.snapshot);
+        const types::Sonar whole = makePing(scene.config, scene.snapshot);
         const auto off = [&](const types::Snapshot& snapshot) {
             const std::vector<double> reference(whole.bins.begin(), whole.bins.end());
-            return sonar::compare(pingOf(scene.config, snapshot).bins, reference,
+            return sonar::compare(makePing(scene.config, snapshot).bins, reference,
                                   {static_cast<int>(whole.beam_count), static_cast<int>(whole.bin_count),
                                    whole.binStart(1) - whole.binStart(0), 0})
                 .rel_l2_tvg;
@@ -276,14 +276,14 @@ TEST(ClosedFormTest, AMeshEchoesAsItsTilesDo) {
 }
 
 TEST(CerqueiraLimitTest, EveryPlaneIsTheSigmoidOfDistanceOverRange) {
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5)}));
-    expectForm(pingOf(published(sonarOf(130, 80, 64, 0.1, 300)), snapshot), test::publishedBottom(5, radians(40)),
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::ground(-5)}));
+    expectForm(makePing(published(getSonar(130, 80, 64, 0.1, 300)), snapshot), test::publishedBottom(5, radians(40)),
                test::publishedBottom(5.05, radians(40)));
 }
 
 TEST(CerqueiraLimitTest, ThePlanesLimitDoesNotDependOnPitch) {
-    auto config = published(sonarOf(130, 40, 64, 0.1, 300));
-    const auto ping = pingOf(config, test::snapshotOf(test::sceneOf({test::ground(-5)}), {}, 0, radians(15)));
+    auto config = published(getSonar(130, 40, 64, 0.1, 300));
+    const auto ping = makePing(config, test::makeSnapshot(test::makeScene({test::ground(-5)}), {}, 0, radians(15)));
     for (uint32_t beam = 16; beam < 48; ++beam)  // beams that see all of 10 to 25 m
         for (uint32_t k = 100; k < 250; ++k) {
             const double right = test::sigmoid(5 / ping.binStart(k + 0.5));
@@ -296,8 +296,8 @@ TEST(CerqueiraLimitTest, ThePlanesLimitDoesNotDependOnPitch) {
 TEST(CerqueiraLimitTest, SphereIsTheSigmoidOfItsIncidence) {
     // The first and last range of the sphere are inside bins. A mean has no weight, so a bin that only a rounding
     // touches shows the sphere in full.
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::sphere(1, 256)}, 0, {{10.03, 0, 0}}));
-    expectForm(pingOf(published(sonarOf(14, 14, 1, 0.1, 120)), snapshot), test::publishedSphere(1, 10.03),
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::sphere(1, 256)}, 0, {{10.03, 0, 0}}));
+    expectForm(makePing(published(getSonar(14, 14, 1, 0.1, 120)), snapshot), test::publishedSphere(1, 10.03),
                test::publishedSphere(1.02, 10.05));
 }
 

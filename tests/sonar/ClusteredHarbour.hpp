@@ -33,14 +33,14 @@ inline types::Mesh clusteredSheet(Random& random, int n) {
             const uint32_t a = i * side + j;
             indices.insert(indices.end(), {a, a + side, a + 1, a + 1, a + side, a + side + 1});
         }
-    types::Mesh mesh = test::meshOf(positions, indices);
+    types::Mesh mesh = test::getMesh(positions, indices);
     scene::buildClusters(mesh);
     return mesh;
 }
 
 inline SonarConfig fan(double field_of_view_deg) {
     SonarConfig config =
-        test::sonarOf({.beams = 32, .width_deg = field_of_view_deg, .height_deg = 50, .bins = 300, .rows = 96});
+        test::getSonar({.beams = 32, .width_deg = field_of_view_deg, .height_deg = 50, .bins = 300, .rows = 96});
     config.device = "software";
     return config;
 }
@@ -51,7 +51,7 @@ inline std::vector<float> pings(const SonarConfig& config, const types::Geometry
     std::vector<float> bins;
     for (int i = 0; i < 3; ++i) {
         types::Sonar ping;
-        renderer.render(test::snapshotOf(geometry, {i - 1.0, 0.5 * i, 0.0}, 0.4 * i, 0.15, 0.1 * i), ping);
+        renderer.render(test::makeSnapshot(geometry, {i - 1.0, 0.5 * i, 0.0}, 0.4 * i, 0.15, 0.1 * i), ping);
         bins.insert(bins.end(), ping.bins.begin(), ping.bins.end());
     }
     return bins;

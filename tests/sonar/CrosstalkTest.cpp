@@ -22,8 +22,8 @@ namespace insonify::sonar {
 namespace {
 
 using std::numbers::pi;
+using test::makePing;
 using test::openWater;
-using test::pingOf;
 
 /** Power that is sent in each direction. */
 class Beacon final : public types::Radiation {
@@ -50,7 +50,7 @@ SonarConfig receiving(SonarConfig config, bool echoes = false) {
     return config;
 }
 
-acoustics::BeamLaw lawOf(double width_deg) {
+acoustics::BeamLaw getLaw(double width_deg) {
     acoustics::BeamLaw law;
     law.width_deg = width_deg;
     return law;
@@ -59,7 +59,7 @@ acoustics::BeamLaw lawOf(double width_deg) {
 double decibels(double ratio) { return 10 * std::log10(ratio); }
 
 types::Snapshot openWaterWith(types::TransmissionPtr sent) {
-    types::Snapshot snapshot = test::snapshotOf(openWater());
+    types::Snapshot snapshot = test::makeSnapshot(openWater());
     snapshot.transmissions = {std::move(sent)};
     return snapshot;
 }
@@ -68,7 +68,7 @@ types::Snapshot openWaterWith(types::TransmissionPtr sent) {
 SonarConfig randomFan(std::mt19937& random) {
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     SonarConfig config =
-        receiving(test::sonarOf({.beams = 16, .width_deg = 90, .height_deg = 30, .bins = 400, .rows = 8}));
+        receiving(test::getSonar({.beams = 16, .width_deg = 90, .height_deg = 30, .bins = 400, .rows = 8}));
     if (between(0, 1) < 0.5) {
         config.field_of_view_deg.reset();
         config.beam_width_deg = 5;
@@ -79,8 +79,8 @@ SonarConfig randomFan(std::mt19937& random) {
     config.absorption.emplace().db_per_m = between(0, 0.3);
     config.crosstalk->source_level_db = between(180, 220);
     config.beam_pattern.emplace();
-    config.beam_pattern->receive.azimuth = lawOf(between(3, 12));
-    config.beam_pattern->transmit.elevation = lawOf(between(10, 30));
+    config.beam_pattern->receive.azimuth = getLaw(between(3, 12));
+    config.beam_pattern->transmit.elevation = getLaw(between(10, 30));
     return config;
 }
 
@@ -101,7 +101,7 @@ TEST(CrosstalkTest, ADirectPulseFollowsTheOneWaySonarEquation) {
             return 0.25;
         }));
         sent->source_level_db = between(180, 220);
-        const auto ping = pingOf(config, openWaterWith(sent));
+        const auto ping = makePing(config, openWaterWith(sent));
         const double range = 500 * (sent->time - types::Time{1'000'000}).seconds() + distance / 2;
         const auto bin = static_cast<size_t>(range / 0.1);
         const acoustics::BeamPattern receive(*config.beam_pattern->receive.azimuth);
@@ -124,11 +124,11 @@ TEST(CrosstalkTest, ADirectPulseFollowsTheOneWaySonarEquation) {
 }
 
 TEST(CrosstalkTest, APulseOfTheSameKindHasTheShapeOfAnEcho) {
-    SonarConfig config = receiving(test::sonarOf({.bins = 300, .rows = 8}));
+    SonarConfig config = receiving(test::getSonar({.bins = 300, .rows = 8}));
     config.frequency_khz = 700;
     config.pulse.emplace().bandwidth_khz = 2;
     config.pulse->window = acoustics::PulseWindow::Hann;
-    const auto ping = pingOf(config, openWaterWith(sentFrom({20, 0, 0}, 0.003)));
+    const auto ping = makePing(config, openWaterWith(sentFrom({20, 0, 0}, 0.003)));
     const acoustics::Pulse pulse(*config.pulse, 1000);
     for (size_t k = 80; k < 160; ++k) {
         const double low = 0.1 * static_cast<double>(k) - 11.5;
@@ -137,16 +137,16 @@ TEST(CrosstalkTest, APulseOfTheSameKindHasTheShapeOfAnEcho) {
 }
 
 TEST(CrosstalkTest, NoPulseArrivesBehindAWallTooEarlyTooLateOrOutsideOfFanAndAperture) {
-    const SonarConfig config = receiving(test::sonarOf({.width_deg = 60, .bins = 300, .rows = 8}));
+    const SonarConfig config = receiving(test::getSonar({.width_deg = 60, .bins = 300, .rows = 8}));
     const auto receivedFrom = [&](glm::dvec3 place, double delay, types::GeometryPtr scene = openWater()) {
-        types::Snapshot snapshot = test::snapshotOf(scene);
-        const double alone = test::sumOf(pingOf(config, snapshot));
+        types::Snapshot snapshot = test::makeSnapshot(scene);
+        const double alone = test::computeSum(makePing(config, snapshot));
         snapshot.transmissions = {sentFrom(place, delay)};
-        return test::sumOf(pingOf(config, snapshot)) - alone;
+        return test::computeSum(makePing(config, snapshot)) - alone;
     };
     EXPECT_NEAR(receivedFrom({20, 0, 0}, 0), 1.0 / 400, 1e-6);
-    EXPECT_EQ(receivedFrom({20, 0, 0}, 0, test::sceneOf({test::wall(10)})), 0);
-    EXPECT_NEAR(receivedFrom({20, 0, 0}, 0, test::sceneOf({test::wall(25)})), 1.0 / 400, 1e-6);
+    EXPECT_EQ(receivedFrom({20, 0, 0}, 0, test::makeScene({test::wall(10)})), 0);
+    EXPECT_NEAR(receivedFrom({20, 0, 0}, 0, test::makeScene({test::wall(25)})), 1.0 / 400, 1e-6);
     EXPECT_EQ(receivedFrom({20, 0, 0}, -0.021), 0);  // it has passed
     EXPECT_EQ(receivedFrom({20, 0, 0}, 0.041), 0);   // the sonar no longer listens
     EXPECT_GT(receivedFrom({20, 0, 0}, 0.039), 0);
@@ -157,14 +157,14 @@ TEST(CrosstalkTest, NoPulseArrivesBehindAWallTooEarlyTooLateOrOutsideOfFanAndApe
 
 /** The surface's image of the sender, 6 m above it. */
 TEST(CrosstalkTest, ThePulseArrivesByTheSurfaceToo) {
-    SonarConfig config = test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64});
+    SonarConfig config = test::getSonar({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64});
     config = receiving(config);
     config.multipath.emplace().surface.emplace();
     types::Snapshot snapshot = openWaterWith(sentFrom({16, 0, 0}, 0.01, [](const glm::dvec3& to) {
         return to.z > 0.1 ? 0.5 : 1.0;  // weaker towards the surface
     }));
     snapshot.water_surface = 6;
-    const auto ping = pingOf(config, snapshot);
+    const auto ping = makePing(config, snapshot);
     const double straight = 16, reflected = 20;
     EXPECT_NEAR(double{ping.bins[static_cast<size_t>((5 + straight / 2) / 0.1)]} * straight * straight, 1, 1e-5);
     EXPECT_NEAR(double{ping.bins[static_cast<size_t>((5 + reflected / 2) / 0.1)]} * reflected * reflected, 0.5, 1e-5);
@@ -200,23 +200,23 @@ TEST(CrosstalkTest, AMatchedFilterPassesTheShareOfAnotherChirpByMismatchOf) {
     for (const Waveform& sent : {Waveform{700, 40, 2.5e-3}, Waveform{720, 40, 1.5e-3}, Waveform{715, 60, 1e-3},
                                  Waveform{700, 30, 3e-3}, Waveform{690, 25, 2e-3}}) {
         const double cell = 0.5 * 1500 * filteredEnergy(own, own);  // of the own pulse, in slant range
-        const Mismatch mismatch = mismatchOf(own, sent, cell, 300, 1500);
+        const Mismatch mismatch = computeMismatch(own, sent, cell, 300, 1500);
         const double passed = 0.5 * 1500 * filteredEnergy(own, sent);
         EXPECT_NEAR(decibels(mismatch.intensity * mismatch.length / passed), 0, 0.5)
             << sent.frequency_khz << " " << sent.bandwidth_khz;
     }
-    EXPECT_EQ(mismatchOf(own, own, 0.02, 40, 1500).length, 0);
-    const Mismatch far = mismatchOf(own, {900, 40, 1.5e-3}, 0.02, 40, 1500);
+    EXPECT_EQ(computeMismatch(own, own, 0.02, 40, 1500).length, 0);
+    const Mismatch far = computeMismatch(own, {900, 40, 1.5e-3}, 0.02, 40, 1500);
     EXPECT_NEAR(decibels(far.intensity), -40 + decibels(0.02 / far.length), 1e-9);
 }
 
 TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsOfItsDuration) {
-    SonarConfig config = receiving(test::sonarOf({.bins = 300, .rows = 8}));
+    SonarConfig config = receiving(test::getSonar({.bins = 300, .rows = 8}));
     config.frequency_khz = 700;
     config.pulse.emplace().bandwidth_khz = 50;  // without chirp_us it lasts 1 ms
     auto sent = std::make_shared<types::Transmission>(*sentFrom({20, 0, 0}, 0));
     sent->frequency_khz = 725, sent->bandwidth_khz = 50, sent->duration = 2e-3;
-    const auto ping = pingOf(config, openWaterWith(sent));
+    const auto ping = makePing(config, openWaterWith(sent));
     std::vector<size_t> received;
     for (size_t k = 0; k < ping.bin_count; ++k)
         if (ping.bins[k] > 0) received.push_back(k);
@@ -232,22 +232,22 @@ TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsOfItsDuration) {
 TEST(CrosstalkTest, ATwinAtTheSonarsPlaceDoublesEveryEcho) {
     for (const bool patterned : {false, true}) {
         SonarConfig config =
-            test::sonarOf({.beams = 8, .width_deg = 80, .height_deg = 60, .bins = 300, .rows = 512, .columns = 8});
+            test::getSonar({.beams = 8, .width_deg = 80, .height_deg = 60, .bins = 300, .rows = 512, .columns = 8});
         config.visibility = Visibility::Cpu;
         config.frequency_khz = 300;
         config.absorption.emplace().db_per_m = 0.1;
         config.crosstalk.emplace();
         if (patterned) {
             config.beam_pattern.emplace();
-            config.beam_pattern->receive.azimuth = lawOf(6);
-            config.beam_pattern->receive.elevation = lawOf(30);
+            config.beam_pattern->receive.azimuth = getLaw(6);
+            config.beam_pattern->receive.elevation = getLaw(30);
             config.pulse.emplace().bandwidth_khz = 2;
         }
-        types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-5, 200)}, -10));
-        const auto own = pingOf(config, snapshot);
+        types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::ground(-5, 200)}, -10));
+        const auto own = makePing(config, snapshot);
         types::Snapshot with_twin = snapshot;
         with_twin.transmissions = {sentFrom({-0.003, 0, 0}, 0)};  // not at a distance of 0, and behind the sonar
-        const auto both = pingOf(config, with_twin);
+        const auto both = makePing(config, with_twin);
         for (uint32_t beam = 1; beam < 7; ++beam)
             for (size_t k = 110; k < 280; k += 5) {
                 const auto five = [&](const types::Sonar& ping) {
@@ -263,23 +263,23 @@ TEST(CrosstalkTest, ATwinAtTheSonarsPlaceDoublesEveryEcho) {
                 sum += double{ping.bins[i]} * std::pow(static_cast<double>(i % ping.bin_count), 5);
             return sum;
         };
-        EXPECT_NEAR(evened(pingOf(config, with_twin)) / evened(pingOf(config, snapshot)), 2, 0.25) << patterned;
+        EXPECT_NEAR(evened(makePing(config, with_twin)) / evened(makePing(config, snapshot)), 2, 0.25) << patterned;
     }
 }
 
 /** Level ground of Lambert's law, by an integral over its points. */
 TEST(CrosstalkTest, EchoesOfAnotherSonarsPulseAreTheBistaticIntegralOverTheGround) {
     SonarConfig config = receiving(
-        test::sonarOf({.beams = 1, .width_deg = 60, .height_deg = 120, .bins = 300, .rows = 2048, .columns = 64}),
+        test::getSonar({.beams = 1, .width_deg = 60, .height_deg = 120, .bins = 300, .rows = 2048, .columns = 64}),
         true);
-    const auto scene = test::sceneOf({test::ground(-4, 400)}, -20);
-    types::Snapshot snapshot = test::snapshotOf(scene);
-    const auto own = pingOf(config, snapshot);
+    const auto scene = test::makeScene({test::ground(-4, 400)}, -20);
+    types::Snapshot snapshot = test::makeSnapshot(scene);
+    const auto own = makePing(config, snapshot);
     const glm::dvec3 sender(-3, 2.5, 3);
     const double delay = 0.012;
     const auto power = [](const glm::dvec3& to) { return to.z < 0 ? 1 + 0.5 * to.x : 0; };
     snapshot.transmissions = {sentFrom(sender, delay, power)};
-    const auto both = pingOf(config, snapshot);
+    const auto both = makePing(config, snapshot);
     std::vector<double> expected(own.bin_count);
     constexpr double step = 0.02;
     for (double x = step / 2; x < 60; x += step)
@@ -305,22 +305,22 @@ TEST(CrosstalkTest, EchoesOfAnotherSonarsPulseAreTheBistaticIntegralOverTheGroun
 
 TEST(CrosstalkTest, ASenderBehindASurfaceInsonifiesNothing) {
     const SonarConfig config =
-        receiving(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
-    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-4, 400)}));
-    const auto alone = pingOf(config, snapshot);
+        receiving(test::getSonar({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
+    types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::ground(-4, 400)}));
+    const auto alone = makePing(config, snapshot);
     snapshot.transmissions = {sentFrom({5, 0, -6}, 0)};
-    EXPECT_EQ(pingOf(config, snapshot).bins, alone.bins);
-    snapshot.geometry = test::sceneOf({test::ground(-4, 400), test::quad({1, -50, -3}, {60, 0, 0}, {0, 100, 0})});
-    const auto roofed = pingOf(config, snapshot);
+    EXPECT_EQ(makePing(config, snapshot).bins, alone.bins);
+    snapshot.geometry = test::makeScene({test::ground(-4, 400), test::quad({1, -50, -3}, {60, 0, 0}, {0, 100, 0})});
+    const auto roofed = makePing(config, snapshot);
     snapshot.transmissions = {sentFrom({10, 0, -3.5}, 0)};
-    EXPECT_EQ(pingOf(config, snapshot).bins, roofed.bins);
+    EXPECT_EQ(makePing(config, snapshot).bins, roofed.bins);
 }
 
 /** Senders at extreme places and times give finite echoes. */
 TEST(CrosstalkTest, ExtremeSendersLeaveFiniteBins) {
     const SonarConfig config =
-        receiving(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
-    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-4, 400)}));
+        receiving(test::getSonar({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
+    types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::ground(-4, 400)}));
     for (const glm::dvec3 place : {glm::dvec3(0), glm::dvec3(1e-9, 0, 0), glm::dvec3(1e9, 0, 0), glm::dvec3(5, 0, -4),
                                    glm::dvec3(5, 0, -4 + 1e-6)})
         for (const double delay : {-1e4, -0.03, 0.0, 0.03, 1e4}) {
@@ -329,7 +329,7 @@ TEST(CrosstalkTest, ExtremeSendersLeaveFiniteBins) {
             snapshot.transmissions = {loud, sentFrom(place, delay)};
             SonarConfig quiet = config;
             quiet.crosstalk->source_level_db = -300;
-            for (const float bin : pingOf(quiet, snapshot).bins) ASSERT_TRUE(std::isfinite(bin) && bin >= 0);
+            for (const float bin : makePing(quiet, snapshot).bins) ASSERT_TRUE(std::isfinite(bin) && bin >= 0);
         }
 }
 

@@ -98,8 +98,8 @@ Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
 }
 
 types::Snapshot randomSnapshot(Random& random, types::GeometryPtr geometry) {
-    return test::snapshotOf(std::move(geometry), uniformVector(random, 10), uniform(random, -3, 3),
-                            uniform(random, -1, 1), uniform(random, -3, 3));
+    return test::makeSnapshot(std::move(geometry), uniformVector(random, 10), uniform(random, -3, 3),
+                              uniform(random, -1, 1), uniform(random, -3, 3));
 }
 
 /** A sphere of 1 m, with itself as bounding sphere. */
@@ -107,7 +107,7 @@ types::Mesh ball() { return test::sphere(1, 8); }
 
 /** Runs over all frusta for one sphere of 1 m about `position`, the sonar at the origin. */
 size_t runsOfBall(glm::dvec3 position, double field_of_view_deg = 60) {
-    const auto snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {position}));
+    const auto snapshot = test::makeSnapshot(test::makeScene({ball()}, 0, {position}));
     const SonarConfig config = fan(field_of_view_deg);
     Culler culler(*snapshot.geometry, {0, {config.range}});
     culler.place(snapshot);
@@ -190,7 +190,7 @@ TEST(CullerTest, AnObjectAroundTheSonarIsInEveryFrustum) {
 }
 
 TEST(CullerTest, AMovedObjectIsCulledByItsNewPlace) {
-    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {{-10, 0, 0}}));
+    types::Snapshot snapshot = test::makeSnapshot(test::makeScene({ball()}, 0, {{-10, 0, 0}}));
     Culler culler(*snapshot.geometry, {0, {30}});
     std::vector<Culler::DrawRange> runs;
     const ViewFrustum frustum = makeFrusta(fan(60), makeBeams(fan(60))).front();

@@ -21,12 +21,12 @@
 namespace insonify::sonar {
 namespace {
 
-using test::pingOf;
+using test::makePing;
 using test::rigid;
 
 SonarConfig eelFan() {
     SonarConfig config =
-        test::sonarOf({.beams = 40, .width_deg = 60, .height_deg = 40, .bins = 300, .bin = 0.02, .rows = 128});
+        test::getSonar({.beams = 40, .width_deg = 60, .height_deg = 40, .bins = 300, .bin = 0.02, .rows = 128});
     config.quality.columns_per_beam = 4;
     config.visibility = Visibility::Cpu;
     return config;
@@ -66,7 +66,7 @@ void expectSame(const TruePing& one, const TruePing& other) {
 
 /** A plate about its origin, all of it on one joint. */
 types::GeometryPtr jointedPlate() {
-    return test::sceneOf({test::jointed(test::quad({0, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}))});
+    return test::makeScene({test::jointed(test::quad({0, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}))});
 }
 
 struct DeformingMeshTest : scene::SceneFiles {
@@ -79,7 +79,7 @@ struct DeformingMeshTest : scene::SceneFiles {
         types::Diagnostics none;
         scene::Animator animator(scene, {}, {}, none);
         animator.take(seconds, {});
-        types::Snapshot snapshot = test::snapshotOf(scene->geometry, sonar, yaw, pitch);
+        types::Snapshot snapshot = test::makeSnapshot(scene->geometry, sonar, yaw, pitch);
         snapshot.time = types::Time::fromSeconds(1 + seconds);
         animator.addMoved(snapshot.moved);
         animator.addDeformed(snapshot);
@@ -153,7 +153,7 @@ struct DeformingMeshTest : scene::SceneFiles {
         scene.geometry = std::move(geometry);
         return std::make_shared<const scene::Scene>(std::move(scene));
     }
-    static size_t echoesOf(const types::Sonar& ping) {
+    static size_t getEchoes(const types::Sonar& ping) {
         return static_cast<size_t>(std::ranges::count_if(ping.bins, [](float bin) { return bin > 0; }));
     }
     const scene::Tube tube_{9, 8, 0.1f};
@@ -168,8 +168,8 @@ TEST_F(DeformingMeshTest, ASkinnedMeshIsTheSameMeshPosedByHandBitForBit) {
             at(scene, 1 + number(random), {-3 + number(random), number(random), number(random)}, 0.1 * number(random),
                0.1 * number(random));
         ASSERT_EQ(snapshot.deformed.size(), 1u);
-        const types::Sonar animated = pingOf(eelFan(), snapshot), still = pingOf(eelFan(), byHand(snapshot));
-        ASSERT_GT(echoesOf(animated), 20u) << trial;
+        const types::Sonar animated = makePing(eelFan(), snapshot), still = makePing(eelFan(), byHand(snapshot));
+        ASSERT_GT(getEchoes(animated), 20u) << trial;
         EXPECT_EQ(animated.bins, still.bins) << trial;
     }
 }
@@ -178,8 +178,8 @@ TEST_F(DeformingMeshTest, AMorphedMeshIsTheSameMeshPosedByHandBitForBit) {
     const auto scene = read(kelpText(tube_));
     for (const double time : {0.0, 0.3, 1.1, 1.9}) {
         const types::Snapshot snapshot = at(scene, time, {2, 0.1, 0.05});
-        const types::Sonar animated = pingOf(eelFan(), snapshot), still = pingOf(eelFan(), byHand(snapshot));
-        ASSERT_GT(echoesOf(animated), 20u);
+        const types::Sonar animated = makePing(eelFan(), snapshot), still = makePing(eelFan(), byHand(snapshot));
+        ASSERT_GT(getEchoes(animated), 20u);
         EXPECT_EQ(animated.bins, still.bins) << time;
     }
 }
@@ -206,8 +206,8 @@ TEST_F(DeformingMeshTest, SoItIsWithEveryEffectThatKnowsMeshes) {
     for (const SonarConfig& config : {plain, published, edges, multipath, coherent, conical, water})
         for (const types::Material& material : {smooth, wall, mirror}) {
             const types::Snapshot snapshot = at(of(eel, material), 0.6, {-2.5, 0.2, 0.1});
-            const types::Sonar animated = pingOf(config, snapshot), still = pingOf(config, byHand(snapshot));
-            ASSERT_GT(echoesOf(animated), 5u);
+            const types::Sonar animated = makePing(config, snapshot), still = makePing(config, byHand(snapshot));
+            ASSERT_GT(getEchoes(animated), 5u);
             EXPECT_EQ(animated.bins, still.bins);
         }
 }
@@ -219,7 +219,7 @@ TEST_F(DeformingMeshTest, APingDoesNotDependOnThoseBeforeIt) {
     for (const double time : {0.0, 0.2, 0.4, 0.1, 0.9}) {
         const types::Snapshot snapshot = at(scene, time);
         renderer.render(snapshot, ping);
-        EXPECT_EQ(ping.bins, pingOf(eelFan(), snapshot).bins) << time;
+        EXPECT_EQ(ping.bins, makePing(eelFan(), snapshot).bins) << time;
     }
     types::Snapshot rest = at(scene, 0.3);
     rest.deformed.clear();
@@ -229,7 +229,7 @@ TEST_F(DeformingMeshTest, APingDoesNotDependOnThoseBeforeIt) {
     geometry->objects[0].world_from_object = rest.moved[0].world_from_object;
     plain.geometry = geometry;
     plain.moved.clear();
-    EXPECT_EQ(ping.bins, pingOf(eelFan(), plain).bins);
+    EXPECT_EQ(ping.bins, makePing(eelFan(), plain).bins);
 }
 
 /** Also in a snapshot of the same shape, whose meshes would not be posed again. */
@@ -244,7 +244,7 @@ TEST_F(DeformingMeshTest, OtherSettingsOfTheSonarKeepItsShape) {
         all[1].frequency_khz = 120;
         all[2].range *= 0.8;
         std::vector<std::vector<float>> made;
-        for (const SonarConfig& each : all) made.push_back(pingOf(each, bent).bins);
+        for (const SonarConfig& each : all) made.push_back(makePing(each, bent).bins);
         EXPECT_NE(made[0], made[1]);
         SonarRenderer renderer(all[0], bent.geometry);
         types::Sonar ping;
@@ -261,14 +261,14 @@ TEST_F(DeformingMeshTest, AnObjectThatIsScaledToNothingIsNotThere) {
     snapshot.targets = {{{1, 0, 0}, 0}};
     glm::dmat4& place = snapshot.moved[0].world_from_object;
     for (int axis = 0; axis < 3; ++axis) place[axis] = glm::dvec4(0);
-    types::Snapshot target = test::snapshotOf(test::openWater(), snapshot.sonar.position);
+    types::Snapshot target = test::makeSnapshot(test::openWater(), snapshot.sonar.position);
     target.sonar = snapshot.sonar;
     target.targets = snapshot.targets;
-    const types::Sonar expected = pingOf(eelFan(), target);
-    ASSERT_GT(echoesOf(expected), 0u);
-    EXPECT_EQ(pingOf(eelFan(), snapshot).bins, expected.bins);
+    const types::Sonar expected = makePing(eelFan(), target);
+    ASSERT_GT(getEchoes(expected), 0u);
+    EXPECT_EQ(makePing(eelFan(), snapshot).bins, expected.bins);
     snapshot.deformed.clear();  // by the path of objects that move
-    EXPECT_EQ(pingOf(eelFan(), snapshot).bins, expected.bins);
+    EXPECT_EQ(makePing(eelFan(), snapshot).bins, expected.bins);
 }
 
 TEST_F(DeformingMeshTest, ARasterisedMeshIsTheSameMeshPosedByHandBitForBit) {
@@ -285,7 +285,7 @@ TEST_F(DeformingMeshTest, ARasterisedMeshIsTheSameMeshPosedByHandBitForBit) {
             const auto snapshots = randomly(scene, x, random);
             const std::vector<TruePing> pings = truePings(config, snapshots);
             for (size_t i = 0; i < pings.size(); ++i) {
-                EXPECT_GT(echoesOf(pings[i].ping), 20u);
+                EXPECT_GT(getEchoes(pings[i].ping), 20u);
                 expectSame(pings[i], truePings(config, {byHand(snapshots[i])}).front());
             }
         }
@@ -324,11 +324,11 @@ TEST_F(DeformingMeshTest, ARasterisedNormalMapTurnsWithTheMesh) {
         const auto snapshots = randomly(eel, -3, random);
         const std::vector<TruePing> pings = truePings(config, snapshots);
         for (size_t i = 0; i < pings.size(); ++i) {
-            EXPECT_GT(echoesOf(pings[i].ping), 20u);
+            EXPECT_GT(getEchoes(pings[i].ping), 20u);
             expectSame(pings[i], truePings(config, {rigid(snapshots[i])}).front());
             types::Snapshot unmapped = snapshots[i];
             unmapped.geometry = plain->geometry;
-            EXPECT_NE(pings[i].ping.bins, pingOf(config, unmapped).bins);
+            EXPECT_NE(pings[i].ping.bins, makePing(config, unmapped).bins);
         }
     }
 }
@@ -350,7 +350,7 @@ TEST_F(DeformingMeshTest, ALargeRasterisedMeshIsCulledInItsShape) {
         for (size_t i = 0; i < culled.size(); ++i) {
             expectSame(culled[i], drawn[i]);
             expectSame(culled[i], truePings(config, {rigid(snapshots[i])}).front());
-            with_echoes += echoesOf(culled[i].ping) > 5;
+            with_echoes += getEchoes(culled[i].ping) > 5;
         }
         EXPECT_GT(with_echoes, 0u);
     }
@@ -364,14 +364,14 @@ TEST_F(DeformingMeshTest, RasterisedObjectsOfOneMeshHaveTheirOwnShapes) {
     geometry->objects[0].name = "one", geometry->objects[1].name = "other";
     for (size_t i = 0; i < 2; ++i)
         geometry->objects[i].world_from_object[3] = glm::dvec4(3 + 0.5 * static_cast<double>(i), i ? 1 : -1, 0, 1);
-    types::Snapshot snapshot = test::snapshotOf(geometry);
+    types::Snapshot snapshot = test::makeSnapshot(geometry);
     test::pose(snapshot, 1, glm::rotate(glm::dmat4(1), 0.4, glm::dvec3(0, 0, 1)));
     for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
         const SonarConfig config = rasterisedFan(deposit);
         types::Snapshot rest = snapshot;
         rest.deformed.clear();
         const std::vector<TruePing> pings = truePings(config, {snapshot, rest, snapshot});
-        EXPECT_GT(echoesOf(pings[0].ping), 20u);
+        EXPECT_GT(getEchoes(pings[0].ping), 20u);
         EXPECT_NE(pings[0].ping.bins, pings[1].ping.bins);
         expectSame(pings[0], pings[2]);
         expectSame(pings[0], truePings(config, {rigid(snapshot)}).front());
@@ -384,7 +384,7 @@ TEST_F(DeformingMeshTest, ThreadsChangeNothing) {
     RenderOptions one, four;
     one.threads = 1;
     four.threads = 4;
-    EXPECT_EQ(pingOf(eelFan(), snapshot, one).bins, pingOf(eelFan(), snapshot, four).bins);
+    EXPECT_EQ(makePing(eelFan(), snapshot, one).bins, makePing(eelFan(), snapshot, four).bins);
 }
 
 TEST_F(DeformingMeshTest, TruthNamesTheObject) {
@@ -415,7 +415,7 @@ TEST_F(DeformingMeshTest, APointTargetIsHiddenWhereTheMeshBendsBeforeIt) {
 
 /** The plate at a place by its joint, or by its object, with a rate of the matrix. */
 types::Snapshot movingPlate(const glm::dmat4& place, const glm::dmat4& rate, bool by_joint) {
-    types::Snapshot snapshot = test::snapshotOf(jointedPlate());
+    types::Snapshot snapshot = test::makeSnapshot(jointedPlate());
     if (by_joint) {
         snapshot.deformed = {{0, 0, 0}};
         snapshot.joints = {{glm::dmat4x3(place), glm::dmat4x3(rate)}};
@@ -439,9 +439,9 @@ TEST(DeformingMotionTest, AnApproachingJointEchoesLikeAnApproachingObject) {
     glm::dmat4 place(1), rate(0);
     place[3] = {200, 0, 0, 1};
     rate[3] = {-12, 0, 0, 0};
-    const types::Sonar still = pingOf(movingFan(), movingPlate(place, glm::dmat4(0), true));
-    const types::Sonar joint = pingOf(movingFan(), movingPlate(place, rate, true));
-    const types::Sonar object = pingOf(movingFan(), movingPlate(place, rate, false));
+    const types::Sonar still = makePing(movingFan(), movingPlate(place, glm::dmat4(0), true));
+    const types::Sonar joint = makePing(movingFan(), movingPlate(place, rate, true));
+    const types::Sonar object = makePing(movingFan(), movingPlate(place, rate, false));
     EXPECT_NEAR(centre(still), 200, 0.1);
     EXPECT_NEAR(centre(joint), 200 / (1 + 12.0 / 1500), 0.1);
     EXPECT_NEAR(centre(joint), centre(object), 0.01);
@@ -456,13 +456,13 @@ TEST(DeformingMotionTest, AJointThatTurnsEchoesAsAnObjectThatDoes) {
     SonarConfig config = movingFan();
     config.range = 30;
     config.bin_count = 300;
-    const types::Sonar joint = pingOf(config, movingPlate(place, rate, true));
-    const types::Sonar object = pingOf(config, movingPlate(place, rate, false));
-    const auto energyOf = [](const types::Sonar& ping) {
+    const types::Sonar joint = makePing(config, movingPlate(place, rate, true));
+    const types::Sonar object = makePing(config, movingPlate(place, rate, false));
+    const auto sumEnergy = [](const types::Sonar& ping) {
         return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0);
     };
-    EXPECT_GT(energyOf(object), 0);
-    EXPECT_NEAR(energyOf(joint) / energyOf(object), 1, 0.1);  // rays meet the joint by the mean of its velocities
+    EXPECT_GT(sumEnergy(object), 0);
+    EXPECT_NEAR(sumEnergy(joint) / sumEnergy(object), 1, 0.1);  // rays meet the joint by the mean of its velocities
     EXPECT_NEAR(centre(joint), centre(object), 0.02);
     std::vector<double> by_beam;  // ranges of the echoes of each beam: the plate is turned
     for (const types::Sonar& ping : {joint, object})
@@ -470,7 +470,7 @@ TEST(DeformingMotionTest, AJointThatTurnsEchoesAsAnObjectThatDoes) {
             types::Sonar one = ping;
             one.bins.assign(ping.bins.begin() + static_cast<long>(beam * ping.bin_count),
                             ping.bins.begin() + static_cast<long>((beam + 1) * ping.bin_count));
-            if (energyOf(one) > 0) by_beam.push_back(centre(one));
+            if (sumEnergy(one) > 0) by_beam.push_back(centre(one));
         }
     ASSERT_EQ(by_beam.size() % 2, 0u);
     for (size_t i = 0; i < by_beam.size() / 2; ++i) EXPECT_NEAR(by_beam[i], by_beam[i + by_beam.size() / 2], 0.02);
@@ -500,7 +500,7 @@ TEST_F(DeformingMeshTest, EachTriangleDriftsAsItsCornersDo) {
     const auto before = cornersAt(time - step), here = cornersAt(time), after = cornersAt(time + step);
     for (uint32_t t = 0; t < here.size() / 3; ++t) {
         Drift own;
-        const Drift* const drift = motion.driftOf(0, t, own);
+        const Drift* const drift = motion.findDrift(0, t, own);
         ASSERT_NE(drift, nullptr);
         for (size_t k = 3 * t; k < 3 * t + 3; ++k)
             EXPECT_LT(glm::distance(drift->at(here[k]), (after[k] - before[k]) / (2 * step)), 5e-3) << t;
@@ -517,12 +517,12 @@ TEST(DeformingPlanesTest, PlanesAreTheSameInRegistersBitForBit) {
         mesh.positions.push_back({number(random), 50 * number(random), number(random)});
         mesh.indices.push_back(i % 30 == 7 ? i - 1 : i);  // some have no area
     }
-    const std::vector<PlaneRecord> all = planesOf(mesh);
+    const std::vector<PlaneRecord> all = extractPlanes(mesh);
     for (size_t t = 0; t < all.size(); ++t) {
         types::Mesh one;
         one.positions = mesh.positions;
         one.indices = {mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]};
-        const PlaneRecord plane = planesOf(one).front();
+        const PlaneRecord plane = extractPlanes(one).front();
         EXPECT_EQ(all[t].normal, plane.normal) << t;
         EXPECT_EQ(all[t].point, plane.point) << t;
     }

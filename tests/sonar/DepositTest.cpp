@@ -13,11 +13,11 @@
 namespace insonify::sonar {
 namespace {
 
-using test::pingOf;
+using test::makePing;
 
 SonarConfig depositFan(Model model, BeamGeometry beams, Deposit deposit, double field_of_view_deg = 130) {
     SonarConfig config =
-        test::sonarOf({.beams = 64, .width_deg = field_of_view_deg, .height_deg = 50, .bins = 400, .rows = 128});
+        test::getSonar({.beams = 64, .width_deg = field_of_view_deg, .height_deg = 50, .bins = 400, .rows = 128});
     config.model = model;
     config.beam_geometry = beams;
     config.deposit = deposit;
@@ -25,7 +25,7 @@ SonarConfig depositFan(Model model, BeamGeometry beams, Deposit deposit, double 
     return config;
 }
 
-types::Snapshot hardScene() { return test::snapshotOf(test::surfaces(), {0, 0, 0}, 0.1, 0.15, 0.05); }
+types::Snapshot hardScene() { return test::makeSnapshot(test::surfaces(), {0, 0, 0}, 0.1, 0.15, 0.05); }
 
 struct Kind {
     Model model;
@@ -70,9 +70,9 @@ types::Snapshot asInUtm(types::Snapshot snapshot) {
 /** Energy in 2000 bins over that in one of the same length. */
 double manyOverOne(SonarConfig config, const types::Snapshot& snapshot) {
     config.bin_count = 2000;
-    const double many = test::sumOf(pingOf(config, snapshot));
+    const double many = test::computeSum(makePing(config, snapshot));
     config.bin_count = 1;
-    return many / test::sumOf(pingOf(config, snapshot));
+    return many / test::computeSum(makePing(config, snapshot));
 }
 
 /** Sums that the compute shader does not support. */
@@ -93,16 +93,16 @@ class OwnSumsEffect final : public Effect {
 }  // namespace
 
 TEST_P(DepositTest, TheProcessorAndTheComputeShaderAgree) {
-    expectAgreement(pingOf(with(Deposit::Cpu), hardScene()), pingOf(with(Deposit::Gpu), hardScene()));
+    expectAgreement(makePing(with(Deposit::Cpu), hardScene()), makePing(with(Deposit::Gpu), hardScene()));
 }
 
 TEST_P(DepositTest, BothAgreeFarFromTheOriginOfTheWorld) {
     const types::Snapshot far = asInUtm(hardScene());
-    const auto gpu = pingOf(with(Deposit::Gpu), far);
-    expectAgreement(pingOf(with(Deposit::Cpu), far), gpu);
+    const auto gpu = makePing(with(Deposit::Gpu), far);
+    expectAgreement(makePing(with(Deposit::Cpu), far), gpu);
     types::Snapshot aside = far;
     aside.sonar.position.x += 0.01;
-    EXPECT_GT(test::sumOf(difference(gpu, pingOf(with(Deposit::Cpu), aside))), 1e-3 * test::sumOf(gpu))
+    EXPECT_GT(test::computeSum(difference(gpu, makePing(with(Deposit::Cpu), aside))), 1e-3 * test::computeSum(gpu))
         << "a centimetre is seen";
 }
 
@@ -118,7 +118,7 @@ TEST_P(DepositTest, EachIsRepeatableBitForBitInANewRenderer) {
         renderer.render(snapshot, again);
         EXPECT_NE(first.bins, elsewhere.bins);
         EXPECT_EQ(first.bins, again.bins);
-        EXPECT_EQ(first.bins, pingOf(with(where), snapshot).bins);
+        EXPECT_EQ(first.bins, makePing(with(where), snapshot).bins);
     }
 }
 
@@ -126,7 +126,7 @@ TEST_P(DepositTest, BothAgreeInFewBinsAndInMoreThanAWorkGroupHas) {
     for (const int bins : {30, 6000}) {
         SonarConfig cpu = with(Deposit::Cpu), gpu = with(Deposit::Gpu);
         cpu.bin_count = gpu.bin_count = bins;
-        EXPECT_LT(test::relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5) << bins;
+        EXPECT_LT(test::relativeL2(makePing(gpu, hardScene()), makePing(cpu, hardScene())), 1e-5) << bins;
     }
 }
 
@@ -148,7 +148,7 @@ TEST(DepositPublishedTest, BothAgreeInThePublishedModelWhereMissesCount) {
     cpu.published = true;
     SonarConfig gpu = cpu;
     gpu.deposit = Deposit::Gpu;
-    EXPECT_LT(test::relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5);
+    EXPECT_LT(test::relativeL2(makePing(gpu, hardScene()), makePing(cpu, hardScene())), 1e-5);
 }
 
 TEST(DepositEffectTest, ReportsAnEffectThatKeepsTheDeviceFromSumming) {
@@ -167,13 +167,13 @@ TEST(DepositEffectTest, ReportsAnEffectThatKeepsTheDeviceFromSumming) {
     SonarConfig cpu = depositFan(Model::Physical, BeamGeometry::Planar, Deposit::Cpu), gpu = cpu;
     gpu.deposit = Deposit::Gpu;
     gpu.effects["own_sums"] = {};
-    EXPECT_EQ(pingOf(gpu, snapshot).bins, pingOf(cpu, snapshot).bins);
+    EXPECT_EQ(makePing(gpu, snapshot).bins, makePing(cpu, snapshot).bins);
 }
 
 TEST(DepositEnergyTest, OneBinHasTheEnergyOfTheBinsThatItCovers) {
     // A pixel's energy is that of the middle of its part of each bin: exact to second order in the pixel's depth, so
     // that it depends on the bins only where a pixel is deep.
-    const auto wall = test::snapshotOf(test::sceneOf({test::quad({10, -100, -100}, {0, 200, 0}, {0, 0, 200})}));
+    const auto wall = test::makeSnapshot(test::makeScene({test::quad({10, -100, -100}, {0, 200, 0}, {0, 0, 200})}));
     for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
         SonarConfig config = depositFan(Model::Physical, BeamGeometry::Planar, where, 30);
         config.beam_height_deg = 20;

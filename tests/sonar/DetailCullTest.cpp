@@ -47,13 +47,13 @@ struct Floors {
         floor.centre_x = 20;
         floor.depth = 0;
         floor.seed = 2;
-        types::Mesh whole = study::meshOf(floor);
+        types::Mesh whole = study::getMesh(floor);
         scene::buildClusters(whole);
-        one = test::sceneOf({whole}, -16.7f);
-        std::vector<types::Mesh> parts = study::tilesOf(floor, 8);
+        one = test::makeScene({whole}, -16.7f);
+        std::vector<types::Mesh> parts = study::makeTiles(floor, 8);
         for (types::Mesh& part : parts) scene::buildClusters(part);
-        tiles = test::sceneOf(std::move(parts), -16.7f);
-        outline = test::sceneOf({test::meshOf(whole.positions, whole.coarse_indices)}, -16.7f);
+        tiles = test::makeScene(std::move(parts), -16.7f);
+        outline = test::makeScene({test::getMesh(whole.positions, whole.coarse_indices)}, -16.7f);
     }
 };
 
@@ -63,7 +63,7 @@ struct Look {
     double yaw, pitch_deg, range;
 };
 
-types::Sonar receivedOf(const types::GeometryPtr& geometry, const Look& look) {
+types::Sonar computeReceived(const types::GeometryPtr& geometry, const Look& look) {
     SonarConfig config;
     config.speed_of_sound = 1000;
     config.beam_count = 128;
@@ -75,7 +75,7 @@ types::Sonar receivedOf(const types::GeometryPtr& geometry, const Look& look) {
     config.device = "software";
     types::Sonar ping;
     SonarRenderer(config, geometry)
-        .render(test::snapshotOf(geometry, look.position, look.yaw, types::radians(look.pitch_deg)), ping);
+        .render(test::makeSnapshot(geometry, look.position, look.yaw, types::radians(look.pitch_deg)), ping);
     return ping;
 }
 
@@ -85,25 +85,25 @@ TEST(DetailCullTest, TheBacksOfAClosedMeshAreCulledWithoutChangingABin) {
     const auto geometry = clusteredHarbour();
     types::Mesh& ball = geometry->meshes[1];
     const SonarConfig config = fan(360);
-    const types::Snapshot snapshot = test::snapshotOf(geometry);
+    const types::Snapshot snapshot = test::makeSnapshot(geometry);
     const size_t fronts = drawnBy(config, snapshot);
     const auto without_backs = pings(config, geometry);
 
     const auto both_sides = std::make_shared<types::Geometry>(*geometry);
     both_sides->materials[0].double_sided = true;
     const size_t triangles = ball.indices.size() / 3;
-    EXPECT_LT(fronts + 2 * triangles / 4, drawnBy(config, test::snapshotOf(both_sides))) << "of ball and egg";
+    EXPECT_LT(fronts + 2 * triangles / 4, drawnBy(config, test::makeSnapshot(both_sides))) << "of ball and egg";
     EXPECT_EQ(without_backs, pings(config, both_sides));
     EXPECT_GT(std::ranges::count_if(without_backs, [](float bin) { return bin > 0; }), 1000);
 }
 
 TEST(DetailCullTest, TheBackOfAClosedMeshEchoesFromWithin) {
-    const auto geometry = test::sceneOf({test::sphere(5, 80)});
+    const auto geometry = test::makeScene({test::sphere(5, 80)});
     const auto clustered = std::make_shared<types::Geometry>(*geometry);
     scene::buildClusters(clustered->meshes[0]);
     ASSERT_LT(clustered->meshes[0].clusters[0].cone_cutoff, 1);
     types::Sonar ping;
-    SonarRenderer(fan(60), clustered).render(test::snapshotOf(clustered), ping);
+    SonarRenderer(fan(60), clustered).render(test::makeSnapshot(clustered), ping);
     EXPECT_GT(*std::ranges::max_element(ping.bins), 0);
 }
 
@@ -113,12 +113,13 @@ TEST(DetailCullTest, ARoughFloorEchoesTheSameInOneMeshAndInManySmallMeshes) {
     ASSERT_TRUE(floors.tiles->meshes[0].cluster_nodes.empty());
     for (const Look& look : {Look{{0, 0, 3}, 0, 8, 40}, Look{{0, 0, 3}, 0, 8, 15}, Look{{0, 0, 8}, 0.3, 25, 40},
                              Look{{10, 5, 1.5}, -0.4, 2, 30}}) {
-        const types::Sonar one = receivedOf(floors.one, look), tiles = receivedOf(floors.tiles, look);
+        const types::Sonar one = computeReceived(floors.one, look), tiles = computeReceived(floors.tiles, look);
         const double error = relativeError(one, tiles);
         RecordProperty(fmt::format("rel_l2_tvg {:g} m above, to {:g} m", look.position.z, look.range),
                        fmt::format("{:.5f}", error));
         EXPECT_LT(error, 0.005) << look.position.z << " m above, to " << look.range << " m";
-        EXPECT_GT(relativeError(receivedOf(floors.outline, look), tiles), 0.05) << "fewer triangles are another floor";
+        EXPECT_GT(relativeError(computeReceived(floors.outline, look), tiles), 0.05)
+            << "fewer triangles are another floor";
     }
 }
 
@@ -131,7 +132,7 @@ TEST(DetailCullTest, DrawAllRasterisesTheWholeSceneWithTheSameEchoes) {
     EXPECT_EQ(culled, pings(config, geometry));
     SonarRenderer renderer(config, geometry);
     types::Sonar ping;
-    renderer.render(test::snapshotOf(geometry), ping);
+    renderer.render(test::makeSnapshot(geometry), ping);
     for (const Omitted& what : renderer.omissions()) EXPECT_NE(what.reason, Reason::OutOfView) << what.effect;
 }
 

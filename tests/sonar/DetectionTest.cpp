@@ -11,7 +11,7 @@
 namespace insonify::sonar {
 namespace {
 
-using test::pingOf;
+using test::makePing;
 using test::withEcho;
 
 /** The detection of one ping, whose levels are its bins unless rules say otherwise. */
@@ -26,7 +26,7 @@ struct Found {
 };
 
 TEST(DetectionTest, TheStrongestReturnIsAtTheCentreOfMassOfItsBins) {
-    types::Sonar ping = pingOf(1, 20, 0);
+    types::Sonar ping = makePing(1, 20, 0);
     ping = withEcho(withEcho(withEcho(ping, 0, 9, 1), 0, 10, 2), 0, 11, 1);
     ping = withEcho(ping, 0, 3, 1.9f);  // another surface, weaker
     const auto found = Found({}, ping).strongest(0);
@@ -37,7 +37,7 @@ TEST(DetectionTest, TheStrongestReturnIsAtTheCentreOfMassOfItsBins) {
 }
 
 TEST(DetectionTest, BinsBelowTheGateDoNotShiftTheReturn) {
-    types::Sonar ping = withEcho(withEcho(pingOf(1, 20, 0), 0, 10, 1), 0, 11, 0.09f);
+    types::Sonar ping = withEcho(withEcho(makePing(1, 20, 0), 0, 10, 1), 0, 11, 0.09f);
     EXPECT_NEAR(Found({}, ping).strongest(0)->range, 1.05, 1e-9);
     DetectionConfig wide;
     wide.gate_db = 20;
@@ -45,7 +45,7 @@ TEST(DetectionTest, BinsBelowTheGateDoNotShiftTheReturn) {
 }
 
 TEST(DetectionTest, TheFirstReturnIsTheFirstBinThatReachesTheThreshold) {
-    const types::Sonar ping = withEcho(withEcho(pingOf(1, 20, 0), 0, 4, 0.05f), 0, 12, 1);
+    const types::Sonar ping = withEcho(withEcho(makePing(1, 20, 0), 0, 4, 0.05f), 0, 12, 1);
     DetectionConfig config;
     config.threshold_db = -10;
     EXPECT_NEAR(Found(config, ping).first(0)->range, 1.25, 1e-9);
@@ -59,7 +59,7 @@ TEST(DetectionTest, AReturnIsNotNearerThanTheMinRange) {
     for (const double range_min : {0.81, 0.85, 0.88, 0.899}) {
         rules.returns.range_min = range_min;
         for (const auto& [bin, expected] : {std::pair{8u, std::max(0.85, range_min)}, {9u, 0.95}}) {
-            const Found found({}, withEcho(withEcho(pingOf(1, 20, 0), 0, 7, 5), 0, bin), rules);
+            const Found found({}, withEcho(withEcho(makePing(1, 20, 0), 0, 7, 5), 0, bin), rules);
             EXPECT_NEAR(found.strongest(0)->range, expected, 1e-9) << range_min;
             EXPECT_NEAR(found.first(0)->range, expected, 1e-9) << range_min;
         }
@@ -67,7 +67,7 @@ TEST(DetectionTest, AReturnIsNotNearerThanTheMinRange) {
 }
 
 TEST(DetectionTest, AWeakBeamInThePingOrBelowTheFloorHasNoReturn) {
-    const types::Sonar ping = withEcho(withEcho(pingOf(2, 20, 0), 0, 4, 1), 1, 4, 1e-4f);
+    const types::Sonar ping = withEcho(withEcho(makePing(2, 20, 0), 0, 4, 1), 1, 4, 1e-4f);
     DetectionConfig config;
     config.threshold_db = -50;
     EXPECT_TRUE(Found(config, ping).strongest(1));
@@ -79,7 +79,7 @@ TEST(DetectionTest, AWeakBeamInThePingOrBelowTheFloorHasNoReturn) {
 }
 
 TEST(DetectionTest, SilentAndUnknownBinsAreNoReturns) {
-    types::Sonar ping = pingOf(1, 20, 0);
+    types::Sonar ping = makePing(1, 20, 0);
     EXPECT_FALSE(Found({}, ping).strongest(0));
     EXPECT_FALSE(Found({}, ping).first(0));
     ping = withEcho(withEcho(ping, 0, 2, std::numeric_limits<float>::quiet_NaN()), 0, 8, 1);
@@ -90,8 +90,8 @@ TEST(DetectionTest, SilentAndUnknownBinsAreNoReturns) {
 }
 
 TEST(DetectionTest, SpreadingAndAbsorptionAreRemovedFirst) {
-    types::Sonar ping = pingOf(1, 200, 0);  // bins of 0.1 m
-    for (size_t k = 0; k < 200; ++k) {      // uniform water of level -60 dB without spreading
+    types::Sonar ping = makePing(1, 200, 0);  // bins of 0.1 m
+    for (size_t k = 0; k < 200; ++k) {        // uniform water of level -60 dB without spreading
         const double range = 0.1 * (static_cast<double>(k) + 0.5);
         ping.bins[k] = static_cast<float>(1e-6 / (range * range) * std::pow(10, -0.05 * range));
     }
@@ -105,7 +105,7 @@ TEST(DetectionTest, SpreadingAndAbsorptionAreRemovedFirst) {
 }
 
 TEST(DetectionTest, RingDownBlankedBinsAndWaterAreNoReturns) {
-    types::Sonar ping = pingOf(1, 100, 0);
+    types::Sonar ping = makePing(1, 100, 0);
     const DetectionRules rules{{.range_min = 0.5, .ring_down_db = 20, .ring_down_db_per_m = 20},
                                std::vector<float>(100, 1e-3f)};
     const double decay = 2 * std::numbers::ln10;  // of intensity [1/m]

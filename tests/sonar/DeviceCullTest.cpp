@@ -14,7 +14,7 @@ namespace {
 std::vector<types::Snapshot> passage(const types::GeometryPtr& geometry, int count) {
     std::vector<types::Snapshot> snapshots;
     for (int i = 0; i < count; ++i) {
-        types::Snapshot snapshot = test::snapshotOf(geometry, {i - 2.0, 0.5 * i, 0.0}, 0.7 * i, 0.15, 0.1 * i);
+        types::Snapshot snapshot = test::makeSnapshot(geometry, {i - 2.0, 0.5 * i, 0.0}, 0.7 * i, 0.15, 0.1 * i);
         snapshot.moved = {{1, glm::translate(glm::dmat4(1), {9.0 - i, 4.0 - 0.5 * i, -3.0})}};
         snapshots.push_back(snapshot);
     }
@@ -96,9 +96,10 @@ TEST(DeviceCullTest, ClustersOfAnObjectInViewAreCulled) {
 }
 
 TEST(DeviceCullTest, NoEchoIsReceivedWithNothingInView) {
-    const auto ball = test::sceneOf({test::sphere(1, 8)}, 0, {{10, 0, 0}});
+    const auto ball = test::makeScene({test::sphere(1, 8)}, 0, {{10, 0, 0}});
     for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
-        const auto results = rendered(fanWith(deposit, 60), {test::snapshotOf(ball), test::snapshotOf(ball, {}, 2)});
+        const auto results =
+            rendered(fanWith(deposit, 60), {test::makeSnapshot(ball), test::makeSnapshot(ball, {}, 2)});
         EXPECT_GT(*std::ranges::max_element(results[0].bins), 0);
         EXPECT_EQ(*std::ranges::max_element(results[1].bins), 0);
         EXPECT_EQ(results[1].culled.front(), (std::tuple{std::string_view("objects"), 1.0, 1.0}));

@@ -17,14 +17,14 @@ using ::testing::HasSubstr;
 
 const std::string renderer = "Imaginary GPU";
 
-RenderPlan planOf(const types::Geometry& geometry, const RenderOptions& options = {}) {
-    SonarConfig config = test::sonarOf({.beams = 256, .width_deg = 60, .bins = 500, .rows = 512, .columns = 8});
+RenderPlan makePlan(const types::Geometry& geometry, const RenderOptions& options = {}) {
+    SonarConfig config = test::getSonar({.beams = 256, .width_deg = 60, .bins = 500, .rows = 512, .columns = 8});
     config.visibility = Visibility::Gl;
     config.device = "software";
     return makeRenderPlan(config, geometry, options);
 }
 
-DepositSetup setupOf(const RenderPlan& plan) {
+DepositSetup makeSetup(const RenderPlan& plan) {
     DepositSetup setup;
     setup.rules = makeEchoRules(plan, PingEffects(plan, *test::surfaces()));
     setup.frusta = plan.frusta;
@@ -35,21 +35,21 @@ DepositSetup setupOf(const RenderPlan& plan) {
 }
 
 std::string drawingError(const gpu::Limits& limits, const gpu::Limits& needs) {
-    return test::errorOf<gpu::GlError>([&] { requireDrawing(limits, needs, renderer); });
+    return test::computeError<gpu::GlError>([&] { requireDrawing(limits, needs, renderer); });
 }
 
 TEST(DeviceNeedsTest, ADriverOfOpenGl45RasterisesAndSums) {
     const auto geometry = test::surfaces();
-    const RenderPlan plan = planOf(*geometry);
+    const RenderPlan plan = makePlan(*geometry);
     EXPECT_NO_THROW(requireDrawing(test::promisedLimits(), drawingNeeds(plan, *geometry), renderer));
     for (Deposit deposit : {Deposit::Auto, Deposit::Gpu})
-        EXPECT_EQ(whyOnProcessor(deposit, test::promisedLimits(), depositNeeds(setupOf(plan), *geometry), renderer),
+        EXPECT_EQ(whyOnProcessor(deposit, test::promisedLimits(), depositNeeds(makeSetup(plan), *geometry), renderer),
                   "");
 }
 
 TEST(DeviceNeedsTest, NamesALimitThatIsTooLowToRasterise) {
     const auto geometry = test::surfaces();
-    const RenderPlan plan = planOf(*geometry);
+    const RenderPlan plan = makePlan(*geometry);
     gpu::Limits limits = test::promisedLimits();
     limits.draw_parameters = 0;
     EXPECT_THAT(drawingError(limits, drawingNeeds(plan, *geometry)),
@@ -65,13 +65,13 @@ TEST(DeviceNeedsTest, NamesALimitThatIsTooLowToRasterise) {
 
 TEST(DeviceNeedsTest, SeveralSamplesAPixelNeedMultisampledIntegers) {
     const auto geometry = test::surfaces();
-    const gpu::Limits needs = drawingNeeds(planOf(*geometry, {.samples_per_pixel = 4}), *geometry);
+    const gpu::Limits needs = drawingNeeds(makePlan(*geometry, {.samples_per_pixel = 4}), *geometry);
     EXPECT_THAT(drawingError(test::promisedLimits(), needs), HasSubstr("GL_MAX_INTEGER_SAMPLES is 1, and 4 is needed"));
 }
 
 TEST(DeviceNeedsTest, TheProcessorSumsIfTheDeviceCannotUnlessTheDeviceIsRequired) {
     const auto geometry = test::surfaces();
-    const gpu::Limits needs = depositNeeds(setupOf(planOf(*geometry)), *geometry);
+    const gpu::Limits needs = depositNeeds(makeSetup(makePlan(*geometry)), *geometry);
     const std::pair<int64_t gpu::Limits::*, std::string> limits[] = {
         {&gpu::Limits::storage_blocks, "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS is 0, and 8 is needed"},
         {&gpu::Limits::storage_bytes, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE is 0, and"},
@@ -83,14 +83,14 @@ TEST(DeviceNeedsTest, TheProcessorSumsIfTheDeviceCannotUnlessTheDeviceIsRequired
         low.*limit = 0;
         EXPECT_THAT(whyOnProcessor(Deposit::Auto, low, needs, renderer),
                     AllOf(HasSubstr("summed on the processor"), HasSubstr(renderer), HasSubstr(words)));
-        EXPECT_THAT(test::errorOf<gpu::GlError>([&] { whyOnProcessor(Deposit::Gpu, low, needs, renderer); }),
+        EXPECT_THAT(test::computeError<gpu::GlError>([&] { whyOnProcessor(Deposit::Gpu, low, needs, renderer); }),
                     AllOf(HasSubstr(renderer), HasSubstr(words), HasSubstr("deposit: cpu")));
     }
 }
 
 TEST(DeviceNeedsTest, TheLargestBufferContainsTrianglesOrBins) {
     const auto geometry = test::surfaces();
-    DepositSetup setup = setupOf(planOf(*geometry));
+    DepositSetup setup = makeSetup(makePlan(*geometry));
     const auto bytes = [&] { return static_cast<size_t>(depositNeeds(setup, *geometry).storage_bytes); };
     setup.beam_count = 100'000;
     EXPECT_EQ(bytes(), setup.sumCount() * sizeof(uint64_t));
@@ -102,7 +102,7 @@ TEST(DeviceNeedsTest, FacetsFollowThePlanesIfAMaterialHasALobe) {
     for (const bool lobed : {false, true}) {
         const auto geometry = test::surfaces();
         if (lobed) geometry->materials.back().reflection = 0.9f, geometry->materials.back().roughness_slope = 0.1f;
-        const DepositSetup setup = setupOf(planOf(*geometry));
+        const DepositSetup setup = makeSetup(makePlan(*geometry));
         geometry->meshes[0].indices.resize(3 * 1'000'000);
         size_t triangles = 0;
         for (const types::Mesh& mesh : geometry->meshes) triangles += mesh.indices.size() / 3;

@@ -12,7 +12,7 @@
 #include "components/sonar/multipath/EdgeEchoes.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/sonar/surfaces/StraightEdges.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -32,13 +32,13 @@ constexpr double sharp = pi / 3;     ///< The default turn [rad].
 
 /** One beam of 40 by 40 deg at 100 kHz in water of 1000 m/s, bins of 2 cm, with the effect. */
 SonarConfig edgeSonar(double range = 12) {
-    SonarConfig config = test::sonarOf({.beams = 1,
-                                        .width_deg = 40,
-                                        .height_deg = 40,
-                                        .bins = static_cast<int>(range / 0.02),
-                                        .bin = 0.02,
-                                        .rows = 256,
-                                        .columns = 256});
+    SonarConfig config = test::getSonar({.beams = 1,
+                                         .width_deg = 40,
+                                         .height_deg = 40,
+                                         .bins = static_cast<int>(range / 0.02),
+                                         .bin = 0.02,
+                                         .rows = 256,
+                                         .columns = 256});
     config.visibility = Visibility::Cpu;
     config.frequency_khz = 100;
     config.effects["edge_diffraction"] = {};
@@ -97,7 +97,7 @@ types::Mesh box(glm::vec3 size, std::array<int, 6> counts) {
                     indices.insert(indices.end(), {a, b + 1, b, a, a + 1, b + 1});
             }
     }
-    return test::meshOf(positions, indices);
+    return test::getMesh(positions, indices);
 }
 types::Mesh box(glm::vec3 size, int count = 1) { return box(size, {count, count, count, count, count, count}); }
 
@@ -115,7 +115,7 @@ types::Mesh prism(int n, float radius, float height) {
         const uint32_t a = at(k, 0), b = at(k + 1, 0), c = at(k + 1, 1), d = at(k, 1);
         indices.insert(indices.end(), {a, b, c, a, c, d, 0, b, a, 1, d, c});
     }
-    return test::meshOf(positions, indices);
+    return test::getMesh(positions, indices);
 }
 
 /** Sum of the bins within 6 cm of a range. */
@@ -174,8 +174,8 @@ TEST(StraightEdgesTest, CurvesAndSmoothBodiesHaveNoEdges) {
 TEST(StraightEdgesTest, AngleAndLengthAreThoseOfTheWorld) {
     glm::dmat3 flatter(1);
     flatter[2][2] = 0.1;  // a roof of 45 deg becomes one of 6
-    const types::Mesh roof = test::meshOf({{-1, 0, 0}, {1, 0, 0}, {-1, 1, 1}, {1, 1, 1}, {-1, 2, 0}, {1, 2, 0}},
-                                          {0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4});
+    const types::Mesh roof = test::getMesh({{-1, 0, 0}, {1, 0, 0}, {-1, 1, 1}, {1, 1, 1}, {-1, 2, 0}, {1, 2, 0}},
+                                           {0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4});
     EXPECT_EQ(straightEdges(roof, glm::dmat3(1), sharp).edges.size(), 7u);
     EXPECT_EQ(straightEdges(roof, flatter, sharp).edges.size(), 6u) << "without the ridge";
 }
@@ -184,14 +184,14 @@ TEST(EdgeDiffractionTest, ASoftSheetEdgeOnIsItsNearEdge) {
     const double length = 0.1, range = 10.01;
     const auto scene = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, -1);
     const double expected = coherentSquare(length, range) / std::pow(2 * pi, 2) / std::pow(range, 4);  // D = -1
-    for (const SonarConfig& way : test::everyWay(edgeSonar())) {
-        const types::Sonar ping = test::pingOf(way, test::snapshotOf(scene));
+    for (const SonarConfig& way : test::everyRenderer(edgeSonar())) {
+        const types::Sonar ping = test::makePing(way, test::makeSnapshot(scene));
         EXPECT_NEAR(decibels(echoAt(ping, range) / expected), 0, 0.01);
-        EXPECT_LT(test::sumOf(ping), 1.01 * expected) << "nothing else";
+        EXPECT_LT(test::computeSum(ping), 1.01 * expected) << "nothing else";
     }
-    EXPECT_EQ(test::sumOf(test::pingOf(without(edgeSonar()), test::snapshotOf(scene))), 0);
+    EXPECT_EQ(test::computeSum(test::makePing(without(edgeSonar()), test::makeSnapshot(scene))), 0);
     const auto rigid = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, 1);
-    EXPECT_LT(test::sumOf(test::pingOf(edgeSonar(), test::snapshotOf(rigid))), 1e-3 * expected)
+    EXPECT_LT(test::computeSum(test::makePing(edgeSonar(), test::makeSnapshot(rigid))), 1e-3 * expected)
         << "a thin rigid sheet does not affect sound along its face";
 }
 
@@ -203,7 +203,7 @@ TEST(EdgeDiffractionTest, ATiltedStripEchoesFromBothEdgesByKellersCoefficients) 
                 const double tilt = radians(tilt_deg);
                 const auto scene = smooth({sheet(static_cast<float>(width), static_cast<float>(length))},
                                           {placed({range, 0, 0}, tilt)}, reflection);
-                const types::Sonar ping = test::pingOf(edgeSonar(), test::snapshotOf(scene));
+                const types::Sonar ping = test::makePing(edgeSonar(), test::makeSnapshot(scene));
                 double sum = 0;
                 for (const double side : {-1.0, 1.0}) {
                     const glm::dvec3 edge{range + side * width / 2 * std::cos(tilt), 0,
@@ -220,24 +220,24 @@ TEST(EdgeDiffractionTest, ATiltedStripEchoesFromBothEdgesByKellersCoefficients) 
                     EXPECT_NEAR(decibels(echoAt(ping, away) / expected), 0, 0.3)
                         << length << " m, " << reflection << ", " << tilt_deg << " deg, side " << side;
                 }
-                EXPECT_NEAR(decibels(test::sumOf(ping) / sum), 0, 0.3) << "the rest of the plate is silent";
+                EXPECT_NEAR(decibels(test::computeSum(ping) / sum), 0, 0.3) << "the rest of the plate is silent";
             }
 }
 
 TEST(EdgeDiffractionTest, AnEdgeEchoesAsAPointTargetOfItsStrength) {
     const double length = 0.1, range = 6.013;
     const auto scene = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, -1);
-    types::Snapshot target = test::snapshotOf(test::openWater(), {0, 0, 0}, 0.07, 0.05);
+    types::Snapshot target = test::makeSnapshot(test::openWater(), {0, 0, 0}, 0.07, 0.05);
     target.targets = {{{range, 0, 0}, decibels(coherentSquare(length, range) / std::pow(2 * pi, 2))}};
     for (const bool coherent : {false, true}) {
         SonarConfig config = edgeSonar();
         config.beam_count = 20;
         config.quality.rows = config.quality.columns_per_beam = 16;
         config.pulse.emplace().bandwidth_khz = 10;
-        config.beam_pattern.emplace().receive.azimuth = test::lawOf(acoustics::Weighting::Hann, 3);
+        config.beam_pattern.emplace().receive.azimuth = test::getLaw(acoustics::Weighting::Hann, 3);
         if (coherent) config.speckle.emplace().coherent = true;
-        const types::Sonar edge = test::pingOf(config, test::snapshotOf(scene, {0, 0, 0}, 0.07, 0.05));
-        const types::Sonar point = test::pingOf(without(config), target);
+        const types::Sonar edge = test::makePing(config, test::makeSnapshot(scene, {0, 0, 0}, 0.07, 0.05));
+        const types::Sonar point = test::makePing(without(config), target);
         const double loudest = double{*std::ranges::max_element(point.bins)};
         ASSERT_GT(loudest, 0);
         for (size_t i = 0; i < edge.bins.size(); ++i) ASSERT_NEAR(edge.bins[i], point.bins[i], 1e-3 * loudest) << i;
@@ -249,8 +249,8 @@ TEST(EdgeDiffractionTest, AFaceAlongItsNormalKeepsItsTargetStrength) {
     const double expected = std::pow(0.01 / wavelength, 2) / 1e4;
     SonarConfig narrow = edgeSonar();
     narrow.field_of_view_deg = narrow.beam_height_deg = 4;
-    const double plain = test::sumOf(test::pingOf(without(narrow), test::snapshotOf(scene)));
-    const double with = test::sumOf(test::pingOf(narrow, test::snapshotOf(scene)));
+    const double plain = test::computeSum(test::makePing(without(narrow), test::makeSnapshot(scene)));
+    const double with = test::computeSum(test::makePing(narrow, test::makeSnapshot(scene)));
     EXPECT_NEAR(decibels(plain / expected), 0, 0.5);
     EXPECT_NEAR(decibels(with / plain), 0, 0.2);
 }
@@ -266,7 +266,7 @@ TEST(EdgeDiffractionTest, DoesNotDependOnTheTriangles) {
             placed({uniform(3, 9), uniform(-0.5, 0.5), uniform(-0.5, 0.5)}, uniform(-3, 3), uniform(-3, 3));
         std::vector<float> first;
         for (const types::Mesh& mesh : {box(size), box(size, 4), box(size, {1, 2, 4, 1, 8, 2})}) {
-            const types::Sonar ping = test::pingOf(edgeSonar(), test::snapshotOf(smooth({mesh}, {place})));
+            const types::Sonar ping = test::makePing(edgeSonar(), test::makeSnapshot(smooth({mesh}, {place})));
             if (first.empty()) first = ping.bins;
             const double loudest = double{*std::ranges::max_element(first)};
             ASSERT_GT(loudest, 0);
@@ -278,11 +278,11 @@ TEST(EdgeDiffractionTest, DoesNotDependOnTheTriangles) {
 TEST(EdgeDiffractionTest, HiddenEdgesAreSilent) {
     const types::Mesh wall = test::quad({0, -2, -2}, {0, 4, 0}, {0, 0, 4}), block = box({0.5f, 0.5f, 0.5f});
     const glm::dmat4 far = placed({8, 0, 0}, 0.3, 0.4), before = placed({5, 0, 0});
-    const types::Sonar alone = test::pingOf(edgeSonar(), test::snapshotOf(smooth({wall}, {before})));
-    EXPECT_EQ(test::pingOf(edgeSonar(), test::snapshotOf(smooth({wall, block}, {before, far}))).bins, alone.bins);
+    const types::Sonar alone = test::makePing(edgeSonar(), test::makeSnapshot(smooth({wall}, {before})));
+    EXPECT_EQ(test::makePing(edgeSonar(), test::makeSnapshot(smooth({wall, block}, {before, far}))).bins, alone.bins);
     SonarRenderer renderer(edgeSonar(), smooth({block}, {far}));
     types::Sonar ping;
-    types::Snapshot snapshot = test::snapshotOf(smooth({block}, {far}));
+    types::Snapshot snapshot = test::makeSnapshot(smooth({block}, {far}));
     renderer.render(snapshot, ping);
     EXPECT_EQ(renderer.othersReceived(), 9u) << "of twelve edges three are behind the block";
     const auto left = omitted(renderer);
@@ -294,10 +294,10 @@ TEST(EdgeDiffractionTest, HiddenEdgesAreSilent) {
 TEST(EdgeDiffractionTest, AnObjectThatMovesTakesItsEdgesAlong) {
     const types::Mesh block = box({0.5f, 0.4f, 0.3f});
     const glm::dmat4 there = placed({7, 0.3, -0.2}, 0.4, 1.1);
-    types::Snapshot moved = test::snapshotOf(smooth({block}, {placed({5, 0, 0})}));
+    types::Snapshot moved = test::makeSnapshot(smooth({block}, {placed({5, 0, 0})}));
     moved.moved = {{0, there}};
-    const types::Sonar ping = test::pingOf(edgeSonar(), moved);
-    const types::Sonar still = test::pingOf(edgeSonar(), test::snapshotOf(smooth({block}, {there})));
+    const types::Sonar ping = test::makePing(edgeSonar(), moved);
+    const types::Sonar still = test::makePing(edgeSonar(), test::makeSnapshot(smooth({block}, {there})));
     const double loudest = double{*std::ranges::max_element(still.bins)};
     ASSERT_GT(loudest, 0);
     for (size_t i = 0; i < still.bins.size(); ++i) ASSERT_NEAR(ping.bins[i], still.bins[i], 1e-4 * loudest) << i;
@@ -307,9 +307,9 @@ TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndReportsWhy) {
     const auto expectOmitted = [](const types::GeometryPtr& scene, const char* words) {
         SonarRenderer renderer(edgeSonar(), scene);
         types::Sonar ping;
-        renderer.render(test::snapshotOf(scene), ping);
-        EXPECT_EQ(ping.bins, test::pingOf(without(edgeSonar()), test::snapshotOf(scene)).bins);
-        EXPECT_GT(test::sumOf(ping), 0);
+        renderer.render(test::makeSnapshot(scene), ping);
+        EXPECT_EQ(ping.bins, test::makePing(without(edgeSonar()), test::makeSnapshot(scene)).bins);
+        EXPECT_GT(test::computeSum(ping), 0);
         const auto left = omitted(renderer);
         const Omitted* planned = renderer.renderPlan().findOmitted("edge diffraction");
         const Omitted what = left ? *left : planned ? *planned : Omitted{};
@@ -317,12 +317,12 @@ TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndReportsWhy) {
         ASSERT_TRUE(what.words);
         EXPECT_THAT(what.words(what, {}), HasSubstr(words));
     };
-    expectOmitted(test::sceneOf({test::ground(-2), box({1, 1, 1})}, 0, {{0, 0, 0}, {6, 0, 0}}), "no material");
+    expectOmitted(test::makeScene({test::ground(-2), box({1, 1, 1})}, 0, {{0, 0, 0}, {6, 0, 0}}), "no material");
     expectOmitted(smooth({test::sphere(0.5, 24)}, {placed({6, 0, 0})}), "no straight edge");
 }
 
 TEST(EdgeDiffractionTest, RejectsInvalidConfigurations) {
-    const auto diagnosticOf = [](const char* yaml) {
+    const auto findDiagnostic = [](const char* yaml) {
         framework::ConfigReader reader("sonar.yml");
         SonarConfig config;
         reader.read(YAML::Load(yaml), "", config);
@@ -330,19 +330,19 @@ TEST(EdgeDiffractionTest, RejectsInvalidConfigurations) {
         for (const auto& each : reader.diagnostics()) all += each.path + ": " + each.message + "\n";
         return all;
     };
-    EXPECT_EQ(diagnosticOf("{frequency_khz: 300, effects: {edge_diffraction: {}}}"), "");
-    EXPECT_EQ(diagnosticOf("{frequency_khz: 300, effects: {edge_diffraction: {min_turn_deg: 30}}}"), "");
-    EXPECT_THAT(diagnosticOf("{effects: {edge_diffraction: {}}}"),
+    EXPECT_EQ(findDiagnostic("{frequency_khz: 300, effects: {edge_diffraction: {}}}"), "");
+    EXPECT_EQ(findDiagnostic("{frequency_khz: 300, effects: {edge_diffraction: {min_turn_deg: 30}}}"), "");
+    EXPECT_THAT(findDiagnostic("{effects: {edge_diffraction: {}}}"),
                 HasSubstr("effects.edge_diffraction: needs frequency_khz"));
-    EXPECT_THAT(diagnosticOf("{model: cerqueira2017, effects: {edge_diffraction: {}}}"),
+    EXPECT_THAT(findDiagnostic("{model: cerqueira2017, effects: {edge_diffraction: {}}}"),
                 HasSubstr("it belongs to physical"));
-    EXPECT_THAT(diagnosticOf("{frequency_khz: 300, motion_in_ping: true, effects: {edge_diffraction: {}}}"),
+    EXPECT_THAT(findDiagnostic("{frequency_khz: 300, motion_in_ping: true, effects: {edge_diffraction: {}}}"),
                 HasSubstr("no motion within a ping"));
-    EXPECT_THAT(diagnosticOf("{frequency_khz: 300, effects: {edge_diffraction: {min_turn_deg: 0}}}"),
+    EXPECT_THAT(findDiagnostic("{frequency_khz: 300, effects: {edge_diffraction: {min_turn_deg: 0}}}"),
                 HasSubstr("effects.edge_diffraction.min_turn_deg: is 0; must be 1 to 180 deg"));
-    EXPECT_THAT(diagnosticOf("{frequency_khz: 300, effects: {edge_diffraction: {turn: 60}}}"),
+    EXPECT_THAT(findDiagnostic("{frequency_khz: 300, effects: {edge_diffraction: {turn: 60}}}"),
                 HasSubstr("is no number of this effect; did you mean min_turn_deg?"));
-    EXPECT_THAT(diagnosticOf("{frequency_khz: 300, effects: {edge_difraction: {}}}"), HasSubstr("edge_diffraction"));
+    EXPECT_THAT(findDiagnostic("{frequency_khz: 300, effects: {edge_difraction: {}}}"), HasSubstr("edge_diffraction"));
 }
 
 TEST(EdgeDiffractionTest, EverythingIsFiniteForRandomBoxesAndSonarsOnTheirEdges) {
@@ -366,14 +366,14 @@ TEST(EdgeDiffractionTest, EverythingIsFiniteForRandomBoxesAndSonarsOnTheirEdges)
                                    {half.x + 1, half.y, 0},       // its plane
                                    {uniform(-3, 3), uniform(-3, 3), uniform(-3, 3)}};
         types::Snapshot snapshot =
-            test::snapshotOf(scene, place * glm::dvec4(onto[trial % 6], 1), uniform(-3, 3), uniform(-1, 1));
-        const types::Sonar ping = test::pingOf(config, snapshot);
+            test::makeSnapshot(scene, place * glm::dvec4(onto[trial % 6], 1), uniform(-3, 3), uniform(-1, 1));
+        const types::Sonar ping = test::makePing(config, snapshot);
         for (const float bin : ping.bins) ASSERT_TRUE(std::isfinite(bin) && bin >= 0) << trial;
     }
 }
 
 /** An edge of a sheet along y at the origin, whose face extends along x. */
-PlacedEdge edgeOf(double length, double slope) {
+PlacedEdge getEdge(double length, double slope) {
     return {.from = {0, -length / 2, 0},
             .to = {0, length / 2, 0},
             .inward = {glm::dvec3(1, 0, 0), glm::dvec3(1, 0, 0)},
@@ -384,7 +384,7 @@ PlacedEdge edgeOf(double length, double slope) {
             .wavelength = wavelength};
 }
 
-double sectionOf(const PlacedEdge& edge, const glm::dvec3& sonar) {
+double computeSection(const PlacedEdge& edge, const glm::dvec3& sonar) {
     std::vector<EdgeEcho> echoes;
     appendEdgeEchoes(edge, sonar, 0.01, echoes);
     double sum = 0;
@@ -394,9 +394,9 @@ double sectionOf(const PlacedEdge& edge, const glm::dvec3& sonar) {
 
 TEST(EdgeEchoesTest, ALongEdgeEchoesAsItsFresnelZoneWithAnyRelief) {
     const glm::dvec3 sonar{6, 0, 8};
-    const double expected = wavelength * 10 / 2 * std::pow(edgeOf(1, 0).coefficient(sonar) / (2 * pi), 2);
+    const double expected = wavelength * 10 / 2 * std::pow(getEdge(1, 0).coefficient(sonar) / (2 * pi), 2);
     for (const double slope : {0.0, 0.003, 0.03, 0.2})
-        EXPECT_NEAR(decibels(sectionOf(edgeOf(100, slope), sonar) / expected), 0, 0.15) << slope;
+        EXPECT_NEAR(decibels(computeSection(getEdge(100, slope), sonar) / expected), 0, 0.15) << slope;
 }
 
 TEST(EdgeEchoesTest, FarAwayOverAllAnglesReliefKeepsTheSum) {
@@ -404,8 +404,9 @@ TEST(EdgeEchoesTest, FarAwayOverAllAnglesReliefKeepsTheSum) {
     const auto sumOver = [&](double slope) {
         double sum = 0;
         for (double angle = -0.6; angle < 0.6; angle += 1e-4)
-            sum += 1e-4 * sectionOf(edgeOf(length, slope),
-                                    range * glm::dvec3(-0.6 * std::cos(angle), std::sin(angle), 0.8 * std::cos(angle)));
+            sum += 1e-4 *
+                   computeSection(getEdge(length, slope),
+                                  range * glm::dvec3(-0.6 * std::cos(angle), std::sin(angle), 0.8 * std::cos(angle)));
         return sum;
     };
     const double mirror = sumOver(0);
@@ -413,7 +414,7 @@ TEST(EdgeEchoesTest, FarAwayOverAllAnglesReliefKeepsTheSum) {
 }
 
 TEST(EdgeEchoesTest, AHollowEdgeIsSilent) {
-    PlacedEdge edge = edgeOf(1, 0);
+    PlacedEdge edge = getEdge(1, 0);
     edge.inward[1] = {0, 0, 1};
     EXPECT_EQ(edge.coefficient({5, 0, 5}), 0) << "between the faces";
     EXPECT_NE(edge.coefficient({-5, 0, -5}), 0);

@@ -19,7 +19,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /** A straight array whose beams are 3 degrees wide. */
-SonarConfig arrayOf(Weighting weighting) {
+SonarConfig makeArray(Weighting weighting) {
     SonarConfig config;
     config.speed_of_sound = 1500;
     config.frequency_khz = 300;
@@ -44,7 +44,7 @@ SonarConfig arrayOf(Weighting weighting) {
 
 /** A level bottom with a ball on it. */
 types::Snapshot twoTargets() {
-    return test::snapshotOf(test::sceneOf({test::ground(-2), test::sphere(0.5, 32)}, 0, {{}, {6, 1, -1.5}}));
+    return test::makeSnapshot(test::makeScene({test::ground(-2), test::sphere(0.5, 32)}, 0, {{}, {6, 1, -1.5}}));
 }
 
 struct Received {
@@ -125,7 +125,7 @@ private:
 /** Means of the bins above the mean at their range, of bins to 20 dB below it, and of the total energy. */
 struct MeanOff {
     MeanOff(Weighting weighting, int columns, int draws) {
-        SonarConfig config = arrayOf(weighting);
+        SonarConfig config = makeArray(weighting);
         config.quality.columns_per_beam = columns;
         for (int draw = 0; draw < draws; ++draw) {
             const Received both = received(config, redrawn(draw));
@@ -173,7 +173,7 @@ TEST(ElementSignalsTest, NarrowerCellsBringThemNearer) {
 }
 
 TEST(ElementSignalsTest, HavePositionsOfElementsAndRangesOfSamples) {
-    const Received both = received(arrayOf(Weighting::Uniform));
+    const Received both = received(makeArray(Weighting::Uniform));
     const types::SonarElements& signals = both.signals;
     EXPECT_EQ(signals.diagnostic(), nullptr);
     EXPECT_EQ(signals.time, both.ping.time);
@@ -188,34 +188,36 @@ TEST(ElementSignalsTest, HavePositionsOfElementsAndRangesOfSamples) {
 }
 
 TEST(ElementSignalsTest, FewerElementsAreFartherApartAndReceiveTheSamePlaces) {
-    SonarConfig config = arrayOf(Weighting::Uniform);
+    SonarConfig config = makeArray(Weighting::Uniform);
     config.elements->count = 20;
-    const types::SonarElements sparse = received(config).signals, dense = received(arrayOf(Weighting::Uniform)).signals;
+    const types::SonarElements sparse = received(config).signals,
+                               dense = received(makeArray(Weighting::Uniform)).signals;
     EXPECT_EQ(sparse.positions.size(), 20u);
     EXPECT_NEAR(20 * (sparse.positions[1] - sparse.positions[0]),
                 static_cast<double>(dense.positions.size()) * (dense.positions[1] - dense.positions[0]), 1e-9);
 }
 
 TEST(ElementSignalsTest, RejectsInvalidArraysWithTheReason) {
-    EXPECT_THAT(test::refusalsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
-    SonarConfig config = arrayOf(Weighting::Uniform);
+    EXPECT_THAT(test::countRefusals(makeArray(Weighting::Taylor)), testing::IsEmpty());
+    SonarConfig config = makeArray(Weighting::Uniform);
     config.speckle.reset();
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 ElementsAre("elements: need speckle: {coherent: true}; without it energies are summed, "
                             "not fields"));
-    config = arrayOf(Weighting::Uniform);
+    config = makeArray(Weighting::Uniform);
     config.beam_geometry = BeamGeometry::Planar;
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 ElementsAre("elements: need beam_geometry: conical, because a straight array receives cones"));
-    config = arrayOf(Weighting::Uniform);
+    config = makeArray(Weighting::Uniform);
     config.beam_pattern.reset();
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 ElementsAre("elements: need beam_pattern.receive.azimuth, whose aperture they fill"));
-    EXPECT_THAT(test::refusalsOf(arrayOf(Weighting::Gaussian)), ElementsAre(HasSubstr("a measured table, gaussian")));
-    config = arrayOf(Weighting::Uniform);
+    EXPECT_THAT(test::countRefusals(makeArray(Weighting::Gaussian)),
+                ElementsAre(HasSubstr("a measured table, gaussian")));
+    config = makeArray(Weighting::Uniform);
     config.elements->count = 20;
     config.elements->spacing_m = 0.01;
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 ElementsAre(HasSubstr("elements: are 20 that are 0.01 m apart, 0.2 m in all; the aperture of "
                                       "beam_pattern.receive.azimuth is 0.0846")));
 }
@@ -227,11 +229,11 @@ struct ElementPortTest : test::TaskBench<SonarTask, types::SnapshotPtr, types::S
 
 TEST_F(ElementPortTest, ThePortWritesTheElementsOfEachPing) {
     task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
-    startWith(arrayOf(Weighting::Uniform));
+    startWith(makeArray(Weighting::Uniform));
     const types::SonarPtr ping = answerTo(std::make_shared<const types::Snapshot>(twoTargets()));
     types::SonarElementsPtr signals;
     ASSERT_TRUE(ping && signals_.port.readNew(signals));
-    const Received expected = received(arrayOf(Weighting::Uniform));
+    const Received expected = received(makeArray(Weighting::Uniform));
     EXPECT_EQ(ping->bins, expected.ping.bins) << "with or without the port";
     EXPECT_EQ(signals->in_phase, expected.signals.in_phase);
     EXPECT_EQ(signals->time, ping->time);
@@ -239,7 +241,7 @@ TEST_F(ElementPortTest, ThePortWritesTheElementsOfEachPing) {
 
 TEST_F(ElementPortTest, SignalsBelongToTheirPingWhileTheQualityIsChosenAndWatched) {
     task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
-    SonarConfig config = arrayOf(Weighting::Hann);
+    SonarConfig config = makeArray(Weighting::Hann);
     config.quality = {};
     config.quality.max_samples = 100'000;
     startWith(config);
@@ -264,7 +266,7 @@ TEST_F(ElementPortTest, SignalsBelongToTheirPingWhileTheQualityIsChosenAndWatche
 
 TEST_F(ElementPortTest, RejectsAConnectedPortOfASonarWithoutElements) {
     task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
-    SonarConfig config = arrayOf(Weighting::Uniform);
+    SonarConfig config = makeArray(Weighting::Uniform);
     config.elements.reset();
     task_.config.set(config);
     EXPECT_FALSE(task_.configure());

@@ -11,7 +11,7 @@
 namespace insonify::sonar {
 namespace {
 
-using scene::bytesOf;
+using scene::toBytes;
 
 /** Corner i of a cube from -1 to 1. */
 std::array<int, 3> corner(int i) { return {i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1}; }
@@ -25,7 +25,7 @@ template <class T, class Corners>
 std::string positions(const Corners& corners, const std::string& more = {}) {
     std::string bytes;
     for (int i : corners) {
-        for (int value : corner(i)) bytes += bytesOf({static_cast<T>(value)});
+        for (int value : corner(i)) bytes += toBytes({static_cast<T>(value)});
         bytes += more;
     }
     return bytes;
@@ -34,7 +34,7 @@ std::string positions(const Corners& corners, const std::string& more = {}) {
 template <class T>
 std::string indices(const std::initializer_list<int>& corners) {
     std::string bytes;
-    for (int i : corners) bytes += bytesOf({static_cast<T>(i)});
+    for (int i : corners) bytes += toBytes({static_cast<T>(i)});
     return bytes;
 }
 
@@ -64,8 +64,8 @@ std::string indexed(size_t stride, int position_type, int index_type, size_t ind
 }
 
 struct EncodingsTest : scene::SceneFiles {
-    std::vector<float> pingOf(const std::string& rest) const { return pingOf(load(rest)); }
-    static std::vector<float> pingOf(const types::GeometryPtr& geometry) {
+    std::vector<float> makePing(const std::string& rest) const { return makePing(load(rest)); }
+    static std::vector<float> makePing(const types::GeometryPtr& geometry) {
         SonarConfig config;
         config.range = 15;
         config.bin_count = 200;
@@ -76,19 +76,19 @@ struct EncodingsTest : scene::SceneFiles {
         config.device = "software";
         SonarRenderer renderer(config, geometry);
         types::Sonar ping;
-        renderer.render(test::snapshotOf(geometry, {0, 0, -1}, 0.1), ping);
+        renderer.render(test::makeSnapshot(geometry, {0, 0, -1}, 0.1), ping);
         return ping.bins;
     }
     /** Writes a .gltf with the bytes in a data URI, shared corners of floats and 16-bit indices. */
     std::vector<float> plain() const {
-        const auto bins =
-            pingOf(indexed(12, 5126, 5123, 2) + scene::buffers(positions<float>(each) + indices<uint16_t>(triangles)));
+        const auto bins = makePing(indexed(12, 5126, 5123, 2) +
+                                   scene::buffers(positions<float>(each) + indices<uint16_t>(triangles)));
         EXPECT_GT(std::ranges::count_if(bins, [](float x) { return x > 0; }), 200);
         return bins;
     }
 };
 
-std::string word(size_t value) { return bytesOf({static_cast<uint32_t>(value)}); }
+std::string word(size_t value) { return toBytes({static_cast<uint32_t>(value)}); }
 
 std::string padded(std::string bytes, char with) {
     bytes.resize((bytes.size() + 3) / 4 * 4, with);
@@ -103,29 +103,29 @@ TEST_F(EncodingsTest, ABinaryFileIsTheTextWithADataUri) {
         gltf(indexed(12, 5126, 5123, 2) + R"("buffers":[{"byteLength":)" + std::to_string(data.size()) + "}]"), ' ');
     const std::string glb = "glTF" + word(2) + word(12 + 8 + json.size() + 8 + data.size()) + word(json.size()) +
                             "JSON" + json + word(data.size()) + std::string("BIN\0", 4) + data;
-    EXPECT_EQ(pingOf(scene::loadScene(write("cube.glb", glb))), plain());
+    EXPECT_EQ(makePing(scene::loadScene(write("cube.glb", glb))), plain());
 }
 
 TEST_F(EncodingsTest, InterleavedCornersWithByteIndicesAreTheSame) {
-    const std::string normal = bytesOf({0.0f, 0.0f, 1.0f});
-    EXPECT_EQ(pingOf(indexed(24, 5126, 5121, 1) +
-                     scene::buffers(positions<float>(each, normal) + indices<uint8_t>(triangles))),
+    const std::string normal = toBytes({0.0f, 0.0f, 1.0f});
+    EXPECT_EQ(makePing(indexed(24, 5126, 5121, 1) +
+                       scene::buffers(positions<float>(each, normal) + indices<uint8_t>(triangles))),
               plain());
 }
 
 TEST_F(EncodingsTest, QuantizedCornersWithWordIndicesAreTheSame) {
     const std::string extension =
         R"("extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"],)";
-    EXPECT_EQ(pingOf(extension + indexed(4, 5120, 5125, 4) +
-                     scene::buffers(positions<int8_t>(each, std::string(1, '\0')) + indices<uint32_t>(triangles))),
+    EXPECT_EQ(makePing(extension + indexed(4, 5120, 5125, 4) +
+                       scene::buffers(positions<int8_t>(each, std::string(1, '\0')) + indices<uint32_t>(triangles))),
               plain());
 }
 
 TEST_F(EncodingsTest, TrianglesWithoutIndicesAreTheSame) {
     const std::string data = positions<float>(triangles);
-    EXPECT_EQ(pingOf(turned_cube + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)" +
-                     accessor(0, 5126, 36, vec3) + R"(],"bufferViews":[)" + view(0, data.size()) + "]," +
-                     scene::buffers(data)),
+    EXPECT_EQ(makePing(turned_cube + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)" +
+                       accessor(0, 5126, 36, vec3) + R"(],"bufferViews":[)" + view(0, data.size()) + "]," +
+                       scene::buffers(data)),
               plain());
 }
 
@@ -137,16 +137,16 @@ TEST_F(EncodingsTest, SixStripsAreTheSame) {
                       std::to_string(face + 1) + "}";
         accessors += "," + accessor(1, 5121, 4, scalar + R"(,"byteOffset":)" + std::to_string(4 * face));
     }
-    EXPECT_EQ(pingOf(turned_cube + R"("meshes":[{"primitives":[)" + primitives + R"(]}],"accessors":[)" + accessors +
-                     R"(],"bufferViews":[)" + view(0, corners.size()) + "," + view(corners.size(), 24) + "]," +
-                     scene::buffers(corners + indices<uint8_t>(strips))),
+    EXPECT_EQ(makePing(turned_cube + R"("meshes":[{"primitives":[)" + primitives + R"(]}],"accessors":[)" + accessors +
+                       R"(],"bufferViews":[)" + view(0, corners.size()) + "," + view(corners.size(), 24) + "]," +
+                       scene::buffers(corners + indices<uint8_t>(strips))),
               plain());
 }
 
 TEST_F(EncodingsTest, ACubeOfOtherCornersIsNot) {
     std::string corners = positions<float>(each);
-    corners.replace(0, 4, bytesOf({-1.01f}));
-    EXPECT_NE(pingOf(indexed(12, 5126, 5123, 2) + scene::buffers(corners + indices<uint16_t>(triangles))), plain());
+    corners.replace(0, 4, toBytes({-1.01f}));
+    EXPECT_NE(makePing(indexed(12, 5126, 5123, 2) + scene::buffers(corners + indices<uint16_t>(triangles))), plain());
 }
 
 }  // namespace insonify::sonar

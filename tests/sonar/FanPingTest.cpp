@@ -106,7 +106,7 @@ types::GeometryPtr resolved() {
 /** Returns the scene of a sonar that is rotated by `yaw` [rad]. */
 types::Snapshot scene(double yaw = 0) {
     static const types::GeometryPtr geometry = resolved();
-    types::Snapshot snapshot = test::snapshotOf(geometry, {}, yaw);
+    types::Snapshot snapshot = test::makeSnapshot(geometry, {}, yaw);
     snapshot.targets = {{{8, 1, 0}, 5}, {{-9, 0.5, 0.2}, 5}, {{3, -9, -0.5}, 5}};
     snapshot.target_names = std::make_shared<const std::vector<std::string>>(3, "target");
     snapshot.water_surface = 3;
@@ -121,7 +121,7 @@ struct Shown {
     types::SonarReturns returns;
 };
 
-Shown shownOf(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 2) {
+Shown getShown(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 2) {
     SonarRenderer renderer(config, snapshot.geometry, {.threads = threads});
     Shown shown;
     renderer.setTruth(shown.ping, &shown.truth);
@@ -139,7 +139,7 @@ Shown shownOf(const SonarConfig& config, const types::Snapshot& snapshot, int th
 }
 
 template <class T>
-std::span<const T> rowOf(const std::vector<T>& values, size_t row, size_t rows) {
+std::span<const T> getRow(const std::vector<T>& values, size_t row, size_t rows) {
     return std::span(values).subspan(row * (values.size() / rows), values.size() / rows);
 }
 
@@ -154,7 +154,7 @@ void expectSameRow(const Shown& shown, size_t row, const Shown& other, size_t ot
     const size_t beams = shown.ping.beam_count;
     EXPECT_EQ(shown.ping.bearings[row].rad, other.ping.bearings[other_row].rad);
     const auto compare = [&](const char* name, const auto& mine, const auto& theirs) {
-        EXPECT_TRUE(same(rowOf(mine, row, beams), rowOf(theirs, other_row, beams))) << name << " of row " << row;
+        EXPECT_TRUE(same(getRow(mine, row, beams), getRow(theirs, other_row, beams))) << name << " of row " << row;
     };
     compare("bins", shown.ping.bins, other.ping.bins);
     compare("object", shown.truth.object, other.truth.object);
@@ -190,7 +190,7 @@ struct FanPingTest : testing::TestWithParam<FanEffect> {
     void forTables(int rounds, const auto& use) const {
         std::mt19937 random(7);
         for (int round = 0; round < rounds; ++round)
-            for (const test::Table& table : test::tablesOf(random)) {
+            for (const test::Table& table : test::drawTables(random)) {
                 SCOPED_TRACE(testing::PrintToString(table));
                 if (canHave(table, sonar(table, GetParam()))) use(table, random);
             }
@@ -201,13 +201,13 @@ TEST_P(FanPingTest, AnyOrderOfTheTableGivesTheSameRows) {
     forTables(2, [&](const test::Table& table, std::mt19937& random) {
         for (const Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {
             if (visibility == Visibility::Gl && !GetParam().rasterised) continue;
-            const Shown ascending = shownOf(sonar(table, GetParam(), visibility), scene());
+            const Shown ascending = getShown(sonar(table, GetParam(), visibility), scene());
             std::vector<size_t> rows(table.bearings_deg.size());
             for (size_t i = 0; i < rows.size(); ++i) rows[i] = rows.size() - 1 - i;
             for (int order = 0; order < 2; ++order) {
                 test::Table other = table;
                 for (size_t i = 0; i < rows.size(); ++i) other.bearings_deg[i] = table.bearings_deg[rows[i]];
-                const Shown shown = shownOf(sonar(other, GetParam(), visibility), scene(), 1 + order);
+                const Shown shown = getShown(sonar(other, GetParam(), visibility), scene(), 1 + order);
                 for (size_t i = 0; i < rows.size(); ++i) expectSameRow(shown, i, ascending, rows[i]);
                 std::ranges::shuffle(rows, random);
             }
@@ -219,14 +219,14 @@ TEST_P(FanPingTest, AFanIsTheSameAnywhereAboutTheSeam) {
     if (!GetParam().turns) return;
     if (sonar({"", {0}, 1}, GetParam()).beam_geometry == BeamGeometry::Conical) return;  // covers only bearings ahead
     forTables(1, [&](const test::Table& table, std::mt19937& random) {
-        const Shown here = shownOf(sonar(table, GetParam()), scene());
+        const Shown here = getShown(sonar(table, GetParam()), scene());
         const double turn = std::uniform_real_distribution<double>(120, 240)(random);
         test::Table turned = table;
         for (double& bearing : turned.bearings_deg) bearing = test::wrappedDeg(bearing + turn);
-        const Shown there = shownOf(sonar(turned, GetParam()), scene(radians(-turn)));
+        const Shown there = getShown(sonar(turned, GetParam()), scene(radians(-turn)));
         for (size_t row = 0; row < table.bearings_deg.size(); ++row)
-            EXPECT_LT(difference(rowOf(there.ping.bins, row, table.bearings_deg.size()),
-                                 rowOf(here.ping.bins, row, table.bearings_deg.size())),
+            EXPECT_LT(difference(getRow(there.ping.bins, row, table.bearings_deg.size()),
+                                 getRow(here.ping.bins, row, table.bearings_deg.size())),
                       0.03)
                 << "row " << row << " turned by " << turn;
     });
@@ -240,11 +240,11 @@ TEST_P(FanPingTest, EachBeamIsTheSameAlone) {
             config.quality.columns_per_beam = 8;
             return config;
         };
-        const Shown all = shownOf(fine(sonar(table, GetParam())), scene());
+        const Shown all = getShown(fine(sonar(table, GetParam())), scene());
         for (size_t row = 0; row < table.bearings_deg.size(); ++row) {
             const Shown alone =
-                shownOf(fine(sonar({"alone", {table.bearings_deg[row]}, table.width_deg}, GetParam())), scene());
-            EXPECT_LT(difference(rowOf(all.ping.bins, row, table.bearings_deg.size()), alone.ping.bins),
+                getShown(fine(sonar({"alone", {table.bearings_deg[row]}, table.width_deg}, GetParam())), scene());
+            EXPECT_LT(difference(getRow(all.ping.bins, row, table.bearings_deg.size()), alone.ping.bins),
                       GetParam().alone)
                 << "row " << row;
         }
@@ -274,10 +274,10 @@ TEST_P(FanPingTest, RaysAndPicturesAgree) {
             config.quality.columns_per_beam = 8;
             return config;
         };
-        const Shown traced = shownOf(fine(sonar(table, GetParam())), withoutLimbs(scene()));
+        const Shown traced = getShown(fine(sonar(table, GetParam())), withoutLimbs(scene()));
         SonarConfig pictures = fine(sonar(table, GetParam(), Visibility::Gl));
         if (pictures.beam_pattern) pictures.quality.rows = 2048;  // of 150 deg, even in their tangent
-        const Shown rasterised = shownOf(pictures, withoutLimbs(scene()));
+        const Shown rasterised = getShown(pictures, withoutLimbs(scene()));
         EXPECT_LT(difference(rasterised.ping.bins, traced.ping.bins), GetParam().agree);
     });
 }
@@ -291,7 +291,7 @@ INSTANTIATE_TEST_SUITE_P(Effects, FanPingTest, testing::ValuesIn(fanEffects()), 
 /** Coherent beams that overlap or leave gaps keep the energy of the ping that sums energies. */
 TEST(FanPingTest, CoherentSpeckleKeepsTheEnergyOfEveryTable) {
     std::mt19937 random(3);
-    for (const test::Table& table : test::tablesOf(random)) {
+    for (const test::Table& table : test::drawTables(random)) {
         SCOPED_TRACE(testing::PrintToString(table));
         SonarConfig energies = sonar(table, fanEffects().front());
         energies.frequency_khz = 300;
@@ -299,8 +299,8 @@ TEST(FanPingTest, CoherentSpeckleKeepsTheEnergyOfEveryTable) {
         energies.quality.rows = 256;
         SonarConfig fields = energies;
         fields.speckle = SpeckleConfig{true, 10, {}};
-        const types::Snapshot floor = test::snapshotOf(test::sceneOf({test::ground(-3)}));
-        const types::Sonar mean = shownOf(energies, floor).ping, speckled = shownOf(fields, floor).ping;
+        const types::Snapshot floor = test::makeSnapshot(test::makeScene({test::ground(-3)}));
+        const types::Sonar mean = getShown(energies, floor).ping, speckled = getShown(fields, floor).ping;
         for (size_t row = 0; row < mean.beam_count; ++row) {
             double sum = 0, count = 0;
             for (size_t bin = 190; bin < 400; ++bin, ++count)  // the floor begins at bin 175

@@ -14,20 +14,20 @@ using ::testing::ElementsAreArray;
 using types::degrees;
 using types::radians;
 
-Fan fanOf(const std::vector<double>& bearings_deg, double width_deg = 1) {
+Fan makeFan(const std::vector<double>& bearings_deg, double width_deg = 1) {
     std::vector<Beam> beams;
     for (const double bearing : bearings_deg)
         beams.push_back({radians(bearing), radians(bearing - width_deg / 2), radians(bearing + width_deg / 2)});
     return Fan(beams);
 }
 
-std::vector<double> centresOf(const Fan& fan) {
+std::vector<double> getCentres(const Fan& fan) {
     std::vector<double> centres;
     for (const Beam& beam : fan) centres.push_back(std::round(degrees(beam.centre) * 1e6) / 1e6);
     return centres;
 }
 
-std::vector<size_t> rowsOf(const Fan& fan) {
+std::vector<size_t> getRows(const Fan& fan) {
     std::vector<size_t> rows;
     for (size_t k = 0; k < fan.size(); ++k) rows.push_back(fan.row(k));
     return rows;
@@ -41,8 +41,8 @@ std::vector<size_t> foundAt(const Fan& fan, double azimuth) {
 }
 
 TEST(FanTest, AnAscendingTableIsTheFan) {
-    const Fan fan = fanOf({-30, -10, 0, 25}, 20);
-    EXPECT_THAT(centresOf(fan), ElementsAre(-30, -10, 0, 25));
+    const Fan fan = makeFan({-30, -10, 0, 25}, 20);
+    EXPECT_THAT(getCentres(fan), ElementsAre(-30, -10, 0, 25));
     EXPECT_TRUE(fan.isTableOrder());
     EXPECT_NEAR(degrees(fan.low()), -40, 1e-9);
     EXPECT_NEAR(degrees(fan.high()), 35, 1e-9);
@@ -50,17 +50,17 @@ TEST(FanTest, AnAscendingTableIsTheFan) {
 }
 
 TEST(FanTest, SortsAnyOrderAndFindsEachRowAgain) {
-    const Fan fan = fanOf({10, -30, 25, -10, 0});
-    EXPECT_THAT(centresOf(fan), ElementsAre(-30, -10, 0, 10, 25));
-    EXPECT_THAT(rowsOf(fan), ElementsAre(1, 3, 4, 0, 2));
+    const Fan fan = makeFan({10, -30, 25, -10, 0});
+    EXPECT_THAT(getCentres(fan), ElementsAre(-30, -10, 0, 10, 25));
+    EXPECT_THAT(getRows(fan), ElementsAre(1, 3, 4, 0, 2));
     std::vector<int> rows{0, 1, 2, 3, 4};
     fan.toTableOrder(std::span(rows), 1);
     EXPECT_THAT(rows, ElementsAre(3, 0, 4, 1, 2));
 }
 
 TEST(FanTest, BearingsAscendAcrossTheSeam) {
-    const Fan fan = fanOf({155, 165, 175, -175, -165, -155}, 10);
-    EXPECT_THAT(centresOf(fan), ElementsAre(155, 165, 175, 185, 195, 205));
+    const Fan fan = makeFan({155, 165, 175, -175, -165, -155}, 10);
+    EXPECT_THAT(getCentres(fan), ElementsAre(155, 165, 175, 185, 195, 205));
     EXPECT_TRUE(fan.isTableOrder());
     EXPECT_TRUE(fan.joins());
     EXPECT_NEAR(degrees(fan.seam()), 360, 1e-9) << "ahead, above all bearings";
@@ -85,18 +85,18 @@ TEST(FanTest, ARegularFanAllRoundIsCutAstern) {
 }
 
 TEST(FanTest, GapsAndOverlapsDoNotJoin) {
-    EXPECT_FALSE(fanOf({-10, 0, 10}, 9).joins());
-    EXPECT_FALSE(fanOf({-10, 0, 10}, 11).joins());
-    EXPECT_TRUE(fanOf({-10, 0, 10}, 10).joins());
-    EXPECT_NEAR(degrees(fanOf({-10, 0, 0, 4}, 1).minSpacing()), 4, 1e-9) << "equal bearings have no spacing";
-    EXPECT_NEAR(degrees(fanOf({-170, 175}, 1).minSpacing()), 15, 1e-9);
+    EXPECT_FALSE(makeFan({-10, 0, 10}, 9).joins());
+    EXPECT_FALSE(makeFan({-10, 0, 10}, 11).joins());
+    EXPECT_TRUE(makeFan({-10, 0, 10}, 10).joins());
+    EXPECT_NEAR(degrees(makeFan({-10, 0, 0, 4}, 1).minSpacing()), 4, 1e-9) << "equal bearings have no spacing";
+    EXPECT_NEAR(degrees(makeFan({-170, 175}, 1).minSpacing()), 15, 1e-9);
 }
 
 TEST(FanTest, HalfwaysAreBetweenNeighboursAndTheSameDistanceBeyondTheEnds) {
-    std::vector<double> halfways;
-    for (const double edge : fanOf({-10, 0, 20}).halfways()) halfways.push_back(std::round(degrees(edge)));
-    EXPECT_THAT(halfways, ElementsAre(-15, -5, 10, 30));
-    const std::vector<double> round = fanOf({-175, -55, 65}, 120).halfways();
+    std::vector<double> midpoints;
+    for (const double edge : makeFan({-10, 0, 20}).midpoints()) midpoints.push_back(std::round(degrees(edge)));
+    EXPECT_THAT(midpoints, ElementsAre(-15, -5, 10, 30));
+    const std::vector<double> round = makeFan({-175, -55, 65}, 120).midpoints();
     EXPECT_NEAR(degrees(round.back() - round.front()), 360, 1e-9);
 }
 
@@ -110,11 +110,11 @@ TEST(FanTest, RejectsBeamsWithoutExtent) {
 TEST(FanTest, EveryTableMeetsItsGuarantees) {
     std::mt19937 random(11);
     for (int round = 0; round < 50; ++round)
-        for (const test::Table& table : test::tablesOf(random)) {
+        for (const test::Table& table : test::drawTables(random)) {
             SCOPED_TRACE(testing::PrintToString(table));
             std::vector<double> shuffled = table.bearings_deg;
             std::ranges::shuffle(shuffled, random);
-            const Fan fan = fanOf(shuffled, table.width_deg);
+            const Fan fan = makeFan(shuffled, table.width_deg);
             std::vector<double> asked = table.bearings_deg;
             for (size_t k = 0; k < fan.size(); ++k) {
                 EXPECT_NEAR(std::remainder(degrees(fan[k].centre) - shuffled[fan.row(k)], 360), 0, 1e-9);

@@ -19,8 +19,8 @@ namespace insonify::sonar {
 namespace {
 
 using std::numbers::pi;
-using test::pingOf;
-using test::snapshotOf;
+using test::makePing;
+using test::makeSnapshot;
 
 /** A very thin film with a fluid behind it. */
 types::Shell filled(double density, double speed, double loss = 0) {
@@ -70,7 +70,7 @@ Met rayThrough(const Shape& near, const Shape& far, const glm::dvec3& look, doub
 }
 /** Returns the energy per steradian from the far surface, relative to a plane of unit strength a metre away: by the
  *  spreading of a bundle of rays on the way out and on the way back. */
-double levelOf(const Shape& near, const Shape& far, const glm::dvec3& look, double speed) {
+double computeLevel(const Shape& near, const Shape& far, const glm::dvec3& look, double speed) {
     const Met met = rayThrough(near, far, look, speed);
     const glm::dvec3 up = glm::normalize(glm::cross(look, glm::dvec3(0, 1, 0.1))), across = glm::cross(look, up);
     constexpr double step = 1e-5;
@@ -89,8 +89,8 @@ TEST(FilledBodyTest, APlateBehindAnInterfaceIsAtItsTimeAndLevelOverAngles) {
     for (const auto& [density, speed] : {std::pair(825., 800.), {1900., 1300.}, {1025., 1000.}}) {
         const types::Shell shell = filled(density, speed);
         const SonarConfig config = wallSonar(60, 0.5, 64);
-        const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(6), test::wall(11)}, 1, shell)));
-        const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(11)}, 0)));
+        const auto both = makePing(config, makeSnapshot(makeShells({test::wall(6), test::wall(11)}, 1, shell)));
+        const auto alone = makePing(config, makeSnapshot(makeShells({test::wall(11)}, 0)));
         const auto plate = [](double x) {
             return Shape{[=](const glm::dvec3& from, const glm::dvec3& way) { return (x - from.x) / way.x; },
                          [](const glm::dvec3&) { return glm::dvec3(-1, 0, 0); }};
@@ -107,9 +107,9 @@ TEST(FilledBodyTest, APlateBehindAnInterfaceIsAtItsTimeAndLevelOverAngles) {
                 sum += bin, moment += bin * at;
             }
             const double expected =
-                levelOf(plate(6), plate(11), look, speed / water_speed) * sharePassed(shell, std::cos(bearing));
+                computeLevel(plate(6), plate(11), look, speed / water_speed) * sharePassed(shell, std::cos(bearing));
             const double range = 11 / std::cos(bearing);
-            const double unit = energyOf(alone, beam, 0, 30) / (std::cos(bearing) / (range * range));
+            const double unit = sumEnergy(alone, beam, 0, 30) / (std::cos(bearing) / (range * range));
             worst_range = std::max(worst_range, std::abs(moment / sum - met.range));
             worst_level = std::max(worst_level, std::abs(10 * std::log10(sum / (unit * expected))));
         }
@@ -125,10 +125,10 @@ TEST(FilledBodyTest, SpreadingAtTheNormalIsThatOfTextbooks) {
     const double speed = 1.4;
     const types::Shell shell = filled(1200, speed * water_speed);
     const SonarConfig config = wallSonar(0.5, 0.5, 1);
-    const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(4), test::wall(9)}, 1, shell)));
-    const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(9)}, 0)));
+    const auto both = makePing(config, makeSnapshot(makeShells({test::wall(4), test::wall(9)}, 1, shell)));
+    const auto alone = makePing(config, makeSnapshot(makeShells({test::wall(9)}, 0)));
     const double expected = std::pow(speed / (4 + speed * 5), 2) * 81 * sharePassed(shell, 1);
-    EXPECT_NEAR(energyOf(both, 0, 7, 8) / test::sumOf(alone) / expected, 1, 0.01);
+    EXPECT_NEAR(sumEnergy(both, 0, 7, 8) / test::computeSum(alone) / expected, 1, 0.01);
 }
 
 /** The far side of a body from within, bin by bin, integrated over the directions of its outline. */
@@ -146,7 +146,7 @@ std::vector<double> farSideBins(const Shape& near, const Shape& far, const types
             if (!(first > 0)) continue;
             const Met met = rayThrough(near, far, look, shell.fill_speed / water_speed);
             if (!(met.near_cosine > 0.2)) continue;
-            const double level = strength * levelOf(near, far, look, shell.fill_speed / water_speed) *
+            const double level = strength * computeLevel(near, far, look, shell.fill_speed / water_speed) *
                                  sharePassed(shell, met.near_cosine) * solid * std::cos(e);
             const auto bin = static_cast<size_t>(met.range / ping.binStart(1));
             if (bin < bins.size()) bins[bin] += level;
@@ -183,7 +183,7 @@ types::Mesh closedCylinder(double radius, uint32_t around, float half_length) {
         const uint32_t a = 2 * j, b = 2 * ((j + 1) % around);
         indices.insert(indices.end(), {middle, b, a, middle + 1, a + 1, b + 1});
     }
-    return test::meshOf(positions, indices);
+    return test::getMesh(positions, indices);
 }
 
 void expectFarSide(const types::Mesh& mesh, bool is_cylinder, double distance, double radius) {
@@ -194,7 +194,7 @@ void expectFarSide(const types::Mesh& mesh, bool is_cylinder, double distance, d
         config.range = 60;
         config.quality.rows = is_cylinder ? 64 : 512;
         config.quality.columns_per_beam = 512;
-        const auto ping = pingOf(config, snapshotOf(shellsOf({mesh}, 1, shell, {{distance, 0, 0}})));
+        const auto ping = makePing(config, makeSnapshot(makeShells({mesh}, 1, shell, {{distance, 0, 0}})));
         const std::vector<double> expected =
             farSideBins(roundBody(distance, radius, false, is_cylinder), roundBody(distance, radius, true, is_cylinder),
                         shell, ping, wide * pi / 180, high * pi / 180, 600);
@@ -223,7 +223,7 @@ TEST(FilledBodyTest, TheFarSideOfAFilledCylinderMatchesRays) { expectFarSide(clo
 TEST(FilledBodyTest, AFilledSphereIsALensForObjectsBehindIt) {
     constexpr double radius = 3, centre = 20, wall = 30;
     const SonarConfig config = wallSonar(0.2, 0.2, 1, 600);
-    const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(wall)}, 0)));
+    const auto alone = makePing(config, makeSnapshot(makeShells({test::wall(wall)}, 0)));
     for (const auto& [density, speed] : {std::pair(1900., 1250.), {825., 960.}, {1100., 920.}}) {
         const double n = water_speed / speed;
         double height = centre - radius, angle = 1;  // of a ray that leaves the sonar at a small angle, over that
@@ -232,11 +232,11 @@ TEST(FilledBodyTest, AFilledSphereIsALensForObjectsBehindIt) {
         angle = n * angle + height * (1 - n) / radius;
         height += (wall - centre - radius) * angle;
         const types::Shell shell = filled(density, speed);
-        const auto ping = pingOf(config, snapshotOf(shellsOf({test::sphere(radius, 200), test::wall(wall)}, 1, shell,
-                                                             {{centre, 0, 0}, {0, 0, 0}})));
+        const auto ping = makePing(config, makeSnapshot(makeShells({test::sphere(radius, 200), test::wall(wall)}, 1,
+                                                                   shell, {{centre, 0, 0}, {0, 0, 0}})));
         const double range = wall + 2 * radius * (n - 1);
         const double level =
-            energyOf(ping, 0, range - 0.3, range + 0.3) * range * range / (test::sumOf(alone) * wall * wall);
+            sumEnergy(ping, 0, range - 0.3, range + 0.3) * range * range / (test::computeSum(alone) * wall * wall);
         const double expected = std::pow(range / height * sharePassed(shell, 1), 2);
         std::cout << "lens of " << speed << " m/s: " << 10 * std::log10(level / expected) << " dB off "
                   << 10 * std::log10(expected) << " dB\n";
@@ -247,9 +247,9 @@ TEST(FilledBodyTest, AFilledSphereIsALensForObjectsBehindIt) {
 TEST(FilledBodyTest, LossIsThatOfThePathInTheFill) {
     const SonarConfig config = wallSonar(0.5, 0.5, 1);
     const types::Shell clear = filled(1200, 1250), lossy = filled(1200, 1250, 1e-4);
-    const auto scene = [](const types::Shell& shell) { return shellsOf({test::wall(4), test::wall(9)}, 1, shell); };
-    const double ratio = energyOf(pingOf(config, snapshotOf(scene(lossy))), 0, 7.5, 8.5) /
-                         energyOf(pingOf(config, snapshotOf(scene(clear))), 0, 7.5, 8.5);
+    const auto scene = [](const types::Shell& shell) { return makeShells({test::wall(4), test::wall(9)}, 1, shell); };
+    const double ratio = sumEnergy(makePing(config, makeSnapshot(scene(lossy))), 0, 7.5, 8.5) /
+                         sumEnergy(makePing(config, makeSnapshot(scene(clear))), 0, 7.5, 8.5);
     EXPECT_NEAR(std::log(ratio), -4 * 5 * 2 * pi * 1000 * shell_khz / 1250 * 1e-4, 0.01);
 }
 
@@ -257,10 +257,10 @@ TEST(FilledBodyTest, LossIsThatOfThePathInTheFill) {
 TEST(FilledBodyTest, TheFillDoesNotAbsorbAsWaterDoes) {
     SonarConfig config = wallSonar(0.5, 0.5, 1);
     const types::Shell shell = filled(1200, 1250);
-    const auto scene = shellsOf({test::wall(4), test::wall(9)}, 1, shell);
-    const double without = energyOf(pingOf(config, snapshotOf(scene)), 0, 7.5, 8.5);
+    const auto scene = makeShells({test::wall(4), test::wall(9)}, 1, shell);
+    const double without = sumEnergy(makePing(config, makeSnapshot(scene)), 0, 7.5, 8.5);
     config.absorption.emplace().db_per_m = 1;
-    const double with = energyOf(pingOf(config, snapshotOf(scene)), 0, 7.5, 8.5);
+    const double with = sumEnergy(makePing(config, makeSnapshot(scene)), 0, 7.5, 8.5);
     EXPECT_NEAR(10 * std::log10(with / without), -2 * 4, 0.15) << "bins have the absorption of their middle";
 }
 
@@ -269,12 +269,12 @@ TEST(FilledBodyTest, NothingPassesIntoAirNorBeyondTheCriticalAngle) {
     air.has_air = true;
     air.fill_density = 0;
     const SonarConfig config = wallSonar(100, 0.5, 64);
-    const auto behind = pingOf(config, snapshotOf(shellsOf({test::wall(6), test::wall(11)}, 1, air)));
-    const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(6)}, 1, air)));
+    const auto behind = makePing(config, makeSnapshot(makeShells({test::wall(6), test::wall(11)}, 1, air)));
+    const auto alone = makePing(config, makeSnapshot(makeShells({test::wall(6)}, 1, air)));
     EXPECT_EQ(behind.bins, alone.bins);
     const types::Shell fast = filled(1100, 1500);  // critical at 41.8 deg
-    const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(6), test::wall(11)}, 1, fast)));
-    const auto one = pingOf(config, snapshotOf(shellsOf({test::wall(6)}, 1, fast)));
+    const auto both = makePing(config, makeSnapshot(makeShells({test::wall(6), test::wall(11)}, 1, fast)));
+    const auto one = makePing(config, makeSnapshot(makeShells({test::wall(6)}, 1, fast)));
     for (uint32_t beam = 0; beam < 64; ++beam) {
         const double bearing = std::abs(both.bearings[beam].rad);
         if (std::abs(bearing - 0.73) < 0.03) continue;
@@ -289,10 +289,11 @@ TEST(FilledBodyTest, AFillOfWaterIsWater) {
     const SonarConfig config = wallSonar(8, 8, 4);
     types::Shell by_numbers = acrylic;
     by_numbers.fill_density = 1025, by_numbers.fill_speed = water_speed;
-    const auto one = pingOf(config, snapshotOf(shellsOf({test::sphere(1, 128)}, 1, acrylic, {{8, 0, 0}})));
-    const auto other = pingOf(config, snapshotOf(shellsOf({test::sphere(1, 128)}, 1, by_numbers, {{8, 0, 0}})));
-    EXPECT_NEAR(test::sumOf(one) / test::sumOf(other), 1, 1e-3);
-    for (size_t i = 0; i < one.bins.size(); ++i) EXPECT_NEAR(one.bins[i], other.bins[i], 2e-2 * test::sumOf(one)) << i;
+    const auto one = makePing(config, makeSnapshot(makeShells({test::sphere(1, 128)}, 1, acrylic, {{8, 0, 0}})));
+    const auto other = makePing(config, makeSnapshot(makeShells({test::sphere(1, 128)}, 1, by_numbers, {{8, 0, 0}})));
+    EXPECT_NEAR(test::computeSum(one) / test::computeSum(other), 1, 1e-3);
+    for (size_t i = 0; i < one.bins.size(); ++i)
+        EXPECT_NEAR(one.bins[i], other.bins[i], 2e-2 * test::computeSum(one)) << i;
 }
 
 TEST(FilledBodyTest, CoherentSpeckleAndPatternsKeepTheEnergyOfTheFarSide) {
@@ -305,11 +306,12 @@ TEST(FilledBodyTest, CoherentSpeckleAndPatternsKeepTheEnergyOfTheFarSide) {
         double far = 0, alone = 0;
         for (int place = 0; place < (effect == "coherent" ? 20 : 1); ++place) {  // of other scatterers
             const glm::dvec3 position(0, 3 * place - 30, 0);
-            const auto ping = pingOf(config, snapshotOf(shellsOf({test::wall(6), test::wall(11)}, 1, shell), position));
-            const auto plain = pingOf(config, snapshotOf(shellsOf({test::wall(11)}, 0), position));
+            const auto ping =
+                makePing(config, makeSnapshot(makeShells({test::wall(6), test::wall(11)}, 1, shell), position));
+            const auto plain = makePing(config, makeSnapshot(makeShells({test::wall(11)}, 0), position));
             for (uint32_t beam = 4; beam < 28; ++beam) {
-                far += energyOf(ping, beam, 9.4, 12);
-                alone += energyOf(plain, beam, 10, 13);
+                far += sumEnergy(ping, beam, 9.4, 12);
+                alone += sumEnergy(plain, beam, 10, 13);
             }
         }
         const double speed = 1.25, expected = std::pow(speed * 11 / (6 + speed * 5), 2) * sharePassed(shell, 1);
@@ -335,9 +337,9 @@ TEST(FilledBodyTest, RandomBodiesAreFinite) {
         config.quality.columns_per_beam = 4;
         if (i % 4 == 0) config.speckle.emplace().coherent = true;
         if (i % 6 == 1) config.beam_geometry = BeamGeometry::Conical;
-        const auto scene = shellsOf({test::sphere(2, 24), test::sphere(0.7, 16), test::wall(9)}, 2 + i % 2, shell,
-                                    {{6, 0.3, 0}, {6, 0, 0.2}, {0, 0, 0}});
-        const auto ping = pingOf(config, snapshotOf(scene, {}, between(0.01, 0.5), -between(0.01, 0.5)));
+        const auto scene = makeShells({test::sphere(2, 24), test::sphere(0.7, 16), test::wall(9)}, 2 + i % 2, shell,
+                                      {{6, 0.3, 0}, {6, 0, 0.2}, {0, 0, 0}});
+        const auto ping = makePing(config, makeSnapshot(scene, {}, between(0.01, 0.5), -between(0.01, 0.5)));
         for (const float bin : ping.bins) ASSERT_TRUE(std::isfinite(bin) && bin >= 0) << i;
     }
 }

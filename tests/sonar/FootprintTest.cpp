@@ -26,7 +26,7 @@ struct PointBins {
     std::vector<double> sums = std::vector<double>(bin_count);
 
     double binEdge(uint k) const { return k == 0 ? 1e3 : 1 / (k * bin_width); }
-    uint binOf(double place) const { return min(uint(1.0 / (place * bin_width)), bin_count - 1u); }
+    uint findBin(double place) const { return min(uint(1.0 / (place * bin_width)), bin_count - 1u); }
     void addToBin(uint, uint bin, double amount, double) { sums[bin] += amount; }
     /** A point of solid angle `share` at range r on a plane of unit Lambert parameter, `distance` away. */
     void addPoint(double r, double distance, double share) {

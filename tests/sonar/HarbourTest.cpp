@@ -20,7 +20,7 @@ namespace {
 const std::filesystem::path deploy = std::filesystem::path(test::source_dir) / "deploy";
 
 template <class Config>
-Config propertiesOf(const std::string& task) {
+Config getProperties(const std::string& task) {
     const std::filesystem::path file = deploy / "harbour_fls.yml";
     framework::ConfigReader reader(file);
     Config config;
@@ -36,15 +36,15 @@ struct View {
 
 struct HarbourTest : testing::Test {
     static void SetUpTestSuite() {
-        const auto scene = propertiesOf<scene::SceneConfig>("scene");
+        const auto scene = getProperties<scene::SceneConfig>("scene");
         geometry = scene::loadScene(deploy / scene.file);
-        const auto file = propertiesOf<pose::TrajectoryConfig>("vehicle").file;
+        const auto file = getProperties<pose::TrajectoryConfig>("vehicle").file;
         const auto pass = pose::Trajectory::fromFile(deploy / *file);
         for (double time = 0; time <= pass.stamps().back().time; time += 0.25) {
             poses.emplace_back();
             types::place(pass.at(time), scene.mount, poses.back());
         }
-        sonar = propertiesOf<SonarConfig>("sonar");
+        sonar = getProperties<SonarConfig>("sonar");
         sonar.device = "software";
     }
     static void TearDownTestSuite() { geometry.reset(); }
@@ -63,7 +63,7 @@ struct HarbourTest : testing::Test {
     }
 
     /** Points along some of the triangles' edges. */
-    static std::vector<glm::dvec3> pointsOf(const types::Mesh& mesh) {
+    static std::vector<glm::dvec3> getPoints(const types::Mesh& mesh) {
         std::vector<glm::dvec3> points;
         const size_t triangles = mesh.indices.size() / 3;
         for (size_t t = 0; t < triangles; t += 1 + triangles / 40)
@@ -72,8 +72,8 @@ struct HarbourTest : testing::Test {
                                           glm::dvec3(mesh.positions[mesh.indices[3 * t + 1]]), along));
         return points;
     }
-    static std::vector<View> viewsOf(const types::Object& object) {
-        const auto points = pointsOf(geometry->meshes[static_cast<size_t>(object.mesh)]);
+    static std::vector<View> getViews(const types::Object& object) {
+        const auto points = getPoints(geometry->meshes[static_cast<size_t>(object.mesh)]);
         std::vector<View> views;
         for (size_t k = 0; k < poses.size(); ++k) {
             const glm::dmat4 sonar_from_object = glm::inverse(poses[k].worldFromBody()) * object.world_from_object;
@@ -139,7 +139,7 @@ TEST_F(HarbourTest, EveryNamedObjectAppearsInSomePing) {
     for (uint32_t i = 0; i < geometry->objects.size(); ++i) {
         const std::string& name = geometry->objects[i].name;
         if (name == "sea_floor") continue;
-        const auto views = viewsOf(geometry->objects[i]);
+        const auto views = getViews(geometry->objects[i]);
         const bool appears = std::ranges::any_of(views, [&](const View& view) { return differs(renderer, i, view); });
         (appears ? shown : hidden)[name.substr(0, name.find_last_not_of("0123456789_") + 1)].push_back(name);
     }

@@ -53,7 +53,7 @@ TEST(HeadScanTest, AFullTurnContinuesToStarboard) {
 TEST(HeadScanTest, AContinuousHeadDoesNotLookAtItsRightLimit) {
     const HeadConfig published{
         .left_deg = -180, .right_deg = 179.9, .step_deg = 90, .continuous = true, .speed_deg_per_s = {}};
-    EXPECT_THAT(test::refusalsOf(published), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(published), testing::IsEmpty());
     EXPECT_THAT(bearings(published, 5), ElementsAre(-180, -270, -360, -450, -180));
     EXPECT_EQ(HeadScan(published).pingsPerTurn(), 4);
 }

@@ -28,7 +28,7 @@ constexpr double array_wavelength = 0.002;
 /** A fan of 41 beams over 40 deg, whose receiving array is 32 wavelengths long: 64 elements. */
 SonarConfig imperfectFan(Weighting weighting = Weighting::Uniform) {
     SonarConfig config =
-        test::sonarOf({.beams = 41, .width_deg = 40, .height_deg = 60, .bins = 100, .rows = 32, .columns = 2});
+        test::getSonar({.beams = 41, .width_deg = 40, .height_deg = 60, .bins = 100, .rows = 32, .columns = 2});
     config.visibility = Visibility::Cpu;
     config.speed_of_sound = 1500;
     config.frequency_khz = 750;
@@ -43,7 +43,7 @@ SonarConfig withErrors(SonarConfig config, const ImperfectionsConfig& errors) {
 }
 
 types::Snapshot flatBottom() {
-    return test::snapshotOf(test::sceneOf({test::ground(-2), test::sphere(0.5, 16)}, 0, {{}, {6, 1, -1.5}}));
+    return test::makeSnapshot(test::makeScene({test::ground(-2), test::sphere(0.5, 16)}, 0, {{}, {6, 1, -1.5}}));
 }
 
 types::Sonar imperfectPing(const SonarConfig& config, const types::Snapshot& snapshot = flatBottom()) {
@@ -115,7 +115,7 @@ TEST(ImperfectionsTest, WithoutErrorsBitsAreTheSame) {
 
 TEST(ImperfectionsTest, APointTargetShowsThePatternOfThisDeviceWithAndWithoutCoherence) {
     const ImperfectionsConfig errors{.gain_error_db = 2, .phase_error_deg = 25};
-    types::Snapshot snapshot = test::snapshotOf(test::openWater());
+    types::Snapshot snapshot = test::makeSnapshot(test::openWater());
     snapshot.targets = {{glm::dvec3(8 * std::cos(0.1), 8 * std::sin(0.1), 0), 0}};
     for (const bool is_coherent : {false, true}) {
         SonarConfig config = withErrors(imperfectFan(), errors);
@@ -135,7 +135,7 @@ TEST(ImperfectionsTest, APointTargetShowsThePatternOfThisDeviceWithAndWithoutCoh
 
 TEST(ImperfectionsTest, CoherentSurfacesHaveTheSidelobesOfEnergies) {
     const ImperfectionsConfig errors{.gain_error_db = 3, .phase_error_deg = 40, .dead_element_share = 0.1};
-    const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::sphere(0.3, 32)}, 0, {{7, 0.6, 0}}));
+    const types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::sphere(0.3, 32)}, 0, {{7, 0.6, 0}}));
     const auto sidelobes = [&](bool is_coherent, const std::optional<ImperfectionsConfig>& own) {
         SonarConfig config = imperfectFan(Weighting::Taylor);
         config.imperfections = own;
@@ -228,7 +228,7 @@ TEST(ImperfectionsTest, ATargetNearAnArrayThatIsFocusedFarBlooms) {
     const auto beamsOver = [&](double range, bool is_focused) {
         SonarConfig own = config;
         if (!is_focused) own.imperfections.emplace().focus_m = 10;
-        types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::sphere(0.02, 32)}, 0, {{range, 0, 0}}));
+        types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::sphere(0.02, 32)}, 0, {{range, 0, 0}}));
         const types::Sonar ping = imperfectPing(own, snapshot);
         std::vector<double> sums(ping.beam_count);
         for (size_t i = 0; i < ping.bins.size(); ++i) sums[i / ping.bin_count] += static_cast<double>(ping.bins[i]);
@@ -316,53 +316,53 @@ TEST(ImperfectionsTest, AClockThatJittersSamplesAllBeamsAtTheSameWrongTimes) {
 
 TEST(ImperfectionsTest, RejectsImpossibleConfigurationsWithTheReason) {
     const ImperfectionsConfig gains{.gain_error_db = 1};
-    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), gains)), IsEmpty());
+    EXPECT_THAT(test::countRefusals(withErrors(imperfectFan(), gains)), IsEmpty());
     SonarConfig boxes = withErrors(imperfectFan(), gains);
     boxes.beam_pattern.reset();
-    EXPECT_THAT(test::refusalsOf(boxes),
+    EXPECT_THAT(test::countRefusals(boxes),
                 ElementsAre("imperfections: needs beam_pattern.receive.azimuth, whose aperture the elements fill"));
     boxes.imperfections = ImperfectionsConfig{.dead_beams = {3}};
-    EXPECT_THAT(test::refusalsOf(boxes), IsEmpty()) << "beams need no pattern";
-    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), {.dead_beams = {0, 41}})),
+    EXPECT_THAT(test::countRefusals(boxes), IsEmpty()) << "beams need no pattern";
+    EXPECT_THAT(test::countRefusals(withErrors(imperfectFan(), {.dead_beams = {0, 41}})),
                 ElementsAre("imperfections.dead_beams[1]: is 41; there are 41 beams, 0 to 40"));
-    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), {.dead_elements = {64}})),
+    EXPECT_THAT(test::countRefusals(withErrors(imperfectFan(), {.dead_elements = {64}})),
                 ElementsAre("imperfections.dead_elements[0]: is 64; there are 64 elements, 0 to 63"));
-    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), {.dead_element_share = 1})),
+    EXPECT_THAT(test::countRefusals(withErrors(imperfectFan(), {.dead_element_share = 1})),
                 ElementsAre("imperfections: leaves none of 64 elements alive"));
-    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), {.dead_beam_share = 1})),
+    EXPECT_THAT(test::countRefusals(withErrors(imperfectFan(), {.dead_beam_share = 1})),
                 ElementsAre("imperfections: leaves none of 41 beams alive"));
     SonarConfig measured = withErrors(imperfectFan(), gains);
     measured.beam_pattern->receive.azimuth = acoustics::BeamLaw{};
     measured.beam_pattern->receive.azimuth->file = "pattern.csv";
-    EXPECT_THAT(test::refusalsOf(measured), testing::Contains(HasSubstr("which has its device's errors")));
+    EXPECT_THAT(test::countRefusals(measured), testing::Contains(HasSubstr("which has its device's errors")));
     SonarConfig gaussian = withErrors(imperfectFan(Weighting::Gaussian), {.focus_m = 3});
     gaussian.beam_pattern->receive.azimuth->aperture_m.reset();
     gaussian.beam_pattern->receive.azimuth->width_deg = 2;
-    EXPECT_THAT(test::refusalsOf(gaussian), ElementsAre(HasSubstr("imperfections.focus_m: needs a weighted line")));
+    EXPECT_THAT(test::countRefusals(gaussian), ElementsAre(HasSubstr("imperfections.focus_m: needs a weighted line")));
     SonarConfig toneless = withErrors(imperfectFan(), {.focus_m = 3});
     toneless.frequency_khz.reset();
     toneless.beam_pattern->receive.azimuth->aperture_m.reset();
     toneless.beam_pattern->receive.azimuth->width_deg = 2;
-    EXPECT_THAT(test::refusalsOf(toneless),
+    EXPECT_THAT(test::countRefusals(toneless),
                 ElementsAre("imperfections.focus_m: is given without frequency_khz, which it needs"));
     SonarConfig published = withErrors(imperfectFan(), {.dead_beams = {1}});
     published.beam_pattern.reset();
     published.model = Model::Cerqueira2017;
-    EXPECT_THAT(test::refusalsOf(published),
+    EXPECT_THAT(test::countRefusals(published),
                 ElementsAre("imperfections: is given with model: cerqueira2017; it belongs to physical"));
     SonarConfig elements = withErrors(imperfectFan(), {.elements = 20, .gain_error_db = 1, .focus_m = 3});
     elements.beam_geometry = BeamGeometry::Conical;
     elements.speckle.emplace().coherent = true;
     elements.elements.emplace();
-    EXPECT_THAT(test::refusalsOf(elements), ElementsAre(HasSubstr("whose signals are those of the far field"),
-                                                        HasSubstr("their number is that of `elements`")));
+    EXPECT_THAT(test::countRefusals(elements), ElementsAre(HasSubstr("whose signals are those of the far field"),
+                                                           HasSubstr("their number is that of `elements`")));
 }
 
 /** A target in each of the first and the last beam leaks across the seam, for fans and tables of any order. */
 TEST(ImperfectionsTest, BeamsAcrossTheSeamOfARingLeakIntoEachOther) {
     std::mt19937 random(4);
     for (int trial = 0; trial < 6; ++trial) {
-        SonarConfig config = test::sonarOf({.beams = 36, .width_deg = 360, .height_deg = 20, .bins = 200, .rows = 8});
+        SonarConfig config = test::getSonar({.beams = 36, .width_deg = 360, .height_deg = 20, .bins = 200, .rows = 8});
         config.visibility = Visibility::Cpu;
         config.imperfections.emplace().crosstalk_db = -20;
         if (trial % 3 > 0) {
@@ -372,7 +372,7 @@ TEST(ImperfectionsTest, BeamsAcrossTheSeamOfARingLeakIntoEachOther) {
             std::ranges::shuffle(config.bearings_deg, random);
         }
         for (const double azimuth_deg : {175.0, -175.0, 5.0}) {
-            types::Snapshot snapshot = test::snapshotOf(test::openWater());
+            types::Snapshot snapshot = test::makeSnapshot(test::openWater());
             const double azimuth = config.bearings_deg.empty() ? radians(azimuth_deg) : radians(config.bearings_deg[7]);
             snapshot.targets = {{10.05 * glm::dvec3(std::cos(azimuth), std::sin(azimuth), 0), 0}};
             const types::Sonar ping = imperfectPing(config, snapshot);

@@ -66,18 +66,18 @@ TEST(MadeAheadTest, ItWaitsForAPermittedThread) {
 
 /** Returns the bins of the pings of a sonar that crosses borders of cells, over a scene that gets another object. */
 std::vector<std::vector<float>> pingsOnTheWay() {
-    SonarConfig config = test::sonarOf(
+    SonarConfig config = test::getSonar(
         {.beams = 16, .width_deg = 90, .height_deg = 40, .bins = 100, .bin = 0.5, .rows = 32, .columns = 2});
     config.visibility = Visibility::Cpu;
     const types::Mesh floor = test::hills(40), ball = test::sphere(1, 12);
-    types::GeometryPtr scene = test::sceneOf({floor, ball}, 0, {{}, {270, 12, -5}});
+    types::GeometryPtr scene = test::makeScene({floor, ball}, 0, {{}, {270, 12, -5}});
     SonarRenderer renderer(config, scene, {.threads = 1});
     std::vector<std::vector<float>> pings;
     for (int i = 0; i < 60; ++i) {
-        if (i == 30) scene = test::sceneOf({floor, ball, ball}, 0, {{}, {270, 12, -5}, {262, 8, -6}});
+        if (i == 30) scene = test::makeScene({floor, ball, ball}, 0, {{}, {270, 12, -5}, {262, 8, -6}});
         if (i == 30) renderer.setGeometry(scene);
         types::Sonar ping;
-        renderer.render(test::snapshotOf(scene, {240 + 0.5 * i, 250 + 0.2 * i, -5}, 0, 0.4), ping);
+        renderer.render(test::makeSnapshot(scene, {240 + 0.5 * i, 250 + 0.2 * i, -5}, 0, 0.4), ping);
         pings.push_back(ping.bins);
     }
     return pings;

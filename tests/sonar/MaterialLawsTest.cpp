@@ -12,7 +12,7 @@
 namespace insonify::sonar {
 namespace {
 
-MaterialLaws lawsOf(types::Material material, std::optional<double> frequency_khz = 100) {
+MaterialLaws makeLaws(types::Material material, std::optional<double> frequency_khz = 100) {
     SonarConfig config;
     config.frequency_khz = frequency_khz;
     types::Geometry geometry;
@@ -21,7 +21,7 @@ MaterialLaws lawsOf(types::Material material, std::optional<double> frequency_kh
 }
 
 TEST(MaterialLawsTest, ATableMatchesItsLawBetweenItsEntriesToo) {
-    const MaterialLaws laws = lawsOf({.name = "floor", .seabed = "medium_sand"});
+    const MaterialLaws laws = makeLaws({.name = "floor", .seabed = "medium_sand"});
     const acoustics::SeabedBackscatter sand(acoustics::seabedNamed("medium_sand").value(), 100, 1500);
     for (double grazing_deg = 3; grazing_deg <= 90; grazing_deg += 0.37) {
         const double grazing = types::radians(grazing_deg), cosine = std::sin(grazing);
@@ -32,22 +32,22 @@ TEST(MaterialLawsTest, ATableMatchesItsLawBetweenItsEntriesToo) {
 }
 
 TEST(MaterialLawsTest, LambertsLawAppliesWithoutTableAndLobe) {
-    const MaterialLaws lambert = lawsOf({.name = "mud", .lambert_db = -16.7f});
+    const MaterialLaws lambert = makeLaws({.name = "mud", .lambert_db = -16.7f});
     EXPECT_TRUE(lambert.followsLambert(0));
     for (const double cosine : {0.001, 0.2, 0.7071, 1.0})
         EXPECT_NEAR(lambert.overCosine(0, cosine), std::pow(10, -1.67) * cosine, 1e-6) << cosine;
-    EXPECT_FALSE(lawsOf({.name = "floor", .seabed = "silt"}).followsLambert(0));
-    EXPECT_FALSE(lawsOf({.name = "measured", .measured = {{10, -30}, {90, -10}}}).followsLambert(0));
-    EXPECT_FALSE(lawsOf({.name = "steel", .reflection = 0.9f, .roughness_slope = 0.1f}).followsLambert(0));
+    EXPECT_FALSE(makeLaws({.name = "floor", .seabed = "silt"}).followsLambert(0));
+    EXPECT_FALSE(makeLaws({.name = "measured", .measured = {{10, -30}, {90, -10}}}).followsLambert(0));
+    EXPECT_FALSE(makeLaws({.name = "steel", .reflection = 0.9f, .roughness_slope = 0.1f}).followsLambert(0));
 }
 
 TEST(MaterialLawsTest, MatterIsARoughSolidAtTheSonarsFrequency) {
     for (const double frequency_khz : {100.0, 900.0, 3000.0})
         for (const acoustics::Matter matter : {acoustics::Matter::Steel, acoustics::Matter::Concrete}) {
             const MaterialLaws laws =
-                lawsOf({.name = "m", .matter = std::string(acoustics::nameOf(matter))}, frequency_khz);
+                makeLaws({.name = "m", .matter = std::string(acoustics::getName(matter))}, frequency_khz);
             const acoustics::RoughSurface surface =
-                acoustics::roughSurfaceOf(acoustics::propertiesOf(matter), frequency_khz, 1025, 1500);
+                acoustics::makeRoughSurface(acoustics::getProperties(matter), frequency_khz, 1025, 1500);
             EXPECT_TRUE(laws.has_matter && laws.hasLobes());
             const double power = std::pow(surface.reflection(), 2) * surface.lobeShare() / (4 * M_PI);
             EXPECT_NEAR(double{laws.records[0].law.y} / power, 1, 1e-6);
@@ -63,11 +63,11 @@ TEST(MaterialLawsTest, MatterIsARoughSolidAtTheSonarsFrequency) {
 }
 
 TEST(MaterialLawsTest, MatterWithoutALobeIsOnlyATable) {
-    const MaterialLaws rock = lawsOf({.name = "m", .matter = "rock"}, 900);
+    const MaterialLaws rock = makeLaws({.name = "m", .matter = "rock"}, 900);
     EXPECT_FALSE(rock.hasLobes());
     EXPECT_FALSE(rock.followsLambert(0));
     const double r =
-        acoustics::roughSurfaceOf(acoustics::propertiesOf(acoustics::Matter::Rock), 900, 1025, 1500).reflection();
+        acoustics::makeRoughSurface(acoustics::getProperties(acoustics::Matter::Rock), 900, 1025, 1500).reflection();
     EXPECT_NEAR(rock.overCosine(0, 0.6), r * r / M_PI * 0.6, 1e-4) << "Lambert's law of all that is reflected";
 }
 
@@ -75,7 +75,7 @@ TEST(MaterialLawsTest, WithoutAFrequencyMatterFollowsLambertsLaw) {
     const types::Material steel{.name = "m", .lambert_db = -9.8f, .matter = "steel", .reflection = 0.936f};
     types::Material plain = steel;
     plain.matter.clear();
-    const MaterialLaws laws = lawsOf(steel, {}), as_before = lawsOf(plain, {});
+    const MaterialLaws laws = makeLaws(steel, {}), as_before = makeLaws(plain, {});
     EXPECT_TRUE(laws.followsLambert(0));
     EXPECT_FALSE(laws.has_matter || laws.hasLobes());
     for (const double cosine : {0.1, 0.5, 1.0}) EXPECT_EQ(laws.overCosine(0, cosine), as_before.overCosine(0, cosine));

@@ -21,7 +21,7 @@ std::vector<int> policies() {
     return all;
 }
 
-types::MeshPtr meshOf(int rings) { return std::make_shared<const types::Mesh>(study::sphere(5, rings)); }
+types::MeshPtr getMesh(int rings) { return std::make_shared<const types::Mesh>(study::sphere(5, rings)); }
 
 /** Laws of one material without a lobe. */
 MaterialLaws laws() {
@@ -42,7 +42,7 @@ TEST(MeshesAheadTest, ItsThreadHasNoRealtimePriority) {
     std::thread([&] {
         permitted = test::useFifo(5);
         MeshesAhead ahead;
-        ahead.take(std::make_shared<const std::vector<types::MeshPtr>>(1, meshOf(10)), laws());
+        ahead.take(std::make_shared<const std::vector<types::MeshPtr>>(1, getMesh(10)), laws());
         test::becomesTrue([&] {
             found = policies();
             return std::ranges::count(found, SCHED_FIFO) == 1;
@@ -55,8 +55,8 @@ TEST(MeshesAheadTest, ItsThreadHasNoRealtimePriority) {
 
 TEST(MeshesAheadTest, ItsEndWaitsForOneMeshOnly) {
     std::vector<types::MeshPtr> meshes;
-    for (int i = 0; i < 60; ++i) meshes.push_back(meshOf(100));
-    const types::MeshPtr other = meshOf(100);
+    for (int i = 0; i < 60; ++i) meshes.push_back(getMesh(100));
+    const types::MeshPtr other = getMesh(100);
     const double one = seconds([&] {
         MeshTree(other).tree();
         MeshFacts facts(other);

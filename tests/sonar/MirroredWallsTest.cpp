@@ -12,8 +12,8 @@
 namespace insonify::sonar {
 namespace {
 
-using test::pingOf;
-using test::snapshotOf;
+using test::makePing;
+using test::makeSnapshot;
 
 constexpr double mirrored_level = 0.81;  ///< Energy that the mirror reflects, one way.
 
@@ -27,7 +27,7 @@ types::GeometryPtr mirroredBy(std::vector<types::Mesh> meshes, const types::Mesh
     meshes.push_back(mirror);
     positions.resize(meshes.size());
     for (types::Cluster& cluster : meshes.back().clusters) cluster.material = 2;
-    const auto scene = std::make_shared<types::Geometry>(*shellsOf(std::move(meshes), shells, shell, positions));
+    const auto scene = std::make_shared<types::Geometry>(*makeShells(std::move(meshes), shells, shell, positions));
     scene->materials.push_back({});
     scene->materials[2].lambert_db = -200;
     scene->materials[2].mirror = true;
@@ -57,16 +57,16 @@ TEST(MirroredWallsTest, RandomBodiesByAMirrorEchoAsFromTheSonarsImage) {
         std::vector<types::Mesh> meshes{test::sphere(1.5, 96), test::sphere(0.4, 32)};
         const std::vector<glm::dvec3> positions{above, above + glm::dvec3(between(-0.5, 0.5), 0.3, -0.4)};
         const auto image =
-            pingOf(config, snapshotOf(shellsOf(meshes, 1, shell, positions), {0, 0, 2 * height}, yaw, -pitch));
+            makePing(config, makeSnapshot(makeShells(meshes, 1, shell, positions), {0, 0, 2 * height}, yaw, -pitch));
         config.multipath.emplace();
         const bool by_surface = i % 2 == 0;
         if (by_surface) config.multipath->surface.emplace();
         auto snapshot =
-            snapshotOf(by_surface ? shellsOf(meshes, 1, shell, positions)
-                                  : mirroredBy(meshes, test::ground(static_cast<float>(height)), 1, shell, positions),
-                       {}, yaw, pitch);
+            makeSnapshot(by_surface ? makeShells(meshes, 1, shell, positions)
+                                    : mirroredBy(meshes, test::ground(static_cast<float>(height)), 1, shell, positions),
+                         {}, yaw, pitch);
         if (by_surface) snapshot.water_surface = height;
-        const auto ping = pingOf(config, snapshot);
+        const auto ping = makePing(config, snapshot);
         double sum = 0, moment = 0, expected = 0, expected_moment = 0;
         for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
             for (uint32_t k = 0; k < ping.bin_count; ++k) {
@@ -132,9 +132,9 @@ struct BySurface {
         SonarConfig own = config;
         own.max_walls = walls;
         if (!has_surface) own.multipath.reset();
-        auto snapshot = snapshotOf(scene);
+        auto snapshot = makeSnapshot(scene);
         snapshot.water_surface = 2;
-        return pingOf(own, snapshot);
+        return makePing(own, snapshot);
     }
     /** Returns the echoes by the surface only. */
     std::vector<double> byMirror(const types::GeometryPtr& scene, int walls) const {
@@ -156,11 +156,11 @@ struct BySurface {
 /** Its returns by the surface are at the mirrored ranges, at the angles of the mirrored sound. */
 TEST(MirroredWallsTest, APlateBySurfaceHasItsReturnsAtTheMirroredRangesAndLevels) {
     const BySurface by;
-    const auto scene = shellsOf({by.plate()}, 1, ringing_plate);
+    const auto scene = makeShells({by.plate()}, 1, ringing_plate);
     const auto [once, twice] = by.levels(scene);
     ASSERT_GT(once, 0);
     ASSERT_GT(twice, 0);
-    const std::vector<double> returns = returnsOf(ringing_plate).reflected;
+    const std::vector<double> returns = computeReturns(ringing_plate).reflected;
     const double sum = std::accumulate(returns.begin(), returns.end(), 0.0);
     Arrivals arrivals;
     for (size_t k = 0; k < returns.size(); ++k) {
@@ -196,8 +196,8 @@ double meanPassed(double cosine, int times) {
 TEST(MirroredWallsTest, SoundThroughARingingWallArrivesAtTheTimesOfBothItsAngles) {
     const BySurface by;
     const types::Mesh screen = test::quad({8, -50, -50}, {0, 100, 0}, {0, 0, 51.9f});
-    const auto [once, twice] = by.levels(shellsOf({by.plate()}, 0));
-    const acoustics::PlateReturns returns = returnsOf(ringing_plate);
+    const auto [once, twice] = by.levels(makeShells({by.plate()}, 0));
+    const acoustics::PlateReturns returns = computeReturns(ringing_plate);
     const auto relative = [](const std::vector<double>& all, size_t k) {
         return all[k] / std::accumulate(all.begin(), all.end(), 0.0);
     };
@@ -215,8 +215,8 @@ TEST(MirroredWallsTest, SoundThroughARingingWallArrivesAtTheTimesOfBothItsAngles
         const double range = by.mirrored + delay(by.cosine) + static_cast<double>(k) * spacingAt(by.cosine);
         arrivals.add(range, twice * through_twice * relative(returns.passed, k) * std::pow(by.mirrored / range, 2));
     }
-    const auto scene = shellsOf({screen, by.plate()}, 1, ringing_plate);
-    const auto alone = shellsOf({screen}, 1, ringing_plate);
+    const auto scene = makeShells({screen, by.plate()}, 1, ringing_plate);
+    const auto alone = makeShells({screen}, 1, ringing_plate);
     std::vector<double> bins = by.byMirror(scene, 4);
     const std::vector<double> of_screen = by.byMirror(alone, 4);
     for (size_t k = 0; k < bins.size(); ++k) bins[k] -= of_screen[k];

@@ -23,7 +23,7 @@
 namespace insonify::sonar {
 namespace {
 
-using test::pingOf;
+using test::makePing;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -41,14 +41,14 @@ struct Loudest {
     float intensity;
 };
 
-Loudest loudestOf(const types::Sonar& ping, double bin_width = 0.1) {
+Loudest findLoudest(const types::Sonar& ping, double bin_width = 0.1) {
     const auto at = static_cast<size_t>(std::ranges::max_element(ping.bins) - ping.bins.begin());
     return {bin_width * (static_cast<double>(at % ping.bin_count) + 0.5), ping.bearings[at / ping.bin_count].rad,
             ping.bins[at]};
 }
 
 types::Snapshot movingSonar(const types::GeometryPtr& geometry, glm::dvec3 velocity, glm::dvec3 turn = {}) {
-    types::Snapshot snapshot = test::snapshotOf(geometry);
+    types::Snapshot snapshot = test::makeSnapshot(geometry);
     snapshot.sonar.velocity = velocity;
     snapshot.sonar.angular_velocity = turn;
     return snapshot;
@@ -60,7 +60,7 @@ types::Sonar pingOfMoving(const SonarConfig& config, const types::GeometryPtr& g
     SonarRenderer renderer(config, geometry);
     types::Sonar ping;
     for (const double ago : {0.5, 0.0}) {
-        types::Snapshot snapshot = test::snapshotOf(geometry, -ago * sonar_velocity);
+        types::Snapshot snapshot = test::makeSnapshot(geometry, -ago * sonar_velocity);
         snapshot.time = types::Time::fromSeconds(10 - ago);
         glm::dmat4 there(1);
         there[3] = glm::dvec4(place - ago * velocity, 1);
@@ -100,9 +100,9 @@ TEST(MotionTest, APointEchoesAtTheRangeOfTheExactTwoWayPath) {
          {Case{{200, 5, 0}, {-20, 0, 0}, {}}, Case{{200, 5, 0}, {}, {15, 0, 0}},
           Case{{250, -40, 3}, {10, 12, 0}, {25, -3, 0.5}}, Case{{80, 10, 0}, {30, 0, 0}, {-20, 0, 0}}}) {
         const types::Sonar ping =
-            pingOfMoving(movingFan(), test::sceneOf({facingPlate()}), moving.place, moving.velocity, moving.sonar);
+            pingOfMoving(movingFan(), test::makeScene({facingPlate()}), moving.place, moving.velocity, moving.sonar);
         const ReceivedAt exact = exactly(moving.place, moving.velocity, moving.sonar);
-        const Loudest loudest = loudestOf(ping);
+        const Loudest loudest = findLoudest(ping);
         EXPECT_NEAR(loudest.range, exact.range, 0.11);
         EXPECT_NEAR(loudest.bearing, std::atan2(exact.direction.y, exact.direction.x), radians(0.6));
         EXPECT_GT(std::abs(exact.range - glm::length(moving.place)), 1) << "where it was, stop and hop does not pass";
@@ -110,7 +110,7 @@ TEST(MotionTest, APointEchoesAtTheRangeOfTheExactTwoWayPath) {
 }
 
 TEST(MotionTest, AWallAheadOfAMovingSonarEchoesNearerInEachBeam) {
-    const auto geometry = test::sceneOf({test::wall(200)});
+    const auto geometry = test::makeScene({test::wall(200)});
     const glm::dvec3 velocity{25, 8, 0};
     SonarRenderer renderer(movingFan(), geometry);
     types::Sonar ping;
@@ -138,18 +138,18 @@ TEST(MotionTest, AWallAheadOfAMovingSonarEchoesNearerInEachBeam) {
 }
 
 TEST(MotionTest, AFloorHasTheSameEnergyUnderAMovingSonarAndAtRest) {
-    const auto geometry = test::sceneOf({test::ground(-10)});
+    const auto geometry = test::makeScene({test::ground(-10)});
     SonarConfig config = movingFan();
     config.beam_height_deg = 40;
-    const auto energyOf = [&](glm::dvec3 velocity) {
+    const auto sumEnergy = [&](glm::dvec3 velocity) {
         double sum = 0;
-        const types::Sonar ping = pingOf(config, movingSonar(geometry, velocity));
+        const types::Sonar ping = makePing(config, movingSonar(geometry, velocity));
         for (size_t i = 0; i < ping.bins.size(); ++i) sum += ping.bins[i];
         return sum;
     };
-    const double rest = energyOf({});
+    const double rest = sumEnergy({});
     EXPECT_GT(rest, 0);
-    EXPECT_NEAR(energyOf({15, 0, 0}) / rest, 1, 4 * 15 / c);
+    EXPECT_NEAR(sumEnergy({15, 0, 0}) / rest, 1, 4 * 15 / c);
 }
 
 /** The range at which sound along a ray meets a plate of 2 m that turns about its centre [m]: at each range the plate
@@ -175,11 +175,11 @@ double rangeOfTurning(const glm::dvec3& direction, const glm::dmat4& place, cons
 TEST(MotionTest, RaysMeetAPlateThatTurnsFast) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> number(-1, 1);
-    const auto geometry = test::sceneOf({facingPlate(2)});
+    const auto geometry = test::makeScene({facingPlate(2)});
     const RenderPlan plan = makeRenderPlan(movingFan(), *geometry);
     int met = 0, missed = 0;
     for (int trial = 0; trial < 100; ++trial) {
-        types::Snapshot snapshot = test::snapshotOf(geometry);
+        types::Snapshot snapshot = test::makeSnapshot(geometry);
         const double distance = 150 + 100 * number(random);
         const glm::dvec3 turn(1.5 * number(random), 1.5 * number(random), 1.5 * number(random));
         glm::dmat4 place = glm::mat4_cast(glm::angleAxis(0.4 * number(random), glm::dvec3(0, 0, 1)) *
@@ -224,21 +224,21 @@ TEST(MotionTest, APointTargetEchoesAtTheRangeOfTheExactPath) {
     types::Sonar ping;
     const glm::dvec3 place(240, 30, 2), velocity(-15, 4, 0), sonar(20, 1, 0);
     for (const double ago : {0.5, 0.0}) {
-        types::Snapshot snapshot = test::snapshotOf(nothing, -ago * sonar);
+        types::Snapshot snapshot = test::makeSnapshot(nothing, -ago * sonar);
         snapshot.time = types::Time::fromSeconds(10 - ago);
         snapshot.targets = {{place - ago * velocity, 0}};
         renderer.render(snapshot, ping);
     }
     const ReceivedAt exact = exactly(place, velocity, sonar);
-    EXPECT_NEAR(loudestOf(ping).range, exact.range, 0.051) << "its own bin";
-    EXPECT_NEAR(loudestOf(ping).bearing, std::atan2(exact.direction.y, exact.direction.x), radians(0.51));
+    EXPECT_NEAR(findLoudest(ping).range, exact.range, 0.051) << "its own bin";
+    EXPECT_NEAR(findLoudest(ping).bearing, std::atan2(exact.direction.y, exact.direction.x), radians(0.51));
     EXPECT_GT(std::abs(exact.range - glm::length(place)), 4);
 }
 
 TEST(MotionTest, ARotatingReceiverGetsAnEchoAtItsBearingOnArrival) {
     const double turn = radians(30), flight = 2 * 200 / c, bearing = radians(5);
-    const auto geometry = test::sceneOf({facingPlate()}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
-    const Loudest loudest = loudestOf(pingOf(movingFan(), movingSonar(geometry, {}, {0, 0, turn})));
+    const auto geometry = test::makeScene({facingPlate()}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+    const Loudest loudest = findLoudest(makePing(movingFan(), movingSonar(geometry, {}, {0, 0, turn})));
     EXPECT_NEAR(loudest.range, 200, 0.11);
     EXPECT_NEAR(loudest.bearing, bearing - turn * flight, radians(0.6));
     EXPECT_GT(turn * flight, radians(7)) << "where it was is seven beams off";
@@ -251,8 +251,8 @@ TEST(MotionTest, ASonarOfOneBeamShiftsByHalfBecauseItAlsoTransmitsWithTheBeam) {
     one.field_of_view_deg = 2;
     const auto receivedAt = [&](double bearing) {
         const auto geometry =
-            test::sceneOf({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
-        return loudestOf(pingOf(one, movingSonar(geometry, {}, {0, 0, turn}))).intensity;
+            test::makeScene({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+        return findLoudest(makePing(one, movingSonar(geometry, {}, {0, 0, turn}))).intensity;
     };
     EXPECT_GT(receivedAt(turn * flight / 2), 0);
     EXPECT_EQ(receivedAt(0), 0);
@@ -266,32 +266,32 @@ TEST(MotionTest, AChirpShiftsMovingTargetsByRangeDopplerCoupling) {
     config.pulse->chirp_us = 20000;
     const double seconds = 0.02 * 300e3 / 5e3, speed = 2;  // f T / B = 1.2 s
     EXPECT_DOUBLE_EQ(dopplerCoupling(config), seconds);
-    const auto geometry = test::sceneOf({facingPlate()});
+    const auto geometry = test::makeScene({facingPlate()});
     for (const double away : {speed, -speed}) {
         const ReceivedAt exact = exactly({150, 1, 0}, {away, 0, 0}, {});
-        EXPECT_NEAR(loudestOf(pingOfMoving(config, geometry, {150, 1, 0}, {away, 0, 0})).range,
+        EXPECT_NEAR(findLoudest(pingOfMoving(config, geometry, {150, 1, 0}, {away, 0, 0})).range,
                     exact.range + away * seconds, 0.11);
     }
     config.pulse->chirp_us.reset();
-    const double plain = loudestOf(pingOfMoving(config, geometry, {150, 1, 0}, {speed, 0, 0})).range;
+    const double plain = findLoudest(pingOfMoving(config, geometry, {150, 1, 0}, {speed, 0, 0})).range;
     EXPECT_NEAR(plain, exactly({150, 1, 0}, {speed, 0, 0}, {}).range, 0.11) << "no chirp, no shift";
 }
 
 TEST(MotionTest, ASonarAtRestAndOneThatIsSlowChangeNoBit) {
-    const auto geometry = test::sceneOf({test::ground(-10), facingPlate(5)}, -10, {{}, {100, 3, 0}});
+    const auto geometry = test::makeScene({test::ground(-10), facingPlate(5)}, -10, {{}, {100, 3, 0}});
     SonarConfig without = movingFan();
     without.motion_in_ping = false;
-    const types::Sonar absent = pingOf(without, movingSonar(geometry, {}));
-    EXPECT_GT(loudestOf(absent).intensity, 0);
+    const types::Sonar absent = makePing(without, movingSonar(geometry, {}));
+    EXPECT_GT(findLoudest(absent).intensity, 0);
     const double slow = 0.99 * motionBound(movingFan(), makeBinGrid(movingFan())).speed;
     EXPECT_NEAR(slow, 0.99 * 0.1 * c / (4 * 300), 1e-9);
     for (const glm::dvec3& velocity : {glm::dvec3(0), glm::dvec3(slow, 0, 0), glm::dvec3(types::Pose::unknown)})
-        EXPECT_EQ(pingOf(movingFan(), movingSonar(geometry, velocity)).bins, absent.bins);
-    EXPECT_NE(pingOf(movingFan(), movingSonar(geometry, {slow / 0.9, 0, 0})).bins, absent.bins);
+        EXPECT_EQ(makePing(movingFan(), movingSonar(geometry, velocity)).bins, absent.bins);
+    EXPECT_NE(makePing(movingFan(), movingSonar(geometry, {slow / 0.9, 0, 0})).bins, absent.bins);
 }
 
 TEST(MotionTest, ThePlanStatesTheMinSpeedForMotion) {
-    const auto geometry = test::sceneOf({test::ground(-10)});
+    const auto geometry = test::makeScene({test::ground(-10)});
     const RenderPlan plan = makeRenderPlan(movingFan(), *geometry);
     EXPECT_TRUE(plan.hasFeature("motion_in_ping"));
     EXPECT_FALSE(plan.findOmitted("motion within a ping"));
@@ -303,31 +303,31 @@ TEST(MotionTest, ThePlanStatesTheMinSpeedForMotion) {
 }
 
 TEST(MotionTest, ReportsMissingRequirements) {
-    EXPECT_THAT(test::refusalsOf(movingFan()), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(movingFan()), testing::IsEmpty());
     SonarConfig config = movingFan();
     config.visibility = Visibility::Auto;
     EXPECT_TRUE(config.tracesRays()) << "on any device";
     config.visibility = Visibility::Gl;
     config.device = "software";
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 Contains(HasSubstr("visibility: is gl with motion_in_ping, which needs rays")));
     config = movingFan();
     config.pulse.emplace().bandwidth_khz = 50;
     config.pulse->chirp_us = 1000;
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 Contains(HasSubstr("pulse.chirp_us: is given without motion_in_ping: true and frequency_khz")));
     acoustics::PulseConfig tone;
     tone.duration_us = tone.chirp_us = 100;
-    EXPECT_THAT(test::refusalsOf(tone), ElementsAre(StartsWith("chirp_us: ")));
+    EXPECT_THAT(test::countRefusals(tone), ElementsAre(StartsWith("chirp_us: ")));
     ScanningSonarConfig head;
     head.head.sweeps = true;
-    EXPECT_THAT(test::refusalsOf(head), ElementsAre(StartsWith("head.sweeps: ")));
+    EXPECT_THAT(test::countRefusals(head), ElementsAre(StartsWith("head.sweeps: ")));
 }
 
 TEST(MotionTest, AJumpIsAPlacementAndNotAMotion) {
-    const auto geometry = test::sceneOf({facingPlate()});
+    const auto geometry = test::makeScene({facingPlate()});
     Motion motion(*geometry, 150);
-    types::Snapshot snapshot = test::snapshotOf(geometry);
+    types::Snapshot snapshot = test::makeSnapshot(geometry);
     const auto putAt = [&](double x) {
         glm::dmat4 place(1);
         place[3] = {x, 0, 0, 1};
@@ -347,9 +347,9 @@ TEST(MotionTest, AJumpIsAPlacementAndNotAMotion) {
 }
 
 TEST(MotionTest, AJumpingSonarHasOnlyTheVelocityOfItsPose) {
-    const auto geometry = test::sceneOf({facingPlate()});
+    const auto geometry = test::makeScene({facingPlate()});
     Motion motion(*geometry, 150);
-    types::Snapshot snapshot = test::snapshotOf(geometry);
+    types::Snapshot snapshot = test::makeSnapshot(geometry);
     const auto putAt = [&](double x, double yaw) {
         snapshot.sonar.position.x = x;
         snapshot.sonar.orientation = glm::angleAxis(yaw, glm::dvec3(0, 0, 1));
@@ -376,9 +376,9 @@ TEST(MotionTest, AJumpingSonarHasOnlyTheVelocityOfItsPose) {
 }
 
 TEST(MotionTest, VelocitiesAreFromThePoseOrElseFromTwoSnapshots) {
-    const auto geometry = test::sceneOf({facingPlate(), facingPlate()});
+    const auto geometry = test::makeScene({facingPlate(), facingPlate()});
     Motion motion(*geometry, 150);
-    types::Snapshot snapshot = test::snapshotOf(geometry, {1e6, 2, 3}, 0.2);
+    types::Snapshot snapshot = test::makeSnapshot(geometry, {1e6, 2, 3}, 0.2);
     glm::dmat4 place(1);
     place[3] = {1e6, 10, 0, 1};
     snapshot.moved = {{1, place}};
@@ -426,14 +426,14 @@ struct SweepTest : test::TaskBench<ScanningSonarTask, types::SnapshotPtr, types:
     }
     /** Returns the max of the ping at a time, for a plate at 200 m and a bearing in the body. */
     Loudest receivedAt(double seconds, double bearing_deg) {
-        types::Snapshot snapshot = test::snapshotOf(nullptr);
+        types::Snapshot snapshot = test::makeSnapshot(nullptr);
         const double bearing = radians(bearing_deg);
         auto geometry =
-            test::sceneOf({test::sphere(2, 24)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+            test::makeScene({test::sphere(2, 24)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
         snapshot.geometry = geometry;
         snapshot.time = types::Time::fromSeconds(seconds);
         const types::SonarPtr ping = answerTo(std::make_shared<types::Snapshot>(snapshot));
-        return ping ? loudestOf(*ping) : Loudest{};
+        return ping ? findLoudest(*ping) : Loudest{};
     }
 };
 

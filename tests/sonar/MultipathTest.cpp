@@ -7,7 +7,7 @@
 
 #include "components/sonar/multipath/Mirrors.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/geometry/Angle.hpp"
@@ -17,13 +17,13 @@ namespace insonify::sonar {
 namespace {
 
 using std::numbers::pi;
+using test::makePing;
 using test::openWater;
-using test::pingOf;
 using types::radians;
 
 /** Bins of 0.1 m to 30 m, rays that look 60 deg up and down. */
 SonarConfig surfaceSonar(double fov_deg, int beams) {
-    return test::sonarOf(
+    return test::getSonar(
         {.beams = beams, .width_deg = fov_deg, .height_deg = 120, .bins = 300, .rows = 512, .columns = 2});
 }
 
@@ -35,7 +35,7 @@ SonarConfig mirrored(SonarConfig config, double wind = 0, int bounces = 1) {
 }
 
 types::Snapshot under(double surface, types::GeometryPtr geometry) {
-    types::Snapshot snapshot = test::snapshotOf(std::move(geometry));
+    types::Snapshot snapshot = test::makeSnapshot(std::move(geometry));
     snapshot.water_surface = surface;
     return snapshot;
 }
@@ -65,7 +65,7 @@ std::vector<size_t> receivedBins(const types::Sonar& ping, uint32_t beam = 0) {
 
 TEST(MultipathTest, APointTargetUnderAFlatSurfaceHasThreeReturns) {
     const SonarConfig config = surfaceSonar(40, 1);
-    const auto ping = pingOf(mirrored(config), withTarget(3, {12, 0, -1}));
+    const auto ping = makePing(mirrored(config), withTarget(3, {12, 0, -1}));
     const double r1 = std::hypot(12, 1), r2 = std::hypot(12, 7);
     const std::vector<double> ranges{r1, (r1 + r2) / 2, r2};
     const std::vector<double> expected{std::pow(r1, -4), 2 / (r1 * r1 * r2 * r2), std::pow(r2, -4)};
@@ -81,8 +81,8 @@ TEST(MultipathTest, APointTargetUnderAFlatSurfaceHasThreeReturns) {
 
 TEST(MultipathTest, TheDirectEchoOfATargetIsTheSameBitForBit) {
     const SonarConfig config = surfaceSonar(40, 4);
-    const auto with = pingOf(mirrored(config), withTarget(3, {12, 2, -1}));
-    const auto without = pingOf(config, withTarget(3, {12, 2, -1}));
+    const auto with = makePing(mirrored(config), withTarget(3, {12, 2, -1}));
+    const auto without = makePing(config, withTarget(3, {12, 2, -1}));
     for (size_t i = 0; i < without.bins.size(); ++i)
         if (without.bins[i] > 0) {
             EXPECT_EQ(with.bins[i], without.bins[i]);
@@ -94,8 +94,8 @@ TEST(MultipathTest, TheDirectEchoOfATargetIsTheSameBitForBit) {
 /** Returns the number of returns of a target with a plate at a place. */
 size_t returnsWith(types::Mesh plate) {
     auto config = mirrored(surfaceSonar(20, 1));
-    auto scene = test::sceneOf({std::move(plate)}, -200);
-    return receivedBins(pingOf(config, withTarget(3, {12, 0, -1}, scene))).size();
+    auto scene = test::makeScene({std::move(plate)}, -200);
+    return receivedBins(makePing(config, withTarget(3, {12, 0, -1}, scene))).size();
 }
 
 TEST(MultipathTest, EachLegOfATargetsPathsIsHiddenSeparately) {
@@ -113,15 +113,15 @@ TEST(MultipathTest, EachLegOfATargetsPathsIsHiddenSeparately) {
 TEST(MultipathTest, DirectionsOutsideOfTheApertureAreNeitherSentNorReceived) {
     auto config = mirrored(surfaceSonar(40, 1));
     config.beam_height_deg = 50;  // the path by the surface rises by 30.3 deg
-    EXPECT_EQ(receivedBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 1u);
+    EXPECT_EQ(receivedBins(makePing(config, withTarget(3, {12, 0, -1}))).size(), 1u);
     config.beam_height_deg = 62;
-    EXPECT_EQ(receivedBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 3u);
+    EXPECT_EQ(receivedBins(makePing(config, withTarget(3, {12, 0, -1}))).size(), 3u);
 }
 
 TEST(MultipathTest, ATargetAboveTheSurfaceHasNoEcho) {
     const auto snapshot = withTarget(3, {12, 0, 4});
-    EXPECT_EQ(receivedBins(pingOf(mirrored(surfaceSonar(40, 1)), snapshot)).size(), 0u);
-    EXPECT_EQ(receivedBins(pingOf(surfaceSonar(40, 1), snapshot)).size(), 1u);
+    EXPECT_EQ(receivedBins(makePing(mirrored(surfaceSonar(40, 1)), snapshot)).size(), 0u);
+    EXPECT_EQ(receivedBins(makePing(surfaceSonar(40, 1), snapshot)).size(), 1u);
 }
 
 TEST(MultipathTest, TransmitAndReceivePatternsApplyToTheirOwnPaths) {
@@ -134,7 +134,7 @@ TEST(MultipathTest, TransmitAndReceivePatternsApplyToTheirOwnPaths) {
     config.beam_pattern->transmit.elevation = narrow;
     config.beam_pattern->receive.elevation = wide;
     config.beam_pattern->floor_db = -150;
-    const auto ping = pingOf(config, withTarget(3, {12, 0, -1}));
+    const auto ping = makePing(config, withTarget(3, {12, 0, -1}));
     const double r1 = std::hypot(12, 1), r2 = std::hypot(12, 7);
     const auto power = [](const acoustics::BeamLaw& law, double angle) {
         return acoustics::BeamPattern(law).power(angle);
@@ -170,8 +170,8 @@ struct Bottom {
 
 TEST(MultipathTest, ABottomByTheSurfaceIsTheSumOverItsArea) {
     const SonarConfig config = surfaceSonar(8, 4);
-    const auto scene = test::sceneOf({test::ground(-4)});
-    const auto ghosts = difference(pingOf(mirrored(config), under(2, scene)), pingOf(config, under(2, scene)));
+    const auto scene = test::makeScene({test::ground(-4)});
+    const auto ghosts = difference(makePing(mirrored(config), under(2, scene)), makePing(config, under(2, scene)));
     const Bottom expected(120, radians(8));
     for (size_t k = 4; k < 15; ++k) {
         double received = 0;
@@ -184,8 +184,8 @@ TEST(MultipathTest, ABottomByTheSurfaceIsTheSumOverItsArea) {
 
 TEST(MultipathTest, DirectEchoesOfASceneAreTheSameBitForBit) {
     const SonarConfig config = surfaceSonar(90, 16);
-    const auto scene = test::sceneOf({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}});
-    const auto with = pingOf(mirrored(config), under(2, scene)), without = pingOf(config, under(2, scene));
+    const auto scene = test::makeScene({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}});
+    const auto with = makePing(mirrored(config), under(2, scene)), without = makePing(config, under(2, scene));
     size_t same = 0, more = 0;
     for (size_t i = 0; i < with.bins.size(); ++i) {
         EXPECT_GE(with.bins[i], without.bins[i]);
@@ -199,37 +199,37 @@ TEST(MultipathTest, DirectEchoesOfASceneAreTheSameBitForBit) {
 }
 
 TEST(MultipathTest, ObjectsAboveTheSurfaceHaveNoEcho) {
-    const auto wall = test::sceneOf({test::wall(10)});
-    const auto ping = pingOf(mirrored(surfaceSonar(8, 1)), under(2, wall));
+    const auto wall = test::makeScene({test::wall(10)});
+    const auto ping = makePing(mirrored(surfaceSonar(8, 1)), under(2, wall));
     // Direct echoes end where the wall meets the surface; farther away there are ghosts of the part below the surface.
     double dry = 0, all = 0;
-    const auto open = pingOf(surfaceSonar(8, 1), under(2, wall));
+    const auto open = makePing(surfaceSonar(8, 1), under(2, wall));
     for (size_t k = 0; k < 300; ++k) all += open.bins[k];
     for (size_t k = 0; k < 300; ++k) dry += ping.bins[k];
     EXPECT_GT(std::abs(dry / all - 1), 0.01);
-    const auto beyond = under(2, test::sceneOf({test::quad({10, -5, 3}, {0, 10, 0}, {0, 0, 3})}));
-    EXPECT_TRUE(receivedBins(pingOf(mirrored(surfaceSonar(8, 1)), beyond)).empty());
-    EXPECT_FALSE(receivedBins(pingOf(surfaceSonar(8, 1), beyond)).empty());
+    const auto beyond = under(2, test::makeScene({test::quad({10, -5, 3}, {0, 10, 0}, {0, 0, 3})}));
+    EXPECT_TRUE(receivedBins(makePing(mirrored(surfaceSonar(8, 1)), beyond)).empty());
+    EXPECT_FALSE(receivedBins(makePing(surfaceSonar(8, 1), beyond)).empty());
 }
 
 TEST(MultipathTest, NoBinChangesWithoutBouncesOrReflectors) {
     auto config = surfaceSonar(40, 8);
-    const auto snapshot = under(2, test::sceneOf({test::ground(-4)}));
-    const auto without = pingOf(config, snapshot).bins;
-    EXPECT_EQ(pingOf(mirrored(config, 0, 0), snapshot).bins, without);
+    const auto snapshot = under(2, test::makeScene({test::ground(-4)}));
+    const auto without = makePing(config, snapshot).bins;
+    EXPECT_EQ(makePing(mirrored(config, 0, 0), snapshot).bins, without);
     config.multipath.emplace();
-    EXPECT_EQ(pingOf(config, snapshot).bins, without);
+    EXPECT_EQ(makePing(config, snapshot).bins, without);
     auto dry = snapshot;
     dry.water_surface.reset();
-    EXPECT_EQ(pingOf(mirrored(config), dry).bins, without);
+    EXPECT_EQ(makePing(mirrored(config), dry).bins, without);
     dry.water_surface = -1;  // above it
-    EXPECT_EQ(pingOf(mirrored(config), dry).bins, without);
+    EXPECT_EQ(makePing(mirrored(config), dry).bins, without);
     dry.water_surface = 31;  // beyond the range
-    EXPECT_EQ(pingOf(mirrored(config), dry).bins, without);
+    EXPECT_EQ(makePing(mirrored(config), dry).bins, without);
 }
 
 /** A material that is a mirror, or has a lobe, without diffuse scattering. */
-types::Material mirrorOf(float reflection) {
+types::Material makeMirror(float reflection) {
     types::Material material;
     material.lambert_db = -200;
     material.mirror = true;
@@ -284,9 +284,9 @@ TEST(MultipathTest, AMirrorShowsATargetByItsReflection) {
     const SonarConfig config = bouncing(surfaceSonar(170, 1));
     const double r1 = std::hypot(12, 1), r2 = std::hypot(12, 7);
     const auto returns = [&](types::Mesh wall, float reflection) {
-        auto snapshot = test::snapshotOf(sceneWith({{std::move(wall), mirrorOf(reflection)}}));
+        auto snapshot = test::makeSnapshot(sceneWith({{std::move(wall), makeMirror(reflection)}}));
         snapshot.targets = {{{12, 1, 0}, 0}};
-        return pingOf(config, snapshot);
+        return makePing(config, snapshot);
     };
     const auto half = returns(wallToPort(), -0.5f);
     const auto at = [&](double range) { return double{half.bins[static_cast<size_t>(range / 0.1)]}; };
@@ -319,8 +319,8 @@ SonarConfig lowFan(int beams) {
 TEST(MultipathTest, APlateByAMirrorEchoesAtEachBearingOfArrival) {
     const SonarConfig config = lowFan(14);
     const auto plate = test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f});
-    const auto snapshot = test::snapshotOf(sceneWith({{wallToPort(), mirrorOf(1)}, {plate, lambertian()}}));
-    const auto ghosts = pingOf(bouncing(config), snapshot), plain = pingOf(config, snapshot);
+    const auto snapshot = test::makeSnapshot(sceneWith({{wallToPort(), makeMirror(1)}, {plate, lambertian()}}));
+    const auto ghosts = makePing(bouncing(config), snapshot), plain = makePing(config, snapshot);
     double once = 0, twice = 0;  // by a double sum over the plate
     constexpr int steps = 200;
     for (int i = 0; i < steps; ++i)
@@ -350,8 +350,8 @@ TEST(MultipathTest, ASurfaceEchoesByAMirrorOnlyOnItsOwnSide) {
     const SonarConfig config = lowFan(1);
     // Edge-on to neither: one side of the surface faces the sonar, the other the mirror.
     const auto plate = test::quad({9.4f, 1.64f, -0.3f}, {0.2f, 0.02f, 0}, {0, 0, 0.6f});
-    const auto snapshot = test::snapshotOf(sceneWith({{wallToPort(), mirrorOf(1)}, {plate, lambertian()}}));
-    const auto ghosts = pingOf(bouncing(config), snapshot), plain = pingOf(config, snapshot);
+    const auto snapshot = test::makeSnapshot(sceneWith({{wallToPort(), makeMirror(1)}, {plate, lambertian()}}));
+    const auto ghosts = makePing(bouncing(config), snapshot), plain = makePing(config, snapshot);
     const double r1 = std::hypot(9.5, 1.65), r2 = std::hypot(9.5, 6.35);
     const auto more = [&](double range) {
         return between(ghosts, range - 0.1, range + 0.1) - between(plain, range - 0.1, range + 0.1);
@@ -375,8 +375,8 @@ SonarConfig cornerSonar() {
 }
 constexpr double corner_range = 50, corner_wavelength = 0.003;
 
-double strengthOf(const SonarConfig& config, types::GeometryPtr corner) {
-    const auto ping = pingOf(config, test::snapshotOf(std::move(corner)));
+double computeStrength(const SonarConfig& config, types::GeometryPtr corner) {
+    const auto ping = makePing(config, test::makeSnapshot(std::move(corner)));
     double sum = 0;
     for (const float bin : ping.bins) sum += double{bin};
     return decibels(sum * std::pow(corner_range, 4));
@@ -402,14 +402,15 @@ TEST(MultipathTest, ADihedralHasItsTargetStrengthOverFortyDegrees) {
     const SonarConfig config = bouncing(cornerSonar(), 2);
     for (const double yaw : {-20.0, -10.0, 0.0, 7.0, 20.0}) {
         const double aperture = 2 * a * b * std::sin(radians(45 - std::abs(yaw)));
-        EXPECT_NEAR(strengthOf(config, dihedral(a, b, yaw)), 20 * std::log10(aperture / corner_wavelength), 1) << yaw;
+        EXPECT_NEAR(computeStrength(config, dihedral(a, b, yaw)), 20 * std::log10(aperture / corner_wavelength), 1)
+            << yaw;
     }
     EXPECT_NEAR(20 * std::log10(2 * a * b * std::sin(radians(45)) / corner_wavelength),
                 20 * std::log10(std::numbers::sqrt2 * a * b / corner_wavelength), 1e-9);
     // Without a mirror there is no second bounce; only the sidelobes of both plates remain (ACOUSTICS.md 3.6).
     const double beta = 2 * pi / corner_wavelength * a * std::sin(radians(45)),
                  plate = a * b / corner_wavelength * std::cos(radians(45));
-    EXPECT_NEAR(strengthOf(bouncing(cornerSonar(), 1), dihedral(a, b, 0)),
+    EXPECT_NEAR(computeStrength(bouncing(cornerSonar(), 1), dihedral(a, b, 0)),
                 10 * std::log10(2 * plate * plate / (2 * beta * beta)), 0.5);
 }
 
@@ -426,8 +427,9 @@ types::GeometryPtr trihedral(double side, bool square, double yaw_deg, double pi
     std::vector<Thing> plates;
     for (int k = 0; k < 3; ++k) {
         const glm::vec3 u(side * axes[k]), v(side * axes[(k + 1) % 3]);
-        plates.push_back({square ? test::quad(corner, u, v) : test::meshOf({corner, corner + u, corner + v}, {0, 1, 2}),
-                          smoothPlate()});
+        plates.push_back(
+            {square ? test::quad(corner, u, v) : test::getMesh({corner, corner + u, corner + v}, {0, 1, 2}),
+             smoothPlate()});
     }
     return sceneWith(std::move(plates));
 }
@@ -456,7 +458,7 @@ TEST(MultipathTest, ATrihedralHasItsTargetStrengthOverFortyDegrees) {
         for (const auto& [yaw, pitch] :
              {std::pair{0.0, 0.0}, {20.0, 0.0}, {-20.0, 0.0}, {0.0, 20.0}, {0.0, -20.0}, {10.0, 5.0}}) {
             const double aperture = side * side * trihedralAperture(square, yaw, pitch);
-            EXPECT_NEAR(strengthOf(config, trihedral(side, square, yaw, pitch)),
+            EXPECT_NEAR(computeStrength(config, trihedral(side, square, yaw, pitch)),
                         20 * std::log10(aperture / corner_wavelength), 2)
                 << (square ? "square " : "triangular ") << yaw << ' ' << pitch;
         }
@@ -466,11 +468,11 @@ TEST(MultipathTest, AConcaveCornerShowsItsSecondAndThirdReturn) {
     // A smooth wall and a small plate of Lambert's law that is visible directly and by the wall.
     const auto plate = test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f});
     const auto snapshot =
-        test::snapshotOf(sceneWith({{wallToPort(), smoothPlate(0.9f, 0.05f)}, {plate, lambertian()}}));
+        test::makeSnapshot(sceneWith({{wallToPort(), smoothPlate(0.9f, 0.05f)}, {plate, lambertian()}}));
     const SonarConfig config = lowFan(1);
-    const auto one = pingOf(bouncing(config, 1), snapshot), two = pingOf(bouncing(config, 2), snapshot);
+    const auto one = makePing(bouncing(config, 1), snapshot), two = makePing(bouncing(config, 2), snapshot);
     const double r2 = std::hypot(12, 8), second = (12 + r2) / 2;
-    EXPECT_EQ(one.bins, pingOf(config, snapshot).bins);
+    EXPECT_EQ(one.bins, makePing(config, snapshot).bins);
     for (const double range : {second, r2}) {
         const double ghost = between(two, range - 0.5, range + 0.5) - between(one, range - 0.5, range + 0.5);
         EXPECT_GT(ghost,
@@ -478,12 +480,12 @@ TEST(MultipathTest, AConcaveCornerShowsItsSecondAndThirdReturn) {
         EXPECT_GT(ghost,
                   10 * std::abs(between(two, range - 0.8, range - 0.5) - between(one, range - 0.8, range - 0.5)));
     }
-    EXPECT_EQ(
-        pingOf(bouncing(config, 2),
-               test::snapshotOf(sceneWith({{wallToPort(), smoothPlate(0.9f, 0.4f)}, {plate, lambertian()}})))
-            .bins,
-        pingOf(config, test::snapshotOf(sceneWith({{wallToPort(), smoothPlate(0.9f, 0.4f)}, {plate, lambertian()}})))
-            .bins)
+    EXPECT_EQ(makePing(bouncing(config, 2),
+                       test::makeSnapshot(sceneWith({{wallToPort(), smoothPlate(0.9f, 0.4f)}, {plate, lambertian()}})))
+                  .bins,
+              makePing(config,
+                       test::makeSnapshot(sceneWith({{wallToPort(), smoothPlate(0.9f, 0.4f)}, {plate, lambertian()}})))
+                  .bins)
         << "a slope of 0.4 is no mirror";
 }
 
@@ -496,8 +498,8 @@ TEST(MultipathTest, WindTiltsTheSurfaceByItsSlopeAndKeepsTheEnergy) {
     const double roughness = 2 * (2 * pi / 0.5) * 0.0053 * 9 * 0.3;
     EXPECT_DOUBLE_EQ(coherentReflection(3, 0.5, 0.3), std::exp(-roughness * roughness / 2));
     const SonarConfig config = surfaceSonar(40, 8);
-    auto snapshot = under(2, test::sceneOf({test::ground(-4)}));
-    const auto plain = pingOf(config, snapshot), flat = pingOf(mirrored(config), snapshot);
+    auto snapshot = under(2, test::makeScene({test::ground(-4)}));
+    const auto plain = makePing(config, snapshot), flat = makePing(mirrored(config), snapshot);
     SonarRenderer rough(mirrored(config, 3), snapshot.geometry);
     types::Sonar first, again, next;
     rough.render(snapshot, first);
@@ -514,7 +516,7 @@ TEST(MultipathTest, WindTiltsTheSurfaceByItsSlopeAndKeepsTheEnergy) {
 
 TEST(MultipathTest, TheTruthNamesThePathOfMostOfABinsEnergy) {
     const SonarConfig config = surfaceSonar(8, 4);
-    const auto snapshot = under(2, test::sceneOf({test::quad({10, -2, -3}, {0, 4, 0}, {0, 0, 2})}));
+    const auto snapshot = under(2, test::makeScene({test::quad({10, -2, -3}, {0, 4, 0}, {0, 0, 2})}));
     SonarRenderer renderer(mirrored(config), snapshot.geometry);
     types::Sonar ping;
     types::SonarTruth truth;
@@ -541,8 +543,8 @@ TEST(MultipathTest, TheTruthNamesThePathOfMostOfABinsEnergy) {
         EXPECT_EQ(ping.bins[k] > 0, truth.path[k] > 0 || truth.hits[k] > 0) << k;
         EXPECT_FALSE(ping.bins[k] > 0 && truth.shadow[k]) << k;
     }
-    auto wall = test::snapshotOf(sceneWith(
-        {{wallToPort(), mirrorOf(1)}, {test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f}), lambertian()}}));
+    auto wall = test::makeSnapshot(sceneWith(
+        {{wallToPort(), makeMirror(1)}, {test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f}), lambertian()}}));
     SonarRenderer bounced(bouncing(lowFan(1)), wall.geometry);
     bounced.setTruth(ping, &truth);
     bounced.render(wall, ping);
@@ -551,7 +553,7 @@ TEST(MultipathTest, TheTruthNamesThePathOfMostOfABinsEnergy) {
 }
 
 TEST(MultipathTest, DoesNotDependOnTheNumberOfThreads) {
-    const auto snapshot = under(2, test::sceneOf({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}}));
+    const auto snapshot = under(2, test::makeScene({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}}));
     const auto bins = [&](int threads) {
         RenderOptions options;
         options.threads = threads;
@@ -571,11 +573,11 @@ TEST(MultipathTest, GhostsAreAtTheirPlacesWithAPatternConesAndAMovingObject) {
         acoustics::BeamLaw law;
         law.width_deg = 3;
         config.beam_pattern.emplace().receive.azimuth = law;
-        auto snapshot = under(3, test::sceneOf({test::sphere(0.3, 24)}, 0, {{12, 0, -1}}));
+        auto snapshot = under(3, test::makeScene({test::sphere(0.3, 24)}, 0, {{12, 0, -1}}));
         glm::dmat4 moved(1);
         moved[3] = {12, 3, -1, 1};
         snapshot.moved = {{0, moved}};
-        const auto ghosts = pingOf(config, snapshot);
+        const auto ghosts = makePing(config, snapshot);
         const double r1 = glm::length(glm::dvec3(12, 3, -1)), r2 = glm::length(glm::dvec3(12, 3, 7));
         size_t loudest = 0;
         for (size_t beam = 0; beam < 30; ++beam)

@@ -45,23 +45,23 @@ types::Mesh randomMesh(Random& random, int triangles) {
             positions.push_back(at + glm::vec3(uniformVector(random, 0.3)));
         }
     }
-    return test::meshOf(positions, indices);
+    return test::getMesh(positions, indices);
 }
 
 /** A ball of 40 rings, 5 m away, whose box has a corner 1.1 m nearer than it is. */
 types::Snapshot ballAcrossItsBox() {
     const glm::dvec3 place = 5.0 * glm::normalize(glm::dvec3(1, 1, 1));
-    const auto scene = test::sceneOf({test::sphere(1.5f, 40)}, 0, {place});
-    return test::snapshotOf(scene, {}, std::atan2(1.0, 1.0), -std::asin(1 / std::sqrt(3.0)));
+    const auto scene = test::makeScene({test::sphere(1.5f, 40)}, 0, {place});
+    return test::makeSnapshot(scene, {}, std::atan2(1.0, 1.0), -std::asin(1 / std::sqrt(3.0)));
 }
 
 /** Returns the range at which the first bin with an echo ends [m]. */
 double firstEcho(Visibility visibility) {
-    SonarConfig config = test::sonarOf(
+    SonarConfig config = test::getSonar(
         {.beams = 32, .width_deg = 60, .height_deg = 60, .bins = 500, .bin = 0.02, .rows = 32, .columns = 1});
     config.visibility = visibility;
     config.device = "software";
-    const types::Sonar ping = test::pingOf(config, ballAcrossItsBox());
+    const types::Sonar ping = test::makePing(config, ballAcrossItsBox());
     size_t first = ping.bin_count;
     for (size_t i = 0; i < ping.bins.size(); ++i)
         if (ping.bins[i] > 0) first = std::min(first, i % ping.bin_count);
@@ -104,11 +104,11 @@ TEST(NearestPointTest, IsALowerBoundForVeryManyTrianglesAtSimilarDistances) {
 }
 
 TEST(NearestPointTest, DoesNotOverestimateTheDistanceOfALargeFloor) {
-    const auto scene = test::sceneOf({test::ground(-1, 20'000)});
+    const auto scene = test::makeScene({test::ground(-1, 20'000)});
     ObjectPlacements places(*scene, {}, true);
     for (int i = 0; i < 300; ++i) {
         const double above = 0.5 + 0.01 * i;
-        places.place(test::snapshotOf(scene, {7.3 * i, -3.1 * i, above - 1}, 0.02 * i, 0.003 * i, 0.001 * i));
+        places.place(test::makeSnapshot(scene, {7.3 * i, -3.1 * i, above - 1}, 0.02 * i, 0.003 * i, 0.001 * i));
         EXPECT_GE(double{places.records()[0].extent.x}, 1 / above) << above << " m above";
         EXPECT_LE(double{places.records()[0].extent.x}, 1 / (above - 0.03)) << above << " m above";
     }

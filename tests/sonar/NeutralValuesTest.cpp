@@ -53,7 +53,7 @@ std::vector<Neutral> neutrals() {
 }
 
 types::GeometryPtr floorAndBall() {
-    return test::sceneOf({test::ground(-3), test::sphere(0.5, 16)}, -10, {{}, {6, 1, -1.5}});
+    return test::makeScene({test::ground(-3), test::sphere(0.5, 16)}, -10, {{}, {6, 1, -1.5}});
 }
 
 struct Kind {
@@ -63,12 +63,12 @@ struct Kind {
 
 std::vector<Kind> kinds() {
     SonarConfig fan =
-        test::sonarOf({.beams = 9, .width_deg = 50, .height_deg = 40, .bins = 120, .rows = 48, .columns = 2});
+        test::getSonar({.beams = 9, .width_deg = 50, .height_deg = 40, .bins = 120, .rows = 48, .columns = 2});
     fan.visibility = Visibility::Cpu;
     fan.frequency_khz = 400;
     SonarConfig patterned = fan;
-    patterned.beam_pattern.emplace().receive.azimuth = test::lawOf(acoustics::Weighting::Hann, 6);
-    patterned.beam_pattern->transmit.elevation = test::lawOf(acoustics::Weighting::Gaussian, 30);
+    patterned.beam_pattern.emplace().receive.azimuth = test::getLaw(acoustics::Weighting::Hann, 6);
+    patterned.beam_pattern->transmit.elevation = test::getLaw(acoustics::Weighting::Gaussian, 30);
     SonarConfig cones = fan;
     cones.beam_geometry = BeamGeometry::Conical;
     AltimeterConfig altimeter;
@@ -97,18 +97,18 @@ std::vector<Kind> kinds() {
 
 TEST(NeutralValuesTest, ChangeNoBitOfAnyKindOfSonarWithEnergiesAndWithFields) {
     const auto scene = floorAndBall();
-    types::Snapshot snapshot = test::snapshotOf(scene, {}, 0.1, 0.4);
+    types::Snapshot snapshot = test::makeSnapshot(scene, {}, 0.1, 0.4);
     snapshot.water_surface = 30;
     snapshot.targets = {{{5, 0.4, -1}, -20}};
     for (const bool coherent : {false, true})
         for (const Kind& kind : kinds()) {
             SonarConfig plain = kind.config;
             if (coherent) plain.speckle.emplace().coherent = true;
-            const types::Sonar without = test::pingOf(plain, snapshot);
+            const types::Sonar without = test::makePing(plain, snapshot);
             for (const Neutral& neutral : neutrals()) {
                 SonarConfig with = plain;
                 neutral.set(with);
-                EXPECT_EQ(test::pingOf(with, snapshot).bins, without.bins)
+                EXPECT_EQ(test::makePing(with, snapshot).bins, without.bins)
                     << neutral.name << " in a " << kind.name << (coherent ? ", fields" : ", energies");
             }
         }
@@ -116,16 +116,16 @@ TEST(NeutralValuesTest, ChangeNoBitOfAnyKindOfSonarWithEnergiesAndWithFields) {
 
 /** A volume above its least strength is heard: the cases above do not pass because it is never read. */
 TEST(NeutralValuesTest, ValuesThatAreNotNeutralChangeThePing) {
-    const types::Snapshot snapshot = test::snapshotOf(floorAndBall(), {}, 0.1, 0.4);
+    const types::Snapshot snapshot = test::makeSnapshot(floorAndBall(), {}, 0.1, 0.4);
     for (const bool coherent : {false, true}) {
         SonarConfig plain = kinds().front().config;
         if (coherent) plain.speckle.emplace().coherent = true;
         SonarConfig with = plain;
         with.volume = {{{}, {}, -50}};
-        EXPECT_NE(test::pingOf(with, snapshot).bins, test::pingOf(plain, snapshot).bins);
+        EXPECT_NE(test::makePing(with, snapshot).bins, test::makePing(plain, snapshot).bins);
         with = plain;
         with.imperfections.emplace().crosstalk_db = -30;
-        EXPECT_NE(test::pingOf(with, snapshot).bins, test::pingOf(plain, snapshot).bins);
+        EXPECT_NE(test::makePing(with, snapshot).bins, test::makePing(plain, snapshot).bins);
     }
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 /** A wall 20 m ahead whose normals lean to port. */
 types::GeometryPtr wallWithNormalsAt(double lean) {
-    auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::mappedWall()}));
+    auto geometry = std::make_shared<types::Geometry>(*test::makeScene({test::mappedWall()}));
     geometry->objects[0].world_from_object = glm::scale(glm::translate(glm::dmat4(1), {20, 0, 0}), glm::dvec3(1, 5, 5));
     const auto channel = [](double x) { return static_cast<uint8_t>(std::lround((x + 1) / 2 * 255)); };
     geometry->normal_maps = {{1, 1, {channel(std::sin(lean)), channel(0), channel(std::cos(lean))}, true, true}};
@@ -22,10 +22,10 @@ types::GeometryPtr wallWithNormalsAt(double lean) {
     return geometry;
 }
 
-std::vector<float> echoOf(const types::GeometryPtr& geometry) {
-    SonarConfig config = test::sonarOf({.width_deg = 2, .height_deg = 2, .bins = 250});
+std::vector<float> getEcho(const types::GeometryPtr& geometry) {
+    SonarConfig config = test::getSonar({.width_deg = 2, .height_deg = 2, .bins = 250});
     config.device = "software";
-    return test::pingOf(config, test::snapshotOf(geometry)).bins;
+    return test::makePing(config, test::makeSnapshot(geometry)).bins;
 }
 
 /** A wall 20 m ahead with a fine bumpy map, stretched by its vertices or by its object. */
@@ -33,7 +33,7 @@ types::GeometryPtr bumpyWall(const glm::dvec3& size, bool by_object) {
     types::Mesh mesh = test::mappedWall();
     if (!by_object)
         for (glm::vec3& position : mesh.positions) position *= glm::vec3(size);
-    auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({mesh}));
+    auto geometry = std::make_shared<types::Geometry>(*test::makeScene({mesh}));
     const glm::dmat4 place = glm::translate(glm::dmat4(1), {20.03, 0, 0});  // within a bin
     geometry->objects[0].world_from_object = by_object ? glm::scale(place, size) : place;
     geometry->normal_maps = {test::bumpyMap(256)};
@@ -44,10 +44,10 @@ types::GeometryPtr bumpyWall(const glm::dvec3& size, bool by_object) {
 }  // namespace
 
 TEST(NormalMapTest, RaysAverageTheSameAreaOfAMapOnAStretchedWall) {
-    SonarConfig config = test::sonarOf({.beams = 24, .width_deg = 24, .bins = 300, .rows = 64, .columns = 2});
+    SonarConfig config = test::getSonar({.beams = 24, .width_deg = 24, .bins = 300, .rows = 64, .columns = 2});
     config.visibility = Visibility::Cpu;
     const auto echo = [&](const glm::dvec3& size, bool by_object) {
-        return test::pingOf(config, test::snapshotOf(bumpyWall(size, by_object))).bins;
+        return test::makePing(config, test::makeSnapshot(bumpyWall(size, by_object))).bins;
     };
     for (const glm::dvec3 size : {glm::dvec3(1, 5, 5), {1, 1, 8}, {1, 9, 2}, {4, 5, 5}, {0.1, 6, 4}}) {
         const std::vector<float> stretched = echo(size, true), made = echo(size, false);
@@ -61,17 +61,17 @@ TEST(NormalMapTest, RaysAverageTheSameAreaOfAMapOnAStretchedWall) {
 }
 
 TEST(NormalMapTest, AnEchoIsProportionalToTheCosineOfTheMappedNormal) {
-    const std::vector<float> plain = echoOf(wallWithNormalsAt(0));
+    const std::vector<float> plain = getEcho(wallWithNormalsAt(0));
     ASSERT_GT(plain[200], 0);
     for (const double degrees : {20.0, 45.0, 70.0, -45.0}) {
-        const std::vector<float> bent = echoOf(wallWithNormalsAt(types::radians(degrees)));
+        const std::vector<float> bent = getEcho(wallWithNormalsAt(types::radians(degrees)));
         EXPECT_NEAR(bent[200] / plain[200], std::cos(types::radians(degrees)), 0.01) << degrees;
         for (size_t k = 0; k < bent.size(); ++k) EXPECT_EQ(bent[k] > 0, plain[k] > 0) << k;
     }
 }
 
 TEST(NormalMapTest, ASurfaceThatAMapTurnsAwayIsAlmostSilent) {
-    EXPECT_LT(echoOf(wallWithNormalsAt(types::radians(120)))[200], 1e-5 * echoOf(wallWithNormalsAt(0))[200]);
+    EXPECT_LT(getEcho(wallWithNormalsAt(types::radians(120)))[200], 1e-5 * getEcho(wallWithNormalsAt(0))[200]);
 }
 
 }  // namespace insonify::sonar

@@ -26,16 +26,16 @@ using ::testing::HasSubstr;
 using Bins = std::vector<float>;
 
 SonarConfig plainSonar(Model model = Model::Physical) {
-    SonarConfig config = test::sonarOf({.beams = 52, .width_deg = 130, .height_deg = 40, .bins = 400, .rows = 96});
+    SonarConfig config = test::getSonar({.beams = 52, .width_deg = 130, .height_deg = 40, .bins = 400, .rows = 96});
     config.model = model;
     config.device = "software";
     return config;
 }
 
-Bins binsOf(const SonarConfig& config, const types::GeometryPtr& geometry = test::surfaces()) {
+Bins getBins(const SonarConfig& config, const types::GeometryPtr& geometry = test::surfaces()) {
     SonarRenderer renderer(config, geometry);
     types::Sonar ping;
-    renderer.render(test::snapshotOf(geometry, {}, 0.1, 0.15), ping);
+    renderer.render(test::makeSnapshot(geometry, {}, 0.1, 0.15), ping);
     EXPECT_GT(std::ranges::count_if(ping.bins, [](float x) { return x != 0; }), 50);
     return ping.bins;
 }
@@ -114,9 +114,9 @@ TEST(OmissionTest, NoAbsorptionIsAbsorptionOfZero) {
     for (Model model : {Model::Physical, Model::Cerqueira2017}) {
         SonarConfig with = plainSonar(model);
         with.absorption.emplace().db_per_m = 0;
-        EXPECT_EQ(binsOf(with), binsOf(plainSonar(model)));
+        EXPECT_EQ(getBins(with), getBins(plainSonar(model)));
         with.absorption->db_per_m = 0.05;
-        EXPECT_NE(binsOf(with), binsOf(plainSonar(model)));
+        EXPECT_NE(getBins(with), getBins(plainSonar(model)));
     }
 }
 
@@ -127,7 +127,7 @@ TEST(OmissionTest, AbsorptionInsideABinIsWithinTheStatedBound) {
     EXPECT_NEAR(findOmitted(coarse, "absorption inside a bin")->value, bound, 1e-12 * bound);
     SonarConfig fine = coarse;
     fine.bin_count = 4000;
-    const Bins whole = binsOf(coarse), tenths = binsOf(fine);
+    const Bins whole = getBins(coarse), tenths = getBins(fine);
     for (size_t i = 0; i < whole.size(); ++i) {
         double sum = 0;
         for (size_t j = 0; j < 10; ++j) sum += tenths[10 * i + j];
@@ -137,9 +137,9 @@ TEST(OmissionTest, AbsorptionInsideABinIsWithinTheStatedBound) {
 
 TEST(OmissionTest, ASmoothMaterialHasNoLobeWithAnyReflection) {
     const auto shiny = changed([](types::Geometry& g) { g.materials[0].reflection = 0.9f; });
-    EXPECT_EQ(binsOf(plainSonar(), shiny), binsOf(plainSonar()));
+    EXPECT_EQ(getBins(plainSonar(), shiny), getBins(plainSonar()));
     const auto rough = changed([](types::Geometry& g) { g.materials[0].roughness_slope = 0.1f; });
-    EXPECT_EQ(binsOf(plainSonar(), rough), binsOf(plainSonar())) << "of reflection 0";
+    EXPECT_EQ(getBins(plainSonar(), rough), getBins(plainSonar())) << "of reflection 0";
 }
 
 TEST(OmissionTest, TheModelOfCerqueiraHasNoSpreading) {
@@ -152,41 +152,41 @@ TEST(OmissionTest, TheModelOfCerqueiraHasNoSpreading) {
             for (types::Object& object : g.objects)
                 object.world_from_object = glm::scale(glm::dmat4(1), glm::dvec3(2)) * object.world_from_object;
         });
-        const Bins bins = binsOf(plainSonar(model));
+        const Bins bins = getBins(plainSonar(model));
         const float spreading = model == Model::Physical ? 4 : 1;  // 1 / r^2
-        EXPECT_LT(test::relativeL2(times(binsOf(twice, larger), spreading), bins), 1e-6);
+        EXPECT_LT(test::relativeL2(times(getBins(twice, larger), spreading), bins), 1e-6);
     }
 }
 
 TEST(OmissionTest, TheModelOfCerqueiraHasNoBackscatter) {
-    const Bins bins = binsOf(plainSonar(Model::Cerqueira2017));
+    const Bins bins = getBins(plainSonar(Model::Cerqueira2017));
     const auto hard = changed([](types::Geometry& g) { g.materials[0].lambert_db = -3; });
-    EXPECT_EQ(binsOf(plainSonar(Model::Cerqueira2017), hard), bins);
-    EXPECT_NE(binsOf(plainSonar(), hard), binsOf(plainSonar())) << "physical does";
+    EXPECT_EQ(getBins(plainSonar(Model::Cerqueira2017), hard), bins);
+    EXPECT_NE(getBins(plainSonar(), hard), getBins(plainSonar())) << "physical does";
 }
 
 TEST(OmissionTest, ReflectivityOfOneHasNoEffect) {
     const auto plain = changed([](types::Geometry& g) { g.materials[1] = {}; });
     const auto one = changed([](types::Geometry& g) { g.materials[1] = {}, g.materials[1].reflectivity = 1; });
-    EXPECT_EQ(binsOf(plainSonar(Model::Cerqueira2017), one), binsOf(plainSonar(Model::Cerqueira2017), plain));
-    EXPECT_NE(binsOf(plainSonar(Model::Cerqueira2017)), binsOf(plainSonar(Model::Cerqueira2017), unmapped()))
+    EXPECT_EQ(getBins(plainSonar(Model::Cerqueira2017), one), getBins(plainSonar(Model::Cerqueira2017), plain));
+    EXPECT_NE(getBins(plainSonar(Model::Cerqueira2017)), getBins(plainSonar(Model::Cerqueira2017), unmapped()))
         << "0.8, mapped";
 }
 
 TEST(OmissionTest, NoNormalMapMatchesANeutralMap) {
     for (Model model : {Model::Physical, Model::Cerqueira2017}) {
-        const Bins bins = binsOf(plainSonar(model), unmapped());
+        const Bins bins = getBins(plainSonar(model), unmapped());
         const auto unused = changed([](types::Geometry& g) {
             g.materials.push_back(g.materials[1]);
             g.materials[1].normal_map = -1;
         });
-        EXPECT_EQ(binsOf(plainSonar(model), unused), bins) << "compiled, but no surface has it";
+        EXPECT_EQ(getBins(plainSonar(model), unused), bins) << "compiled, but no surface has it";
         const auto unscaled = changed([](types::Geometry& g) { g.materials[1].normal_scale = 0; });
-        EXPECT_LT(test::relativeL2(binsOf(plainSonar(model), unscaled), bins), 1e-6)
+        EXPECT_LT(test::relativeL2(getBins(plainSonar(model), unscaled), bins), 1e-6)
             << "its cosine is of single precision";
         const auto flat = changed([](types::Geometry& g) { g.normal_maps = {test::flatMap()}; });
-        EXPECT_LT(test::relativeL2(binsOf(plainSonar(model), flat), bins), 5e-3) << "(128, 128, 255) leans by 0.3 deg";
-        EXPECT_GT(test::relativeL2(binsOf(plainSonar(model)), bins), 0.01);
+        EXPECT_LT(test::relativeL2(getBins(plainSonar(model), flat), bins), 5e-3) << "(128, 128, 255) leans by 0.3 deg";
+        EXPECT_GT(test::relativeL2(getBins(plainSonar(model)), bins), 0.01);
     }
 }
 
@@ -197,8 +197,8 @@ TEST(OmissionTest, OneFrustumMatchesSeveral) {
     two.field_of_view_deg = two.beam_count = 62;
     EXPECT_EQ(findOmitted(one, "further slabs")->value, 60);
     EXPECT_FALSE(findOmitted(two, "further slabs"));
-    const auto floor = test::sceneOf({test::ground(-5)});
-    const Bins narrow = binsOf(one, floor), wide = binsOf(two, floor);
+    const auto floor = test::makeScene({test::ground(-5)});
+    const Bins narrow = getBins(one, floor), wide = getBins(two, floor);
     EXPECT_LT(test::relativeL2(narrow, {wide.begin() + 400, wide.end() - 400}), 1e-3) << "beams 1 to 60 of 62";
 }
 
@@ -209,7 +209,7 @@ TEST(OmissionTest, AheadConesAreNearlyPlanes) {
     conical.beam_geometry = BeamGeometry::Conical;
     const double widest =
         1 / std::cos(types::radians(20)) - 1;  // of the cone against the plane, at the aperture's edge
-    const Bins flat = binsOf(planar, unmapped()), cone = binsOf(conical, unmapped());
+    const Bins flat = getBins(planar, unmapped()), cone = getBins(conical, unmapped());
     EXPECT_LT(test::relativeL2(cone, flat), widest);
     EXPECT_NE(cone, flat);
 }
@@ -235,9 +235,9 @@ TEST(OmissionTest, MotionWithinAPingIsOmittedBelowASpeed) {
     SonarConfig at_rest = plainSonar();
     at_rest.device = "";
     at_rest.visibility = Visibility::Cpu;
-    const Bins without = binsOf(at_rest);
+    const Bins without = getBins(at_rest);
     at_rest.motion_in_ping = true;
-    EXPECT_EQ(binsOf(at_rest), without);
+    EXPECT_EQ(getBins(at_rest), without);
 }
 
 /** Sonars that need each feature, ray-traced and rasterised. */
@@ -295,7 +295,7 @@ TEST(OmissionTest, EachFeatureRendersByItsPlan) {
         for (const types::GeometryPtr& geometry : {types::GeometryPtr(test::surfaces()), unmapped(), measured()}) {
             SonarRenderer renderer(config, geometry, options);
             types::Sonar ping;
-            renderer.render(test::snapshotOf(geometry, {}, 0.1, 0.15), ping);
+            renderer.render(test::makeSnapshot(geometry, {}, 0.1, 0.15), ping);
             const RenderPlan& plan = renderer.renderPlan();
             for (const std::string& name : plan.featureNames()) seen.insert(name);
             const bool drew = std::ranges::count(plan.passes, Pass::Surface) == 1;

@@ -17,7 +17,7 @@ float uintBitsToFloat(uint32_t bits) { return std::bit_cast<float>(bits); }
 #include "shaders/pair.glsl"
 #undef precise
 
-double valueOf(Pair pair) { return static_cast<double>(pair.high) + static_cast<double>(pair.low); }
+double getValue(Pair pair) { return static_cast<double>(pair.high) + static_cast<double>(pair.low); }
 
 /** Numbers of any sign between 1e-6 and 1e6, as pairs and as doubles. */
 struct RandomPairs {
@@ -27,7 +27,7 @@ struct RandomPairs {
         const double size = std::pow(10, exponent(random));
         return sign(random) < 0 ? -size : size;
     }
-    static Pair pairOf(double number) {
+    static Pair readPair(double number) {
         const auto high = static_cast<float>(number);
         return {high, static_cast<float>(number - static_cast<double>(high))};
     }
@@ -38,21 +38,21 @@ TEST(PairTest, SumsOfTwoFloatsAreExact) {
     for (int i = 0; i < 10000; ++i) {
         const auto a = static_cast<float>(pairs.number()), b = static_cast<float>(pairs.number());
         const double sum = static_cast<double>(a) + static_cast<double>(b);
-        EXPECT_NEAR(valueOf(exactSum(a, b)), sum, std::abs(sum) * 0x1p-52) << a << " + " << b;
+        EXPECT_NEAR(getValue(exactSum(a, b)), sum, std::abs(sum) * 0x1p-52) << a << " + " << b;
     }
 }
 
 TEST(PairTest, ArithmeticHas44Bits) {
     RandomPairs pairs;
     for (int i = 0; i < 10000; ++i) {
-        const Pair a = RandomPairs::pairOf(pairs.number()), b = RandomPairs::pairOf(pairs.number());
-        const double x = valueOf(a), y = valueOf(b), maximum = std::max(std::abs(x), std::abs(y));
-        EXPECT_NEAR(valueOf(sumOf(a, b)), x + y, maximum * 0x1p-44);
-        EXPECT_NEAR(valueOf(product(a, b)), x * y, std::abs(x * y) * 0x1p-44);
-        EXPECT_NEAR(valueOf(quotient(a, b)), x / y, std::abs(x / y) * 0x1p-44);
-        EXPECT_EQ(valueOf(negative(a)), -x);
+        const Pair a = RandomPairs::readPair(pairs.number()), b = RandomPairs::readPair(pairs.number());
+        const double x = getValue(a), y = getValue(b), maximum = std::max(std::abs(x), std::abs(y));
+        EXPECT_NEAR(getValue(computeSum(a, b)), x + y, maximum * 0x1p-44);
+        EXPECT_NEAR(getValue(product(a, b)), x * y, std::abs(x * y) * 0x1p-44);
+        EXPECT_NEAR(getValue(quotient(a, b)), x / y, std::abs(x / y) * 0x1p-44);
+        EXPECT_EQ(getValue(negative(a)), -x);
         if (x > 0) {
-            EXPECT_NEAR(valueOf(root(a)), std::sqrt(x), std::sqrt(x) * 0x1p-44);
+            EXPECT_NEAR(getValue(root(a)), std::sqrt(x), std::sqrt(x) * 0x1p-44);
         }
     }
 }
@@ -61,9 +61,9 @@ TEST(PairTest, TheDifferenceToACloseOriginHasAllBitsOfAFloat) {
     RandomPairs pairs;
     for (int i = 0; i < 10000; ++i) {
         const double number = pairs.number();
-        const Pair pair = RandomPairs::pairOf(number);
+        const Pair pair = RandomPairs::readPair(number);
         const auto origin = static_cast<float>(number * (1 + 1e-4 * i / 10000));
-        const double expected = valueOf(pair) - static_cast<double>(origin);
+        const double expected = getValue(pair) - static_cast<double>(origin);
         EXPECT_NEAR(static_cast<double>(beyond(pair, origin)), expected, std::abs(expected) * 0x1p-23) << number;
     }
 }

@@ -7,7 +7,7 @@
 
 #include "tests/sonar/BeamCut.hpp"
 #include "tests/support/ClosedForms.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -17,14 +17,14 @@ namespace insonify::sonar {
 namespace {
 
 using acoustics::Weighting;
-using test::everyWay;
+using test::everyRenderer;
 using test::expectForm;
-using test::lawOf;
-using test::pingOf;
+using test::getLaw;
+using test::makePing;
 using types::radians;
 
 SonarConfig patternedSonar(double fov_deg, int beams, double bin, int bins) {
-    return test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = bins, .bin = bin, .rows = 512, .columns = 2});
+    return test::getSonar({.beams = beams, .width_deg = fov_deg, .bins = bins, .bin = bin, .rows = 512, .columns = 2});
 }
 
 /** Form 3 weighted by a share for each elevation: a flat bottom under a thin beam that looks down by `pitch`, or under
@@ -44,20 +44,21 @@ test::Form weightedBottom(double height, double pitch, double delta, const std::
 /** A bottom echoes by the two-way pattern in elevation, and not by patterns that differ. */
 void expectElevationPattern(SonarConfig config, double sent_deg, double received_deg, double height, double pitch,
                             double delta) {
-    config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, sent_deg);
-    config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, received_deg);
+    config.beam_pattern.emplace().transmit.elevation = getLaw(Weighting::Gaussian, sent_deg);
+    config.beam_pattern->receive.elevation = getLaw(Weighting::Gaussian, received_deg);
     config.beam_pattern->floor_db = -80;
     const acoustics::BeamPattern sent(*config.beam_pattern->transmit.elevation),
         received(*config.beam_pattern->receive.elevation);
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-height))}), {}, 0, pitch);
-    const auto formOf = [&](double tilt, const auto& share) { return weightedBottom(height, tilt, delta, share); };
+    const auto snapshot =
+        test::makeSnapshot(test::makeScene({test::ground(static_cast<float>(-height))}), {}, 0, pitch);
+    const auto getForm = [&](double tilt, const auto& share) { return weightedBottom(height, tilt, delta, share); };
     const auto both_ways = [&](double e) { return sent.power(e) * received.power(e); };
-    const auto right = formOf(pitch, both_ways);
-    std::vector<test::Form> wrong = {formOf(pitch, [&](double e) { return sent.power(e); }),
-                                     formOf(pitch, [](double) { return 1.0; })};
-    if (pitch != 0) wrong.push_back(formOf(0, both_ways));
-    for (const SonarConfig& way : everyWay(config)) {
-        const types::Sonar ping = pingOf(way, snapshot);
+    const auto right = getForm(pitch, both_ways);
+    std::vector<test::Form> wrong = {getForm(pitch, [&](double e) { return sent.power(e); }),
+                                     getForm(pitch, [](double) { return 1.0; })};
+    if (pitch != 0) wrong.push_back(getForm(0, both_ways));
+    for (const SonarConfig& way : everyRenderer(config)) {
+        const types::Sonar ping = makePing(way, snapshot);
         const test::Deviation off = test::deviation(ping, right);
         EXPECT_LT(off.relative_l2, 0.01) << off;
         EXPECT_LT(off.ripple, 0.01) << off;
@@ -77,32 +78,32 @@ TEST(PatternedPingTest, APitchedBottomEchoesByThePatternInElevation) {
 TEST(PatternedPingTest, ABottomEchoesByThePatternsWholeWidthInAzimuth) {
     SonarConfig config = patternedSonar(60, 30, 0.1, 200);
     config.beam_height_deg = 40;
-    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
+    config.beam_pattern.emplace().receive.azimuth = getLaw(Weighting::Hann, 3);
     config.beam_pattern->floor_db = -90;
     const acoustics::BeamPattern received(*config.beam_pattern->receive.azimuth);
     double delta = 0;
     for (double azimuth = -std::numbers::pi / 2; azimuth < std::numbers::pi / 2; azimuth += 1e-5)
         delta += 1e-5 * received.power(azimuth);
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5)}));
-    for (const SonarConfig& way : everyWay(config))
-        expectForm(pingOf(way, snapshot), test::flatBottom(5, radians(20), delta),
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::ground(-5)}));
+    for (const SonarConfig& way : everyRenderer(config))
+        expectForm(makePing(way, snapshot), test::flatBottom(5, radians(20), delta),
                    test::flatBottom(5, radians(20), radians(2)));
 }
 
 TEST(PatternedPingTest, APulseOfOneBinChangesNoBit) {
     SonarConfig config = patternedSonar(60, 16, 0.1, 300);
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5), test::wall(20)}), {}, 0.1, 0.2);
-    const types::Sonar plain = pingOf(config, snapshot);
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::ground(-5), test::wall(20)}), {}, 0.1, 0.2);
+    const types::Sonar plain = makePing(config, snapshot);
     acoustics::PulseConfig pulse;
     pulse.duration_us = 200;  // a bin of 0.1 m at 1000 m/s
     config.pulse = pulse;
-    EXPECT_EQ(pingOf(config, snapshot).bins, plain.bins);
+    EXPECT_EQ(makePing(config, snapshot).bins, plain.bins);
     config.pulse->duration_us = 600;
-    EXPECT_NE(pingOf(config, snapshot).bins, plain.bins);
+    EXPECT_NE(makePing(config, snapshot).bins, plain.bins);
 }
 
 TEST(PatternedPingTest, ThePlanStatesBeamFormingAndPulseSpreading) {
-    const auto geometry = test::sceneOf({test::ground(-5)});
+    const auto geometry = test::makeScene({test::ground(-5)});
     SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     const RenderPlan plain = makeRenderPlan(config, *geometry);
     EXPECT_FALSE(plain.has(Pass::Beamform) || plain.has(Pass::Pulse));
@@ -111,7 +112,7 @@ TEST(PatternedPingTest, ThePlanStatesBeamFormingAndPulseSpreading) {
         EXPECT_EQ(plain.findOmitted(effect)->reason, Reason::NotConfigured);
     }
     EXPECT_EQ(plain.cells.size(), plain.beams.size());
-    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
+    config.beam_pattern.emplace().receive.azimuth = getLaw(Weighting::Hann, 3);
     config.pulse.emplace().duration_us = 90;  // resolves 0.045 m, in bins of 0.1 m
     const RenderPlan formed = makeRenderPlan(config, *geometry);
     EXPECT_TRUE(formed.has(Pass::Beamform));
@@ -127,12 +128,12 @@ TEST(PatternedPingTest, ThePlanStatesBeamFormingAndPulseSpreading) {
 }
 
 /** Returns the echo of a small disc straight ahead in a fan of close beams. */
-BeamCut cutOf(const acoustics::BeamLaw& law) {
+BeamCut makeCut(const acoustics::BeamLaw& law) {
     SonarConfig config = patternedSonar(24, 601, 0.5, 24);
     config.beam_height_deg = 2;
     config.quality.rows = 64;
     config.beam_pattern.emplace().receive.azimuth = law;
-    const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(10.25f, 0.01f)}, -10)));
+    const types::Sonar ping = makePing(config, test::makeSnapshot(test::makeScene({test::disc(10.25f, 0.01f)}, -10)));
     std::vector<double> level;
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
         const auto first = ping.bins.begin() + static_cast<long>(beam * ping.bin_count);
@@ -146,7 +147,7 @@ TEST(PatternedPingTest, ATargetSweptAcrossABeamShowsTheTableOfWeightings) {
         if (row.weighting == Weighting::Piston) continue;
         acoustics::BeamLaw law = row.law();
         law.width_deg = 3;
-        cutOf(law).expect(row);
+        makeCut(law).expect(row);
     }
 }
 
@@ -174,9 +175,9 @@ TEST(PatternedPingTest, ATargetSweptAcrossAMeasuredBeamShowsItsTable) {
     config.quality.rows = 256;
     config.quality.columns_per_beam = 4;
     config.beam_pattern.emplace().receive.azimuth = beam.law();
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::disc(10.25f, 0.004f)}, -10));
-    for (const SonarConfig& way : everyWay(config)) {
-        const types::Sonar ping = pingOf(way, snapshot);
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::disc(10.25f, 0.004f)}, -10));
+    for (const SonarConfig& way : everyRenderer(config)) {
+        const types::Sonar ping = makePing(way, snapshot);
         std::vector<double> energy;
         for (size_t k = 0; k < ping.beam_count; ++k) {
             const auto first = ping.bins.begin() + static_cast<long>(k * ping.bin_count);
@@ -196,8 +197,8 @@ TEST(PatternedPingTest, ATargetSweptAcrossAMeasuredBeamShowsItsTable) {
 
 TEST(PatternedPingTest, AStrongTargetsSidelobesAreAnArcAcrossTheFan) {
     SonarConfig config = patternedSonar(90, 90, 0.2, 100);
-    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 1);
-    const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(10.1f, 0.1f)})));
+    config.beam_pattern.emplace().receive.azimuth = getLaw(Weighting::Uniform, 1);
+    const types::Sonar ping = makePing(config, test::makeSnapshot(test::makeScene({test::disc(10.1f, 0.1f)})));
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
         const auto first = ping.bins.begin() + static_cast<long>(beam * ping.bin_count);
         EXPECT_GT(first[50], 0) << beam;
@@ -211,7 +212,7 @@ TEST(PatternedPingTest, AChirpsEchoHasTheWidthOfItsBandwidthAndTheRightRange) {
     config.beam_height_deg = 2;
     config.quality.columns_per_beam = 64;
     config.pulse.emplace().bandwidth_khz = 5;  // c / 2B = 0.1 m
-    const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(6.005f, 0.02f)})));
+    const types::Sonar ping = makePing(config, test::makeSnapshot(test::makeScene({test::disc(6.005f, 0.02f)})));
     const auto top = std::max_element(ping.bins.begin(), ping.bins.end()) - ping.bins.begin();
     EXPECT_NEAR((static_cast<double>(top) + 0.5) * 0.01, 6.005, 0.01);
     long k = top;

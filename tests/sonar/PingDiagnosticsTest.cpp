@@ -34,7 +34,7 @@ struct PingDiagnosticsTest : testing::Test {
     /** Renders a number of pings of a scene, with the sonar rotated by `yaw_deg`. */
     void ping(const types::GeometryPtr& geometry, double yaw_deg, int count,
               const std::vector<types::PointTarget>& targets = {}) {
-        types::Snapshot snapshot = test::snapshotOf(geometry, {}, types::radians(yaw_deg));
+        types::Snapshot snapshot = test::makeSnapshot(geometry, {}, types::radians(yaw_deg));
         snapshot.targets = targets;
         ping(snapshot, count);
     }
@@ -74,7 +74,7 @@ TEST_F(PingDiagnosticsTest, ATargetAloneIsAnEcho) {
 }
 
 TEST_F(PingDiagnosticsTest, WarnsAboutASonarInsideAMeshInsteadOfSilence) {
-    const auto hull = test::sceneOf({test::sphere(0.05f, 12)});  // nearer than range_min
+    const auto hull = test::makeScene({test::sphere(0.05f, 12)});  // nearer than range_min
     ping(hull, 0, 40);
     EXPECT_THAT(reported_,
                 ElementsAre(HasSubstr("is inside of object_0, which has its faces outward: the sonar is at [0, 0, "
@@ -82,7 +82,7 @@ TEST_F(PingDiagnosticsTest, WarnsAboutASonarInsideAMeshInsteadOfSilence) {
 }
 
 TEST_F(PingDiagnosticsTest, FindsMeshesThatDeformWhereTheyArePosed) {
-    types::Snapshot scene = test::snapshotOf(test::sceneOf({test::jointed(test::sphere(0.5f, 12))}));
+    types::Snapshot scene = test::makeSnapshot(test::makeScene({test::jointed(test::sphere(0.5f, 12))}));
     test::pose(scene, 0, glm::translate(glm::dmat4(1), {0, 7, 0}));
     ping(scene, 40);  // at rest it would be around the sonar
     EXPECT_THAT(reported_,
@@ -97,7 +97,7 @@ TEST_F(PingDiagnosticsTest, FindsMeshesThatDeformWhereTheyArePosed) {
 /** The nearest point and the extent of a scene, as the text of a silent sonar needs them on the thread of its pings. */
 void describeScene(const types::Snapshot& scene, types::NearestPoint& nearest, types::Extent& extent) {
     nearest = types::nearestPoint(scene, scene.sonar.position);
-    extent = types::extentOf(scene);
+    extent = types::getExtent(scene);
 }
 
 TEST(LargeSceneTest, ASilentSonarLooksAtAShareOfTheTriangles) {
@@ -111,8 +111,9 @@ TEST(LargeSceneTest, ASilentSonarLooksAtAShareOfTheTriangles) {
     double by_parts = 0, by_all = 0;
     for (int trial = 0; trial < 12; ++trial) {
         const glm::dvec3 at = 700.0 * glm::dvec3(any(random), any(random), 0.1 * any(random));
-        types::Snapshot scene = test::snapshotOf(test::sceneOf({parts, test::sphere(3, 20)}, 0, {{}, {1, 2, 3}}), at);
-        types::Snapshot all = test::snapshotOf(test::sceneOf({whole, test::sphere(3, 20)}, 0, {{}, {1, 2, 3}}), at);
+        types::Snapshot scene =
+            test::makeSnapshot(test::makeScene({parts, test::sphere(3, 20)}, 0, {{}, {1, 2, 3}}), at);
+        types::Snapshot all = test::makeSnapshot(test::makeScene({whole, test::sphere(3, 20)}, 0, {{}, {1, 2, 3}}), at);
         glm::dmat4 place(1);
         if (trial % 3 != 0) place = glm::rotate(place, any(random), glm::dvec3(any(random), any(random), 1));
         if (trial % 3 == 2) place = glm::scale(place, glm::dvec3(1, -0.5, 2));

@@ -78,18 +78,18 @@ struct FollowerEffect final : Effect {
 TEST(PingEffectTest, RaysAndCellsAreVisitedOnceInEveryPing) {
     addEffect(std::make_unique<FollowerEffect>());
     const types::Snapshot snapshot =
-        test::snapshotOf(test::sceneOf({test::ground(-3), test::sphere(1, 24)}, 0, {{}, {8, 0, -1}}));
+        test::makeSnapshot(test::makeScene({test::ground(-3), test::sphere(1, 24)}, 0, {{}, {8, 0, -1}}));
     std::mt19937 random(7);
     const auto upTo = [&](int max) { return std::uniform_int_distribution(1, max)(random); };
     for (int i = 0; i < 30; ++i) {
-        SonarConfig config = test::sonarOf({.beams = upTo(20),
-                                            .width_deg = 60,
-                                            .height_deg = 40,
-                                            .bins = 100,
-                                            .rows = upTo(1500),
-                                            .columns = upTo(7)});
+        SonarConfig config = test::getSonar({.beams = upTo(20),
+                                             .width_deg = 60,
+                                             .height_deg = 40,
+                                             .bins = 100,
+                                             .rows = upTo(1500),
+                                             .columns = upTo(7)});
         config.visibility = Visibility::Cpu;
-        const types::Sonar plain = test::pingOf(config, snapshot);
+        const types::Sonar plain = test::makePing(config, snapshot);
         const bool hides = i % 2, records = i % 3 == 0;
         config.effects["follower"]["hides"] = hides;
         SonarRenderer renderer(config, snapshot.geometry, {.threads = upTo(4)});
@@ -156,7 +156,7 @@ struct BreakerEffect final : Effect {
 
 SonarConfig smallSonar(bool coherent) {
     SonarConfig config =
-        test::sonarOf({.beams = 4, .width_deg = 20, .height_deg = 20, .bins = 40, .rows = 40, .columns = 2});
+        test::getSonar({.beams = 4, .width_deg = 20, .height_deg = 20, .bins = 40, .rows = 40, .columns = 2});
     config.visibility = Visibility::Cpu;
     if (coherent) {
         config.frequency_khz = 500;
@@ -170,10 +170,10 @@ std::string failure(Wrong wrong, bool coherent) {
     addEffect(std::make_unique<BreakerEffect>());
     SonarConfig config = smallSonar(coherent);
     config.effects["breaker"]["wrong"] = static_cast<double>(wrong);
-    const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::wall(3)}));
+    const types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::wall(3)}));
     SonarRenderer renderer(config, snapshot.geometry, {.threads = 2});
     types::Sonar ping;
-    return test::errorOf<types::CheckFailure>([&] { renderer.render(snapshot, ping); });
+    return test::computeError<types::CheckFailure>([&] { renderer.render(snapshot, ping); });
 }
 
 TEST(SeamCheckTest, WhatAnEffectDoesWrongIsFoundAtTheSeam) {
@@ -196,17 +196,17 @@ TEST(SeamCheckTest, APoseThatIsNoneIsFoundWhateverDrawsTheScene) {
         for (const bool turned : {true, false}) {
             SonarConfig config = smallSonar(false);
             config.visibility = visibility;
-            types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::wall(3)}));
+            types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::wall(3)}));
             SonarRenderer renderer(config, snapshot.geometry);
             (turned ? snapshot.sonar.orientation.x : snapshot.sonar.position.y) = std::nan("");
             types::Sonar ping;
-            EXPECT_THAT(test::errorOf<types::CheckFailure>([&] { renderer.render(snapshot, ping); }),
+            EXPECT_THAT(test::computeError<types::CheckFailure>([&] { renderer.render(snapshot, ping); }),
                         testing::EndsWith(turned ? ": nan" : ", nan, 0)"));
         }
 }
 
 TEST(SeamCheckTest, SumsThatOverflowAndSizesThatDifferAreFound) {
-    const types::GeometryPtr scene = test::sceneOf({test::wall(3)});
+    const types::GeometryPtr scene = test::makeScene({test::wall(3)});
     const RenderPlan plan = makeRenderPlan(smallSonar(false), *scene);
     const EchoRules rules = makeEchoRules(plan, PingEffects(plan, *scene));
     const BinLevels levels(plan.config, plan.grid);
@@ -214,7 +214,7 @@ TEST(SeamCheckTest, SumsThatOverflowAndSizesThatDifferAreFound) {
     std::vector<float> bins(40), more(41);
     EXPECT_FALSE(levels.fill(rules, sums.data(), 0.01, bins));
     const auto failure = [&](const std::vector<uint64_t>& of, double angle, std::span<float> to) {
-        return test::errorOf<types::CheckFailure>([&] { levels.fill(rules, of.data(), angle, to); });
+        return test::computeError<types::CheckFailure>([&] { levels.fill(rules, of.data(), angle, to); });
     };
     EXPECT_THAT(failure(sums, 0.01, more), testing::EndsWith(": 41, 40"));
     EXPECT_THAT(failure(sums, 0, bins), testing::EndsWith("solid_angle: 0"));
@@ -222,11 +222,11 @@ TEST(SeamCheckTest, SumsThatOverflowAndSizesThatDifferAreFound) {
     TruthTable table(2, 40);
     types::SonarTruth truth;
     truth.object.resize(80);
-    EXPECT_THAT(test::errorOf<types::CheckFailure>([&] { table.report(2, 0, truth, {}); }),
+    EXPECT_THAT(test::computeError<types::CheckFailure>([&] { table.report(2, 0, truth, {}); }),
                 testing::EndsWith("beam, bins_, used_.size(): 2, 40, 80"));
-    EXPECT_THAT(test::errorOf<types::CheckFailure>([&] { table.report(1, 2, truth, {}); }),
+    EXPECT_THAT(test::computeError<types::CheckFailure>([&] { table.report(1, 2, truth, {}); }),
                 testing::EndsWith(": 2, 40, 80"));
-    EXPECT_THAT(test::errorOf<types::CheckFailure>([&] { table.merge(0, TruthTable(2, 41), 0); }),
+    EXPECT_THAT(test::computeError<types::CheckFailure>([&] { table.merge(0, TruthTable(2, 41), 0); }),
                 testing::EndsWith(": 41, 40"));
 }
 

@@ -20,7 +20,7 @@ types::Material sand() {
     return material;
 }
 
-types::Geometry sceneOf(std::vector<types::Material> materials) {
+types::Geometry makeScene(std::vector<types::Material> materials) {
     types::Geometry geometry;
     geometry.materials = std::move(materials);
     return geometry;
@@ -45,7 +45,7 @@ SonarConfig quietSonar() {
 }
 
 TEST(PlanTest, ThePlainPhysicalSonarCompilesNothingElseAndStatesWhy) {
-    const types::Plan plan = makePlan(quietSonar(), sceneOf({sand()}));
+    const types::Plan plan = makePlan(quietSonar(), makeScene({sand()}));
     EXPECT_THAT(plan.features, ElementsAre("physical"));
     EXPECT_THAT(plan.passes, ElementsAre("cull", "surface", "deposit", "beams"));
     EXPECT_THAT(plan.notices, IsEmpty());
@@ -76,7 +76,7 @@ TEST(PlanTest, FeaturesOfTheSceneOrConfigurationAreNotOmitted) {
         SonarConfig config = quietSonar();
         types::Material material = sand();
         c.change(config, material);
-        const types::Plan plan = makePlan(config, sceneOf({material}));
+        const types::Plan plan = makePlan(config, makeScene({material}));
         EXPECT_EQ(reason(plan, c.effect), "") << c.effect;
         if (c.feature) {
             EXPECT_THAT(plan.features, Contains(c.feature)) << c.effect;
@@ -92,31 +92,31 @@ TEST(PlanTest, MultipathIsAPassIfAnythingReflects) {
     steel.roughness_slope = 0.1f;
     const auto passes = [&](int bounces) {
         config.multipath->bounces = bounces;
-        return makePlan(config, sceneOf({sand(), steel})).passes;
+        return makePlan(config, makeScene({sand(), steel})).passes;
     };
     config.multipath.emplace().bounces = 0;
-    EXPECT_EQ(reason(makePlan(config, sceneOf({steel})), "multipath"), "bounces is 0");
+    EXPECT_EQ(reason(makePlan(config, makeScene({steel})), "multipath"), "bounces is 0");
     EXPECT_THAT(passes(1), Not(Contains("paths")));
-    EXPECT_THAT(reason(makePlan(config, sceneOf({steel})), "multipath"), HasSubstr("no material is `mirror: true`"));
+    EXPECT_THAT(reason(makePlan(config, makeScene({steel})), "multipath"), HasSubstr("no material is `mirror: true`"));
     EXPECT_THAT(passes(2), ElementsAre("cull", "rays", "deposit", "paths", "beams"));
     steel.mirror = true;
     EXPECT_THAT(passes(1), Contains("paths"));
     steel = sand();
     config.multipath->surface.emplace();
     EXPECT_THAT(passes(1), Contains("paths"));
-    EXPECT_EQ(reason(makePlan(config, sceneOf({sand()})), "multipath"), "");
+    EXPECT_EQ(reason(makePlan(config, makeScene({sand()})), "multipath"), "");
 }
 
 TEST(PlanTest, ThePublishedModelOmitsThePhysics) {
     SonarConfig config = quietSonar();
     config.model = Model::Cerqueira2017;
     config.absorption.emplace().db_per_m = 0.2;
-    const types::Plan plan = makePlan(config, sceneOf({sand()}));
+    const types::Plan plan = makePlan(config, makeScene({sand()}));
     EXPECT_THAT(plan.features, ElementsAre("cerqueira2017", "absorption"));
     for (const char* effect : {"spreading", "backscatter by material"})
         EXPECT_THAT(reason(plan, effect), HasSubstr("means of S(n.d)")) << effect;
     config.absorption->db_per_m = 0;
-    EXPECT_THAT(makePlan(config, sceneOf({sand()})).features, ElementsAre("cerqueira2017"));
+    EXPECT_THAT(makePlan(config, makeScene({sand()})).features, ElementsAre("cerqueira2017"));
 }
 
 TEST(PlanTest, UsesTheMinNumberOfFrustaThatCoverTheFan) {
@@ -128,22 +128,22 @@ TEST(PlanTest, UsesTheMinNumberOfFrustaThatCoverTheFan) {
          {Case{3, 1}, Case{60, 1}, Case{61, 2}, Case{120, 2}, Case{130, 3}, Case{180, 3}, Case{360, 6}}) {
         SonarConfig config = quietSonar();
         config.field_of_view_deg = c.fov;
-        EXPECT_EQ(makePlan(config, sceneOf({sand()})).slabs, c.frusta) << c.fov << " deg";
+        EXPECT_EQ(makePlan(config, makeScene({sand()})).slabs, c.frusta) << c.fov << " deg";
     }
 }
 
 TEST(PlanTest, AbsorptionWithinABinIsBounded) {
     SonarConfig config = quietSonar();
     config.absorption.emplace().db_per_m = 0.02;  // beta = 0.00921 1/m, bins of 0.15 m
-    types::Plan plan = makePlan(config, sceneOf({sand()}));
+    types::Plan plan = makePlan(config, makeScene({sand()}));
     EXPECT_EQ(reason(plan, "absorption inside a bin"), "beta dR/2 = 6.9e-04 < 1e-03");
     EXPECT_THAT(plan.notices, IsEmpty());
     config.absorption->db_per_m = 0.2;
-    plan = makePlan(config, sceneOf({sand()}));
+    plan = makePlan(config, makeScene({sand()}));
     EXPECT_EQ(reason(plan, "absorption inside a bin"), "beta dR/2 = 6.9e-03, 0.03 dB to either side");
     EXPECT_THAT(plan.notices, IsEmpty());
     config.absorption->db_per_m = 2;
-    plan = makePlan(config, sceneOf({sand()}));
+    plan = makePlan(config, makeScene({sand()}));
     EXPECT_THAT(plan.notices, ElementsAre(HasSubstr("changes within a bin by 0.3 dB")));
 }
 
@@ -153,7 +153,7 @@ TEST(PlanTest, ReportsMaterialsWithoutValuesAndTooLoudMaterialsOnce) {
     rope.name = "Rope";
     mirror.name = "Mirror";
     mirror.lambert_db = 0;
-    const types::Plan plan = makePlan(quietSonar(), sceneOf({concrete, sand(), rope, mirror}));
+    const types::Plan plan = makePlan(quietSonar(), makeScene({concrete, sand(), rope, mirror}));
     EXPECT_THAT(plan.notices,
                 ElementsAre(HasSubstr("2 of 4 materials have no acoustic values and are medium sand, -16.7 "
                                       "dB: 'Concrete', 'Rope'"),
@@ -186,7 +186,7 @@ TEST(PlanTest, HasNoticesOfTheConfiguration) {
         SonarConfig config = quietSonar();
         c.change(config);
         EXPECT_THAT(configNotices(config), Contains(HasSubstr(c.words)));
-        EXPECT_THAT(makePlan(config, sceneOf({sand()})).notices, Contains(HasSubstr(c.words)));
+        EXPECT_THAT(makePlan(config, makeScene({sand()})).notices, Contains(HasSubstr(c.words)));
     }
     EXPECT_THAT(configNotices(quietSonar()), IsEmpty());
 }

@@ -12,7 +12,7 @@
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/sonar/BeamCut.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -23,22 +23,22 @@ namespace {
 
 using acoustics::Weighting;
 using std::numbers::pi;
-using test::everyWay;
-using test::lawOf;
+using test::everyRenderer;
+using test::getLaw;
+using test::makePing;
 using test::openWater;
-using test::pingOf;
 using types::radians;
 
 /** Bins of 0.1 m to 20 m, rays. */
 SonarConfig targetSonar(double fov_deg, int beams) {
-    SonarConfig config = test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = 200, .rows = 16, .columns = 2});
+    SonarConfig config = test::getSonar({.beams = beams, .width_deg = fov_deg, .bins = 200, .rows = 16, .columns = 2});
     config.visibility = Visibility::Cpu;
     return config;
 }
 
 /** A level sonar at the origin with one target of 0 dB. */
 types::Snapshot withPoint(types::GeometryPtr geometry, glm::dvec3 position, double strength_db = 0) {
-    types::Snapshot snapshot = test::snapshotOf(std::move(geometry));
+    types::Snapshot snapshot = test::makeSnapshot(std::move(geometry));
     snapshot.targets = {{position, strength_db}};
     return snapshot;
 }
@@ -49,7 +49,7 @@ glm::dvec3 towards(double azimuth_deg, double elevation_deg, double range) {
 }
 
 /** Returns the pattern of one beam in a direction, only by the laws of a configuration. */
-double patternOf(const SonarConfig& config, double bearing, double azimuth, double elevation) {
+double findPattern(const SonarConfig& config, double bearing, double azimuth, double elevation) {
     const auto power = [](const std::optional<acoustics::BeamLaw>& law, double angle, double axis) {
         return law ? acoustics::BeamPattern(*law).power(angle, axis) : 1.0;
     };
@@ -63,7 +63,7 @@ double patternOf(const SonarConfig& config, double bearing, double azimuth, doub
 }
 
 /** Returns the mean of the pulse over a bin, by 2000 points. */
-double shareOf(const SonarConfig& config, const BinGrid& grid, int bin, double range) {
+double computeShare(const SonarConfig& config, const BinGrid& grid, int bin, double range) {
     if (!config.pulse) return range >= grid.edge(bin) && range < grid.edge(bin + 1);
     const acoustics::Pulse pulse(*config.pulse, grid.speed_of_sound);
     double sum = 0;
@@ -72,15 +72,16 @@ double shareOf(const SonarConfig& config, const BinGrid& grid, int bin, double r
 }
 
 /** The echo of a target in a ping by the sonar equation, without spreading and its strength. */
-std::vector<double> shapeOf(const SonarConfig& config, const types::Sonar& ping, const glm::dvec3& at) {
+std::vector<double> getShape(const SonarConfig& config, const types::Sonar& ping, const glm::dvec3& at) {
     const BinGrid grid = makeBinGrid(config);
     const double r = glm::length(at), alpha = config.absorption->db_per_m.value();
     std::vector<double> shares(ping.bin_count), shape(ping.bins.size());
     for (int k = 0; k < grid.bin_count; ++k)
         if (std::abs(grid.centre(k) - r) < 1.2)
-            shares[static_cast<size_t>(k)] = shareOf(config, grid, k, r) * std::pow(10, -0.2 * alpha * r);
+            shares[static_cast<size_t>(k)] = computeShare(config, grid, k, r) * std::pow(10, -0.2 * alpha * r);
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
-        const double received = patternOf(config, ping.bearings[beam].rad, std::atan2(at.y, at.x), std::asin(at.z / r));
+        const double received =
+            findPattern(config, ping.bearings[beam].rad, std::atan2(at.y, at.x), std::asin(at.z / r));
         if (10 * std::log10(received) < config.beam_pattern->floor_db) continue;
         for (size_t k = 0; k < ping.bin_count; ++k) shape[beam * ping.bin_count + k] = received * shares[k];
     }
@@ -88,7 +89,7 @@ std::vector<double> shapeOf(const SonarConfig& config, const types::Sonar& ping,
 }
 
 /** Returns the max deviation of a bin from a shape at a level, for bins within 45 dB of the loudest bin [dB]. */
-double worstOf(const types::Sonar& ping, const std::vector<double>& shape, double level_db) {
+double findWorst(const types::Sonar& ping, const std::vector<double>& shape, double level_db) {
     const double quietest = *std::ranges::max_element(shape) * std::pow(10, -4.5);
     double worst = 0;
     for (size_t i = 0; i < shape.size(); ++i)
@@ -104,17 +105,17 @@ struct Law {
 const Law patterns[] = {
     {"hann",
      [](SonarConfig& c) {
-         c.beam_pattern->receive.azimuth = lawOf(Weighting::Hann, 3);
-         c.beam_pattern->transmit.elevation = lawOf(Weighting::Gaussian, 20);
+         c.beam_pattern->receive.azimuth = getLaw(Weighting::Hann, 3);
+         c.beam_pattern->transmit.elevation = getLaw(Weighting::Gaussian, 20);
      }},
     {"uniform, two way",
      [](SonarConfig& c) {
-         c.beam_pattern->receive = {lawOf(Weighting::Uniform, 4), lawOf(Weighting::Uniform, 15)};
-         c.beam_pattern->transmit = {lawOf(Weighting::Cosine, 60), lawOf(Weighting::Taylor, 25)};
+         c.beam_pattern->receive = {getLaw(Weighting::Uniform, 4), getLaw(Weighting::Uniform, 15)};
+         c.beam_pattern->transmit = {getLaw(Weighting::Cosine, 60), getLaw(Weighting::Taylor, 25)};
      }},
     {"conical",
      [](SonarConfig& c) {
-         c.beam_pattern->receive = {lawOf(Weighting::Taylor, 3), lawOf(Weighting::Hamming, 20)};
+         c.beam_pattern->receive = {getLaw(Weighting::Taylor, 3), getLaw(Weighting::Hamming, 20)};
          c.beam_geometry = BeamGeometry::Conical;
      }},
 };
@@ -155,11 +156,11 @@ TEST(PointTargetTest, HasTheLevelOfTheSonarEquationAtAnyPlaceInTheBeam) {
                 double worst = 0;
                 for (const glm::dvec3& at : places()) {
                     renderer.render(withPoint(geometry, at, -17.5), ping);
-                    const std::vector<double> shape = shapeOf(config, ping, at);
+                    const std::vector<double> shape = getShape(config, ping, at);
                     const double distance_db = 10 * std::log10(glm::length(at));
                     ASSERT_GT(*std::ranges::max_element(shape), 0);
-                    worst = std::max(worst, worstOf(ping, shape, -17.5 - 4 * distance_db));
-                    EXPECT_GT(worstOf(ping, shape, -17.5 - 2 * distance_db), 10) << "spread one way alone";
+                    worst = std::max(worst, findWorst(ping, shape, -17.5 - 4 * distance_db));
+                    EXPECT_GT(findWorst(ping, shape, -17.5 - 2 * distance_db), 10) << "spread one way alone";
                 }
                 EXPECT_LT(worst, 0.05) << pattern.name << ", " << pulse.name << ", " << absorption << " dB/m";
                 maximum = std::max(maximum, worst);
@@ -252,7 +253,7 @@ TEST(PointTargetTest, IsInOneBeamOnlyAtAnyBearing) {
     SonarConfig config = targetSonar(360, 12);
     const auto geometry = openWater();
     for (double azimuth = -180; azimuth < 180; azimuth += 7.3) {
-        const types::Sonar ping = pingOf(config, withPoint(geometry, towards(azimuth, 0, 5)));
+        const types::Sonar ping = makePing(config, withPoint(geometry, towards(azimuth, 0, 5)));
         EXPECT_EQ(std::ranges::count_if(ping.bins, [](float x) { return x > 0; }), 1) << azimuth;
     }
 }
@@ -267,7 +268,7 @@ BeamCut sweep(const SonarConfig& config, bool in_azimuth) {
     for (double angle = 0; angle < 12; angle += step) {
         const glm::dvec3 at = in_azimuth ? towards(angle, 0, 10.05) : towards(0, angle, 10.05);
         renderer.render(withPoint(geometry, at), ping);
-        level.push_back(test::sumOf(ping));
+        level.push_back(test::computeSum(ping));
     }
     return BeamCut(level, 0, step);
 }
@@ -286,52 +287,52 @@ TEST(PointTargetTest, ShowsTheTableOfWeightingsWhenSweptAcrossABeam) {
 
 TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureToTheFloor) {
     SonarConfig config = targetSonar(20, 10);
-    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
+    config.beam_pattern.emplace().receive.azimuth = getLaw(Weighting::Uniform, 2);
     const auto geometry = openWater();
     const auto outside = withPoint(geometry, towards(35.3, 0, 10.05));
-    const types::Sonar received = pingOf(config, outside);
+    const types::Sonar received = makePing(config, outside);
     const double top = *std::ranges::max_element(received.bins) * std::pow(10.05, 4);
     EXPECT_LT(10 * std::log10(top), -25);
     EXPECT_GT(10 * std::log10(top), -60);
     config.beam_pattern->floor_db = -20;
-    EXPECT_EQ(test::sumOf(pingOf(config, outside)), 0);
+    EXPECT_EQ(test::computeSum(makePing(config, outside)), 0);
 }
 
 TEST(PointTargetTest, IsSilentBelowRangeMinAndOnlyItsPulseReachesIntoTheRange) {
     SonarConfig config = targetSonar(20, 1);
     config.range_min = 2;
     const auto geometry = openWater();
-    EXPECT_EQ(test::sumOf(pingOf(config, withPoint(geometry, {1.999, 0, 0}))), 0);
-    EXPECT_GT(test::sumOf(pingOf(config, withPoint(geometry, {2.001, 0, 0}))), 0);
-    EXPECT_EQ(test::sumOf(pingOf(config, withPoint(geometry, {0, 0, 0}))), 0);
-    EXPECT_EQ(test::sumOf(pingOf(config, withPoint(geometry, {20.01, 0, 0}))), 0);
+    EXPECT_EQ(test::computeSum(makePing(config, withPoint(geometry, {1.999, 0, 0}))), 0);
+    EXPECT_GT(test::computeSum(makePing(config, withPoint(geometry, {2.001, 0, 0}))), 0);
+    EXPECT_EQ(test::computeSum(makePing(config, withPoint(geometry, {0, 0, 0}))), 0);
+    EXPECT_EQ(test::computeSum(makePing(config, withPoint(geometry, {20.01, 0, 0}))), 0);
     config.pulse.emplace().duration_us = 1000;  // half a metre
-    EXPECT_GT(test::sumOf(pingOf(config, withPoint(geometry, {20.2, 0, 0}))), 0);
-    EXPECT_EQ(test::sumOf(pingOf(config, withPoint(geometry, {20.3, 0, 0}))), 0);
+    EXPECT_GT(test::computeSum(makePing(config, withPoint(geometry, {20.2, 0, 0}))), 0);
+    EXPECT_EQ(test::computeSum(makePing(config, withPoint(geometry, {20.3, 0, 0}))), 0);
 }
 
 /** A plate of 1 m square to the x axis. */
 types::GeometryPtr plate(double x, double y = 0) {
-    return test::sceneOf({test::quad({0, -0.5f, -0.5f}, {0, 1, 0}, {0, 0, 1})}, 0, {{x, y, 0}});
+    return test::makeScene({test::quad({0, -0.5f, -0.5f}, {0, 1, 0}, {0, 0, 1})}, 0, {{x, y, 0}});
 }
 
 TEST(PointTargetTest, IsHiddenByObjectsInsideTheFanAndOutside) {
     SonarConfig config = targetSonar(40, 20);
-    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
-    for (const SonarConfig& way : everyWay(config)) {
-        const auto receivedOf = [&](const types::GeometryPtr& geometry, const glm::dvec3& at) {
+    config.beam_pattern.emplace().receive.azimuth = getLaw(Weighting::Uniform, 2);
+    for (const SonarConfig& way : everyRenderer(config)) {
+        const auto computeReceived = [&](const types::GeometryPtr& geometry, const glm::dvec3& at) {
             types::Snapshot with = withPoint(geometry, at, 20), without = with;
             without.targets.clear();
-            return test::sumOf(pingOf(way, with)) - test::sumOf(pingOf(way, without));
+            return test::computeSum(makePing(way, with)) - test::computeSum(makePing(way, without));
         };
-        const double open = receivedOf(openWater(), {10, 0, 0});
+        const double open = computeReceived(openWater(), {10, 0, 0});
         EXPECT_GT(open, 0);
-        EXPECT_EQ(receivedOf(plate(5), {10, 0, 0}), 0) << "before it";
-        EXPECT_NEAR(receivedOf(plate(10.5), {10, 0, 0}), open, 1e-3 * open) << "behind it";
-        EXPECT_NEAR(receivedOf(plate(10), {10, 0, 0}), open, 1e-3 * open) << "on it";
-        EXPECT_NEAR(receivedOf(plate(5, 0.6), {10, 0, 0}), open, 1e-3 * open) << "next to it";
-        EXPECT_GT(receivedOf(openWater(), {10, 10, 0}), 0) << "outside the fan";
-        EXPECT_EQ(receivedOf(plate(5, 5), {10, 10, 0}), 0);
+        EXPECT_EQ(computeReceived(plate(5), {10, 0, 0}), 0) << "before it";
+        EXPECT_NEAR(computeReceived(plate(10.5), {10, 0, 0}), open, 1e-3 * open) << "behind it";
+        EXPECT_NEAR(computeReceived(plate(10), {10, 0, 0}), open, 1e-3 * open) << "on it";
+        EXPECT_NEAR(computeReceived(plate(5, 0.6), {10, 0, 0}), open, 1e-3 * open) << "next to it";
+        EXPECT_GT(computeReceived(openWater(), {10, 10, 0}), 0) << "outside the fan";
+        EXPECT_EQ(computeReceived(plate(5, 5), {10, 10, 0}), 0);
     }
 }
 
@@ -344,43 +345,43 @@ TEST(PointTargetTest, IsUncoveredByAnObjectThatMovesAside) {
         renderer.render(snapshot, ping);
         return renderer.othersReceived();
     };
-    const auto reasonOf = [&]() -> std::optional<Reason> {
+    const auto getReason = [&]() -> std::optional<Reason> {
         for (const Omitted& what : renderer.omissions())
             if (what.effect == "point targets") return what.reason;
         return {};
     };
     EXPECT_EQ(targetsReceived(), 0u);
-    EXPECT_EQ(reasonOf(), Reason::OutOfView);
+    EXPECT_EQ(getReason(), Reason::OutOfView);
     snapshot.moved = {{0, glm::translate(glm::dmat4(1), {5.0, 3.0, 0.0})}};
     EXPECT_EQ(targetsReceived(), 1u);
-    EXPECT_EQ(reasonOf(), std::nullopt);
+    EXPECT_EQ(getReason(), std::nullopt);
     snapshot.moved.clear();
     EXPECT_EQ(targetsReceived(), 0u) << "back where the scene has it";
     snapshot.targets.clear();
     EXPECT_EQ(targetsReceived(), 0u);
-    EXPECT_EQ(reasonOf(), Reason::NoneInScene);
+    EXPECT_EQ(getReason(), Reason::NoneInScene);
 }
 
 TEST(PointTargetTest, IsTheSameFarFromTheOriginAndRotated) {
     SonarConfig config = targetSonar(40, 20);
     const auto near = openWater();
-    types::Snapshot snapshot = test::snapshotOf(near, {4e6, -3e6, -200}, 1.1, 0.3, 0.2);
+    types::Snapshot snapshot = test::makeSnapshot(near, {4e6, -3e6, -200}, 1.1, 0.3, 0.2);
     snapshot.targets = {{snapshot.sonar.position + snapshot.sonar.orientation * towards(7.3, -5, 12.34), -10}};
-    const types::Sonar far = pingOf(config, snapshot),
-                       here = pingOf(config, withPoint(near, towards(7.3, -5, 12.34), -10));
+    const types::Sonar far = makePing(config, snapshot),
+                       here = makePing(config, withPoint(near, towards(7.3, -5, 12.34), -10));
     for (size_t i = 0; i < far.bins.size(); ++i) EXPECT_NEAR(far.bins[i], here.bins[i], 1e-6 * here.bins[i]) << i;
 }
 
 TEST(PointTargetTest, AnEmptyListChangesNoBit) {
     SonarConfig config = targetSonar(40, 20);
     config.pulse.emplace().bandwidth_khz = 4;
-    const auto geometry = test::sceneOf({test::ground(-2), test::sphere(1, 20)}, 0, {{0, 0, 0}, {8, 0, 0}});
+    const auto geometry = test::makeScene({test::ground(-2), test::sphere(1, 20)}, 0, {{0, 0, 0}, {8, 0, 0}});
     for (const Model model : {Model::Physical, Model::Cerqueira2017}) {
         config.model = model;
         if (model == Model::Cerqueira2017) config.pulse.reset();
-        const types::Sonar plain = pingOf(config, test::snapshotOf(geometry));
-        EXPECT_EQ(pingOf(config, withPoint(geometry, {5, 0, 0}, -3000)).bins, plain.bins);
-        const types::Sonar loud = pingOf(config, withPoint(geometry, {5, 0, 0}, 0));
+        const types::Sonar plain = makePing(config, test::makeSnapshot(geometry));
+        EXPECT_EQ(makePing(config, withPoint(geometry, {5, 0, 0}, -3000)).bins, plain.bins);
+        const types::Sonar loud = makePing(config, withPoint(geometry, {5, 0, 0}, 0));
         EXPECT_EQ(loud.bins == plain.bins, model == Model::Cerqueira2017) << "means know no targets";
     }
 }

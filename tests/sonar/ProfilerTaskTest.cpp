@@ -12,8 +12,8 @@ namespace insonify::sonar {
 namespace {
 
 using test::ground;
+using test::makeScene;
 using test::quad;
-using test::sceneOf;
 
 constexpr double profile_bin = 0.03;  // 20 us at 1500 m/s [m]
 constexpr double down = 90;
@@ -30,13 +30,13 @@ struct ProfilerTaskTest : test::TaskBench<ProfilerTask, types::SnapshotPtr, type
         config.sonar.quality.columns_per_beam = 8;
         return config;
     }
-    types::PointCloudPtr soundingsOf(types::Snapshot snapshot) {
+    types::PointCloudPtr getSoundings(types::Snapshot snapshot) {
         return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
     /** Returns the soundings of a vehicle with these angles [deg], whose profiler looks down. */
     static types::Snapshot above(types::GeometryPtr floor, glm::dvec3 position, double yaw = 0, double roll = 0) {
         types::Snapshot snapshot =
-            test::snapshotOf(std::move(floor), position, types::radians(yaw), 0, types::radians(roll));
+            test::makeSnapshot(std::move(floor), position, types::radians(yaw), 0, types::radians(roll));
         snapshot.sonar.orientation *= glm::angleAxis(types::radians(down), glm::dvec3(0, 1, 0));
         return snapshot;
     }
@@ -46,7 +46,7 @@ struct ProfilerTaskTest : test::TaskBench<ProfilerTask, types::SnapshotPtr, type
 TEST_F(ProfilerTaskTest, AFlatBottomIsSoundedWhereTheBearingsMeetIt) {
     constexpr double height = 10;
     startWith(profiler());
-    const auto cloud = soundingsOf(above(sceneOf({ground(-height)}), {5, -3, 0}));
+    const auto cloud = getSoundings(above(makeScene({ground(-height)}), {5, -3, 0}));
     ASSERT_TRUE(cloud) << task_.lastError();
     EXPECT_EQ(cloud->time, types::Time{1'000'000});
     ASSERT_EQ(cloud->points.size(), 128u);
@@ -68,13 +68,13 @@ TEST_F(ProfilerTaskTest, AFlatBottomIsSoundedWhereTheBearingsMeetIt) {
 TEST_F(ProfilerTaskTest, SoundingsAreOnATiltedPlaneInTheWorldInAnyAttitude) {
     const double across = types::radians(15), along = types::radians(10);
     const glm::vec3 u(std::cos(along), 0, std::sin(along)), v(0, std::cos(across), std::sin(across));
-    const auto plane = sceneOf({quad(-500.f * u - 500.f * v, 1000.f * u, 1000.f * v)});
+    const auto plane = makeScene({quad(-500.f * u - 500.f * v, 1000.f * u, 1000.f * v)});
     const glm::dvec3 normal = glm::normalize(glm::cross(glm::dvec3(u), glm::dvec3(v)));
     ProfilerConfig config = profiler();
     config.sonar.field_of_view_deg = 90;
     startWith(config);
     for (const auto& [yaw, roll] : {std::pair{0.0, 0.0}, {90.0, 0.0}, {35.0, -12.0}, {200.0, 15.0}}) {
-        const auto cloud = soundingsOf(above(plane, {1, 2, 9}, yaw, roll));
+        const auto cloud = getSoundings(above(plane, {1, 2, 9}, yaw, roll));
         ASSERT_TRUE(cloud) << task_.lastError();
         EXPECT_GT(cloud->points.size(), 100u);
         double worst = 0;
@@ -91,7 +91,7 @@ TEST_F(ProfilerTaskTest, ABeamGivesItsStrongestReturnAndASilentBeamNone) {
     config.sonar.bin_count = 400;
     startWith(config);
     const auto step = quad({-50, 1, -8}, {100, 0, 0}, {0, 2, 0});
-    const auto cloud = soundingsOf(above(sceneOf({ground(-10), step}), {0, 0, 0}));
+    const auto cloud = getSoundings(above(makeScene({ground(-10), step}), {0, 0, 0}));
     ASSERT_TRUE(cloud) << task_.lastError();
     EXPECT_LT(cloud->points.size(), 100u) << "12 m reach 33 deg to either side";
     const auto onAnEdge = [](double y) { return std::abs(y - 1) < 0.3 || std::abs(y - 3) < 0.3; };  // either is right
@@ -111,10 +111,10 @@ TEST_F(ProfilerTaskTest, DetectionsAreTheSoundingsByBeam) {
     config.sonar.speed_of_sound = 1480;
     startWith(config);
     for (const auto& [yaw, roll] : {std::pair{0.0, 0.0}, {35.0, -12.0}, {200.0, 15.0}}) {
-        types::Snapshot snapshot = above(sceneOf({ground(-10)}), {1, 2, 0}, yaw, roll);
+        types::Snapshot snapshot = above(makeScene({ground(-10)}), {1, 2, 0}, yaw, roll);
         snapshot.time = types::Time{1'000'000 + static_cast<int64_t>(1e6 * yaw)};
         const types::Pose sonar = snapshot.sonar;
-        const auto cloud = soundingsOf(std::move(snapshot));
+        const auto cloud = getSoundings(std::move(snapshot));
         types::SonarDetectionsPtr found;
         ASSERT_TRUE(cloud && reader.port.readNew(found)) << task_.lastError();
         EXPECT_EQ(found->time, cloud->time);
@@ -146,7 +146,7 @@ TEST_F(ProfilerTaskTest, DetectionsAreTheSoundingsByBeam) {
 
 TEST_F(ProfilerTaskTest, GivesACloudWithoutPointsForNothingInRange) {
     startWith(profiler());
-    const auto cloud = soundingsOf(above(sceneOf({ground(-100)}), {0, 0, 0}));
+    const auto cloud = getSoundings(above(makeScene({ground(-100)}), {0, 0, 0}));
     ASSERT_TRUE(cloud) << task_.lastError();
     EXPECT_TRUE(cloud->points.empty());
 }

@@ -28,7 +28,7 @@ SonarConfig publishedSonar() {
 }
 
 std::vector<float> publishedBins(const SonarConfig& config, const types::GeometryPtr& geometry) {
-    return test::pingOf(config, test::snapshotOf(geometry)).bins;
+    return test::makePing(config, test::makeSnapshot(geometry)).bins;
 }
 
 double sigmoid(double z) { return 1 / (1 + std::exp(-18 * (z - 2.0 / 3))); }
@@ -72,7 +72,7 @@ TEST(PublishedTest, BinsAreTheCountOfPixelsOfOneWideFrustum) {
     for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
         SonarConfig config = publishedSonar();
         config.deposit = deposit;
-        expectEqual(publishedBins(config, test::sceneOf({test::ground(-5)})), counted(config, 5));
+        expectEqual(publishedBins(config, test::makeScene({test::ground(-5)})), counted(config, 5));
     }
 }
 
@@ -80,7 +80,7 @@ TEST(PublishedTest, AbsorptionActsBeforeTheSigmoid) {
     SonarConfig config = publishedSonar();
     config.beam_height_deg = 80;  // sees the ground at cosines up to 0.64
     config.absorption.emplace().db_per_m = 0.3;
-    const auto got = publishedBins(config, test::sceneOf({test::ground(-5)}));
+    const auto got = publishedBins(config, test::makeScene({test::ground(-5)}));
     expectEqual(got, counted(config, 5, 0.3 / 8.685889638));
     double difference = 0;
     const auto without = counted(config, 5);
@@ -90,13 +90,13 @@ TEST(PublishedTest, AbsorptionActsBeforeTheSigmoid) {
 
 TEST(PublishedTest, AnEmptySeaIsTheSigmoidOfZeroInBinZero) {
     const SonarConfig config = publishedSonar();
-    const auto bins = publishedBins(config, test::sceneOf({test::ground(500)}));
+    const auto bins = publishedBins(config, test::makeScene({test::ground(500)}));
     for (size_t i = 0; i < bins.size(); ++i) EXPECT_NEAR(bins[i], i % 500 ? 0 : 6.1e-6, 1e-7) << i;
 }
 
 TEST(PublishedTest, FootprintsFillTheBinsThatThePublishedModelLeavesEmpty) {
     SonarConfig config = publishedSonar();
-    const auto geometry = test::sceneOf({test::ground(-5)});
+    const auto geometry = test::makeScene({test::ground(-5)});
     const auto empty = [](const std::vector<float>& bins) {
         int count = 0;
         for (size_t k = 200; k < 490; ++k) count += bins[24 * 500 + k] == 0;

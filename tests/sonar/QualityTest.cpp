@@ -36,12 +36,12 @@ SonarConfig small() {
 types::GeometryPtr floorAndWall() {
     const study::FractalFloor floor = {
         .points = 128, .side = 80, .slope = -1.7, .rms = 0.3, .centre_x = 0, .depth = 3, .seed = 1};
-    return test::sceneOf({study::meshOf(floor), test::wall(-4)}, -10);
+    return test::makeScene({study::getMesh(floor), test::wall(-4)}, -10);
 }
 
 /** Looks at the open floor, or at the wall behind. */
-types::Snapshot outwards(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 0, 0.14); }
-types::Snapshot toTheWall(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 3.14159, 0.14); }
+types::Snapshot outwards(const types::GeometryPtr& scene) { return test::makeSnapshot(scene, {}, 0, 0.14); }
+types::Snapshot toTheWall(const types::GeometryPtr& scene) { return test::makeSnapshot(scene, {}, 3.14159, 0.14); }
 
 TEST(QualityLadderTest, ChoosesTheCheapestThatReachesTheTargetElseTheFinestWithinTheCap) {
     const QualityLadder ladder(small());
@@ -85,10 +85,10 @@ TEST(ClimbTest, TakesLessThanEightyPingsAndRendersThePingAtItsQuality) {
 }
 
 TEST(ClimbTest, AnEmptySeaHasNoErrorAtOnce) {
-    const auto scene = test::sceneOf({test::ground(500)});
+    const auto scene = test::makeScene({test::ground(500)});
     SonarConfig config = small();
-    EXPECT_EQ(chooseQuality(config, test::snapshotOf(scene)), Quality());
-    EXPECT_EQ(chooseQuality(config, test::snapshotOf(scene)).error, 0);
+    EXPECT_EQ(chooseQuality(config, test::makeSnapshot(scene)), Quality());
+    EXPECT_EQ(chooseQuality(config, test::makeSnapshot(scene)).error, 0);
 }
 
 /** A task that gets a snapshot at a time. */
@@ -129,7 +129,7 @@ private:
 TEST(QualityTaskTest, ReportsTheChoiceItsErrorAndCostAfterTheFirstEcho) {
     const auto scene = floorAndWall();
     Fed<SonarTask> sonar(small());
-    sonar.ping(test::snapshotOf(scene, {}, 0, -1.2));
+    sonar.ping(test::makeSnapshot(scene, {}, 0, -1.2));
     EXPECT_TRUE(std::isnan(sonar.quality().error)) << "it looks at the sky";
     EXPECT_EQ(sonar.quality(), Quality());
     EXPECT_THAT(sonar.notices(), testing::IsEmpty());
@@ -198,7 +198,7 @@ void expectThePlansQuality(const SonarConfig& config, size_t enough) {
     Fed<SonarTask> sonar(config);
     std::set<double> samples;
     for (int i = 0; i < 40 && samples.size() < enough; ++i) {
-        const types::Snapshot snapshot = test::snapshotOf(scene, {}, 3.14 - 0.1 * i, 0.14);
+        const types::Snapshot snapshot = test::makeSnapshot(scene, {}, 3.14 - 0.1 * i, 0.14);
         const types::SonarPtr ping = sonar.ping(snapshot);
         ASSERT_TRUE(ping);
         EXPECT_EQ(ping->bins, binsAt(snapshot, sonar.quality())) << i << ": the plan is of another ping";
@@ -219,10 +219,10 @@ TEST(QualityTaskTest, AStillSceneKeepsItsBitsAndItsPrediction) {
     const auto scene = floorAndWall();
     for (const double yaw : {0.0, 0.7, 1.4, 3.14}) {
         Fed<SonarTask> sonar(small());
-        const types::SonarPtr first = sonar.ping(test::snapshotOf(scene, {}, yaw, 0.14));
+        const types::SonarPtr first = sonar.ping(test::makeSnapshot(scene, {}, yaw, 0.14));
         const double error = sonar.quality().error;
         for (int i = 0; i < 150; ++i) {
-            EXPECT_EQ(sonar.ping(test::snapshotOf(scene, {}, yaw, 0.14))->bins, first->bins) << yaw << ", " << i;
+            EXPECT_EQ(sonar.ping(test::makeSnapshot(scene, {}, yaw, 0.14))->bins, first->bins) << yaw << ", " << i;
             EXPECT_EQ(sonar.quality().error, error) << yaw << ", " << i;
         }
         EXPECT_EQ(sonar.notices().size(), 1u) << yaw;
@@ -317,7 +317,7 @@ TEST(QualityTaskTest, ASwayingSonarDoesNotAlternateBetweenQualities) {
     std::vector<double> samples;
     for (int i = 0; i < 300; ++i) {
         const glm::dvec3 at(0.05 * std::sin(0.11 * i), 0, 0.02 * std::sin(0.3 * i));
-        sonar.ping(test::snapshotOf(scene, at, 0.02 * std::sin(0.17 * i), 0.14));
+        sonar.ping(test::makeSnapshot(scene, at, 0.02 * std::sin(0.17 * i), 0.14));
         const double now = sonar.quality().samples();
         if (samples.empty() || samples.back() != now) samples.push_back(now);
     }
@@ -331,7 +331,7 @@ TEST(QualityTaskTest, ARepeatedRunHasTheSamePingsBitForBit) {
         Fed<SonarTask> sonar(small());
         std::vector<std::vector<float>> pings;
         for (int i = 0; i < 24; ++i)
-            pings.push_back(sonar.ping(test::snapshotOf(scene, {}, 3.14 - 0.13 * i, 0.14))->bins);
+            pings.push_back(sonar.ping(test::makeSnapshot(scene, {}, 3.14 - 0.13 * i, 0.14))->bins);
         return std::pair(pings, sonar.notices());
     };
     EXPECT_EQ(run(), run());
@@ -347,7 +347,7 @@ TEST(QualityTaskTest, AHeadLowersTheQualityOnlyAfterAWholeTurn) {
     Fed<ScanningSonarTask> sonar(config);
     std::vector<Quality> qualities;
     for (int i = 0; i < 240; ++i) {
-        sonar.ping(test::snapshotOf(scene, {}, 0, 0.14));
+        sonar.ping(test::makeSnapshot(scene, {}, 0, 0.14));
         qualities.push_back(sonar.quality());
     }
     EXPECT_GT(qualities[119].samples(), Quality().samples()) << "the floor echoed";
@@ -356,12 +356,12 @@ TEST(QualityTaskTest, AHeadLowersTheQualityOnlyAfterAWholeTurn) {
 }
 
 TEST(QualityTaskTest, ASlowMachineLeadsToTheCoarsestQualityAndANotice) {
-    const auto scene = test::sceneOf({test::ground(-3)}, -10);
+    const auto scene = test::makeScene({test::ground(-3)}, -10);
     SonarConfig config = small();
     config.quality.budget_ms = 0.1;  // less than the first context switch
     config.bin_count = 20000;
     Fed<SonarTask> sonar(config);
-    for (int i = 0; i < 4; ++i) sonar.ping(test::snapshotOf(scene));
+    for (int i = 0; i < 4; ++i) sonar.ping(test::makeSnapshot(scene));
     EXPECT_EQ(sonar.quality(), Quality());
     EXPECT_THAT(sonar.notices(), Contains(HasSubstr("Warning: the coarsest quality takes")));
 }
@@ -428,8 +428,8 @@ TEST(CulledTest, ThePlanStatesTheCulledPartOfTheScene) {
     config.field_of_view_deg = 180;  // three frusta
     Fed<SonarTask> sonar(config);
     const types::Mesh ball = test::sphere(0.5, 8);
-    const auto geometry = test::sceneOf({ball, ball, ball}, -10, {{10, 0, 0}, {-10, 0, 0}, {200, 0, 0}});
-    sonar.ping(test::snapshotOf(geometry));
+    const auto geometry = test::makeScene({ball, ball, ball}, -10, {{10, 0, 0}, {-10, 0, 0}, {200, 0, 0}});
+    sonar.ping(test::makeSnapshot(geometry));
     ASSERT_TRUE(sonar.task.plan()) << sonar.task.lastError();
     std::vector<std::string> names;
     for (const types::Omission& omission : sonar.task.plan()->omitted) names.push_back(omission.name);

@@ -13,9 +13,9 @@
 namespace insonify::sonar {
 namespace {
 
-using test::binsOf;
 using test::Draw;
 using test::forEachSonar;
+using test::getBins;
 using test::Kind;
 using test::RandomObject;
 using test::RandomSonar;
@@ -42,7 +42,7 @@ TEST(RandomKindTest, PingsOfEveryKindHaveEchoes) {
         RandomSonar dry = one;
         dry.properties.erase("volume");
         dry.properties.erase("pulse");
-        const auto bins = binsOf(dry, one.scene());
+        const auto bins = getBins(dry, one.scene());
         with_echoes[one.kind] += std::accumulate(bins.begin(), bins.end(), 0.0) > 0;
     });
     for (int kind = 0; kind < test::kinds; ++kind) EXPECT_GE(with_echoes[static_cast<Kind>(kind)], 1) << kind;
@@ -63,14 +63,14 @@ TEST(RandomKindTest, TheMirrorImageOfASceneHasTheMirrorImageOfItsPings) {
             for (types::Cluster& cluster : object.mesh.clusters) cluster.centre.y = -cluster.centre.y;
             object.place.y = -object.place.y;
         }
-        std::vector<types::Sonar> mirrored = test::SonarBench(one).pingsOf(RandomSonar::sceneOf(objects));
+        std::vector<types::Sonar> mirrored = test::SonarBench(one).getPings(RandomSonar::makeScene(objects));
         std::ranges::reverse(mirrored);
         for (types::Sonar& ping : mirrored)
             for (uint32_t beam = 0; beam < ping.beam_count / 2; ++beam)
                 std::swap_ranges(ping.bins.begin() + beam * ping.bin_count,
                                  ping.bins.begin() + (beam + 1) * ping.bin_count,
                                  ping.bins.end() - (beam + 1) * ping.bin_count);
-        expectAlike(binsOf(mirrored), binsOf(one, one.scene()), has_pattern ? 0.1 : 0.01);
+        expectAlike(getBins(mirrored), getBins(one, one.scene()), has_pattern ? 0.1 : 0.01);
     });
 }
 
@@ -89,15 +89,15 @@ TEST(RandomKindTest, ASonarWhosePropertiesChangePingsAsOneMadeWithThem) {
         const types::Snapshot scene = from.scene();
         const bool with_truth = draw.once(2);
         test::SonarBench changed(from, 2, with_truth);
-        changed.pingsOf(scene);
+        changed.getPings(scene);
         int turns = 1;  // of a head, which goes on where it is
         const RandomSonar* before = &from;
         for (const RandomSonar* now : {&to, &nearer, &from}) {
             test::SonarBench made(*now, 2, with_truth);
-            for (int turn = 0; turn < turns; ++turn) made.pingsOf(scene);
+            for (int turn = 0; turn < turns; ++turn) made.getPings(scene);
             changed.change(*before, *now);
-            expectAlike(binsOf(changed.pingsOf(scene)), binsOf(made.pingsOf(scene)), 0);
-            EXPECT_TRUE(!with_truth || test::bitsOf(*changed.truth) == test::bitsOf(*made.truth)) << "truth";
+            expectAlike(getBins(changed.getPings(scene)), getBins(made.getPings(scene)), 0);
+            EXPECT_TRUE(!with_truth || test::getBits(*changed.truth) == test::getBits(*made.truth)) << "truth";
             before = now;
             ++turns;
         }
@@ -110,7 +110,7 @@ TEST(RandomKindTest, TheOrderOfObjectsChangesNoBit) {
             std::vector<RandomObject> objects = one.objects;
             std::ranges::reverse(objects);
             if (draw.once(2)) std::swap(objects[0], objects[1]);
-            expectAlike(binsOf(one, one.with(objects)), binsOf(one, one.scene()), 0);
+            expectAlike(getBins(one, one.with(objects)), getBins(one, one.scene()), 0);
         }
     });
 }
@@ -118,7 +118,7 @@ TEST(RandomKindTest, TheOrderOfObjectsChangesNoBit) {
 /** Poses whose directions have components that are rounding, as those of a level sonar that is turned. */
 TEST(RandomKindTest, APoseThatIsLevelButForRoundingIsLevel) {
     SonarConfig config =
-        test::sonarOf({.beams = 8, .width_deg = 80, .height_deg = 30, .bins = 150, .rows = 63, .columns = 6});
+        test::getSonar({.beams = 8, .width_deg = 80, .height_deg = 30, .bins = 150, .rows = 63, .columns = 6});
     config.visibility = Visibility::Cpu;
     std::vector<types::Mesh> meshes;
     std::vector<glm::dvec3> places;
@@ -126,13 +126,13 @@ TEST(RandomKindTest, APoseThatIsLevelButForRoundingIsLevel) {
         meshes.push_back(test::quad({0, -0.5f, -0.4f}, {0.1f, 1, 0}, {0.05f, 0, 0.8f}));
         places.push_back({6 + i, 2.0 * i - 4, 0.1 * i - 0.2});
     }
-    types::Snapshot scene = test::snapshotOf(test::sceneOf(meshes, 0, places));
-    const types::Sonar level = test::pingOf(config, scene);
+    types::Snapshot scene = test::makeSnapshot(test::makeScene(meshes, 0, places));
+    const types::Sonar level = test::makePing(config, scene);
     for (const double exponent : {-16.0, -17.0, -17.7, -18.0, -18.3, -19.0, -25.0})
         for (const double sign : {-1.0, 1.0})
             for (const glm::dvec3 axis : {glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0)}) {
                 scene.sonar.orientation = glm::dquat(1, sign * std::pow(10, exponent) * axis);
-                expectAlike(test::pingOf(config, scene).bins, level.bins, 1e-6);
+                expectAlike(test::makePing(config, scene).bins, level.bins, 1e-6);
             }
 }
 
@@ -145,7 +145,7 @@ TEST(RandomKindTest, AnObjectOutOfRangeChangesNoBit) {
             far.name = "far";
             far.place = glm::dvec3(draw.between(50, 200), draw.between(-20, 20), draw.between(-20, 20));
             objects.insert(objects.begin() + draw.upTo(static_cast<int>(objects.size())), far);
-            expectAlike(binsOf(one, one.with(objects)), binsOf(one, one.scene()), 0);
+            expectAlike(getBins(one, one.with(objects)), getBins(one, one.scene()), 0);
         }
     });
 }
@@ -154,10 +154,10 @@ void expectThatEnergiesAdd(RandomSonar one) {
     if (one.is_coherent) return;                                                           // fields add
     one.properties.erase("volume");                                                        // objects hide water
     if (one.properties.contains("pulse")) one.properties["pulse"] = "{duration_us: 200}";  // rings once
-    const auto together = binsOf(one, one.scene());
+    const auto together = getBins(one, one.scene());
     std::vector<float> sum(together.size(), 0);
     for (const RandomObject& object : one.objects) {
-        const auto alone = binsOf(one, RandomSonar::sceneOf({object}));
+        const auto alone = getBins(one, RandomSonar::makeScene({object}));
         for (size_t k = 0; k < sum.size(); ++k) sum[k] += alone[k];
     }
     expectAlike(together, sum, 1e-4);
@@ -171,9 +171,9 @@ TEST(RandomKindTest, EnergiesOfObjectsThatDoNotHideEachOtherAdd) {
 TEST(RandomKindTest, ThreadsChangeNoBit) {
     forEachSonar(few, [](const RandomSonar& drawn, Draw& draw) {
         for (const RandomSonar& one : {drawn, withPaths(drawn, draw)}) {
-            const auto single = binsOf(one, one.scene(), 1);
+            const auto single = getBins(one, one.scene(), 1);
             for (const int threads : {2, 5})
-                EXPECT_TRUE(binsOf(one, one.scene(), threads) == single) << threads << " threads\n" << one.text();
+                EXPECT_TRUE(getBins(one, one.scene(), threads) == single) << threads << " threads\n" << one.text();
         }
     });
 }
@@ -196,8 +196,8 @@ TEST(RandomKindTest, PingsDoNotDependOnWhereTheWorldsAxesAre) {
         turned.geometry = geometry;
         turned.sonar.position = turn * scene.sonar.position + way;
         turned.sonar.orientation = turn * scene.sonar.orientation;
-        const auto expected = binsOf(one, scene);
-        expectAlike(binsOf(one, turned), expected, one.is_coherent ? 0.05 : 0.01);
+        const auto expected = getBins(one, scene);
+        expectAlike(getBins(one, turned), expected, one.is_coherent ? 0.05 : 0.01);
         with_echoes += std::ranges::any_of(expected, [](float bin) { return bin > 0; });
         ++all;
     });
@@ -218,11 +218,11 @@ TEST(RandomKindTest, TheOrderOfBeamsDoesNotChangeThem) {
         }
         for (const char* replaced : {"beam_count", "field_of_view_deg"}) listed.properties.erase(replaced);
         listed = listed.with("beam_width_deg", "6").with("bearings_deg", "[" + there + "]");
-        types::Sonar ping = test::SonarBench(listed.with("bearings_deg", "[" + back + "]")).pingsOf(one.scene())[0];
+        types::Sonar ping = test::SonarBench(listed.with("bearings_deg", "[" + back + "]")).getPings(one.scene())[0];
         for (uint32_t beam = 0; beam < ping.beam_count / 2; ++beam)
             std::swap_ranges(ping.bins.begin() + beam * ping.bin_count, ping.bins.begin() + (beam + 1) * ping.bin_count,
                              ping.bins.end() - (beam + 1) * ping.bin_count);
-        expectAlike(ping.bins, binsOf(listed, one.scene()), 1e-5);
+        expectAlike(ping.bins, getBins(listed, one.scene()), 1e-5);
         ++fans;
     });
     EXPECT_GT(fans, 0);
@@ -250,9 +250,9 @@ TEST(RandomKindTest, AScaledWorldHasTheSamePictures) {
                 cluster.half *= static_cast<float>(scale);
             }
         }
-        auto bins = binsOf(other, other.scene());
+        auto bins = getBins(other, other.scene());
         for (float& bin : bins) bin *= static_cast<float>(scale * scale);
-        expectAlike(bins, binsOf(one, one.scene()), 1e-3);
+        expectAlike(bins, getBins(one, one.scene()), 1e-3);
     });
 }
 
@@ -276,7 +276,7 @@ TEST(RandomKindTest, AFlatObjectIsHeardAlikeInTwoParts) {
             }
         }
         // The lobe of a smooth surface is integrated facet by facet, and is narrower than few columns of samples.
-        expectAlike(binsOf(one, RandomSonar::sceneOf(parts)), binsOf(one, RandomSonar::sceneOf(whole)),
+        expectAlike(getBins(one, RandomSonar::makeScene(parts)), getBins(one, RandomSonar::makeScene(whole)),
                     has_lobes ? 0.2 : 1e-4);
     });
 }
@@ -284,27 +284,27 @@ TEST(RandomKindTest, AFlatObjectIsHeardAlikeInTwoParts) {
 /** Scatterers are numbered by the name of their object: two parts have other speckle, of the same mean. */
 TEST(RandomKindTest, AFlatObjectInTwoPartsHasOtherSpeckleOfTheSameMean) {
     SonarConfig config =
-        test::sonarOf({.beams = 8, .width_deg = 16, .height_deg = 12, .bins = 120, .rows = 48, .columns = 12});
+        test::getSonar({.beams = 8, .width_deg = 16, .height_deg = 12, .bins = 120, .rows = 48, .columns = 12});
     config.visibility = Visibility::Cpu;
     config.frequency_khz = 300;
     config.speckle.emplace().coherent = true;
-    const auto meanOf = [&](const std::vector<std::pair<const char*, types::Mesh>>& parts, const std::string& drawn,
-                            double& mean) {
+    const auto computeMean = [&](const std::vector<std::pair<const char*, types::Mesh>>& parts,
+                                 const std::string& drawn, double& mean) {
         std::vector<types::Mesh> meshes;
         for (const auto& part : parts) meshes.push_back(part.second);
-        auto geometry = std::make_shared<types::Geometry>(*test::sceneOf(meshes));
+        auto geometry = std::make_shared<types::Geometry>(*test::makeScene(meshes));
         for (size_t i = 0; i < parts.size(); ++i) geometry->objects[i].name = parts[i].first + drawn;
-        const types::Sonar ping = test::pingOf(config, test::snapshotOf(geometry));
-        mean += test::sumOf(ping);
+        const types::Sonar ping = test::makePing(config, test::makeSnapshot(geometry));
+        mean += test::computeSum(ping);
         return ping.bins;
     };
     const glm::vec3 low(8, -1, -0.8f), across(0.6f, 2, 0), up(0.2f, 0, 1.6f), half = 0.4f * across;
     double whole = 0, parts = 0;
     for (int i = 0; i < 150; ++i) {
-        const auto one = meanOf({{"whole", test::quad(low, across, up)}}, std::to_string(i), whole);
+        const auto one = computeMean({{"whole", test::quad(low, across, up)}}, std::to_string(i), whole);
         const auto two =
-            meanOf({{"right", test::quad(low, half, up)}, {"left", test::quad(low + half, across - half, up)}},
-                   std::to_string(i), parts);
+            computeMean({{"right", test::quad(low, half, up)}, {"left", test::quad(low + half, across - half, up)}},
+                        std::to_string(i), parts);
         EXPECT_NE(one, two);
     }
     EXPECT_NEAR(parts / whole, 1, 0.05);
@@ -314,11 +314,11 @@ TEST(RandomKindTest, AFlatObjectInTwoPartsHasOtherSpeckleOfTheSameMean) {
 TEST(RandomKindTest, TheTruthOfABinIsAnObjectWithinItsRange) {
     forEachSonar(few, [](const RandomSonar& one, Draw&) {
         test::SonarBench bench(one, 2, true);
-        const types::Sonar ping = bench.pingsOf(one.scene()).back();
+        const types::Sonar ping = bench.getPings(one.scene()).back();
         ASSERT_TRUE(bench.truth);
         const types::SonarTruth& truth = *bench.truth;
         ASSERT_EQ(truth.diagnostic(), nullptr);
-        EXPECT_EQ(ping.bins, test::SonarBench(one, 2).pingsOf(one.scene()).back().bins) << "truth changes no bit";
+        EXPECT_EQ(ping.bins, test::SonarBench(one, 2).getPings(one.scene()).back().bins) << "truth changes no bit";
         for (size_t k = 0; k < truth.object.size(); ++k) {
             if (truth.object[k] < 0) continue;
             const RandomObject& object = one.objects[static_cast<size_t>(truth.object[k])];
@@ -397,7 +397,7 @@ const std::vector<Neutral>& neutrals() {
 TEST(RandomKindTest, NeutralValuesChangeNoBit) {
     std::map<std::string, int> tried;
     forEachSonar(few, [&](const RandomSonar& one, Draw&) {
-        const auto plain = binsOf(one, one.scene());
+        const auto plain = getBins(one, one.scene());
         framework::Registry registry;
         registerTasks(registry);
         std::set<std::string> known;
@@ -413,7 +413,7 @@ TEST(RandomKindTest, NeutralValuesChangeNoBit) {
                 value = neutral.value;
             std::vector<float> got;
             try {
-                got = binsOf(with, one.scene());
+                got = getBins(with, one.scene());
             } catch (const types::ConfigError& error) {
                 ADD_FAILURE() << neutral.key << ": " << neutral.value << ": " << error.what();
                 continue;
@@ -448,7 +448,7 @@ TEST(RandomKindTest, DefaultsThatAreWrittenOutChangeNoBit) {
             if (!property.default_value.empty() && property.name != "visibility")
                 with.properties.try_emplace(property.name, property.default_value);
         }
-        EXPECT_TRUE(binsOf(with, one.scene()) == binsOf(one, one.scene()));
+        EXPECT_TRUE(getBins(with, one.scene()) == getBins(one, one.scene()));
     });
 }
 

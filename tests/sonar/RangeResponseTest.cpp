@@ -8,7 +8,7 @@
 namespace insonify::sonar {
 namespace {
 
-BinGrid binsOf(double width, int count = 200) { return {count, 1, width, 0, width * count, 1500}; }
+BinGrid getBins(double width, int count = 200) { return {count, 1, width, 0, width * count, 1500}; }
 
 acoustics::Pulse chirp(double bandwidth_khz) {
     acoustics::PulseConfig config;
@@ -32,21 +32,21 @@ std::vector<float> spread(const RangeResponse& response, const std::vector<float
 }
 
 TEST(RangeResponseTest, AToneOfOneBinChangesNoBit) {
-    const RangeResponse response(tone(100), binsOf(0.075));  // 0.15 m there and back
+    const RangeResponse response(tone(100), getBins(0.075));  // 0.15 m there and back
     EXPECT_THAT(response.taps(), testing::ElementsAre(1.0f));
     const std::vector<float> echoes{0, 1e-9f, 3.3f, 0.1f, 7e-20f};
     EXPECT_EQ(spread(response, echoes), echoes);
 }
 
 TEST(RangeResponseTest, AToneOfThreeBinsFillsThreeBins) {
-    const RangeResponse response(tone(300), binsOf(0.075));
+    const RangeResponse response(tone(300), getBins(0.075));
     EXPECT_THAT(response.taps(), testing::ElementsAre(1.0f, 1.0f, 1.0f));
     EXPECT_THAT(spread(response, {0, 0, 5, 0, 0, 0}), testing::ElementsAre(0, 5, 5, 5, 0, 0));
 }
 
 TEST(RangeResponseTest, UniformReverberationScalesWithTheLengthOfACell) {
     const acoustics::Pulse pulse = chirp(20);
-    const RangeResponse response(pulse, binsOf(0.01, 500));
+    const RangeResponse response(pulse, getBins(0.01, 500));
     const double sum = std::accumulate(response.taps().begin(), response.taps().end(), 0.0);
     EXPECT_NEAR(sum * 0.01, pulse.cellLength(), 1e-3 * pulse.cellLength());
     EXPECT_NE(response.taps()[response.margin() + 1], response.taps()[response.margin()]);
@@ -54,7 +54,7 @@ TEST(RangeResponseTest, UniformReverberationScalesWithTheLengthOfACell) {
 }
 
 TEST(RangeResponseTest, NoEchoIsBeforeTheFirstBinOrAfterTheLast) {
-    const RangeResponse response(chirp(20), binsOf(0.01, 8));
+    const RangeResponse response(chirp(20), getBins(0.01, 8));
     std::vector<float> echoes(8);
     echoes[0] = 1;
     const std::vector<float> bins = spread(response, echoes);
@@ -63,8 +63,8 @@ TEST(RangeResponseTest, NoEchoIsBeforeTheFirstBinOrAfterTheLast) {
 }
 
 TEST(RangeResponseTest, APulseUnderHalfABinIsShort) {
-    EXPECT_TRUE(isShort(tone(49), binsOf(0.075)));
-    EXPECT_FALSE(isShort(tone(51), binsOf(0.075)));
+    EXPECT_TRUE(isShort(tone(49), getBins(0.075)));
+    EXPECT_FALSE(isShort(tone(51), getBins(0.075)));
 }
 
 }  // namespace

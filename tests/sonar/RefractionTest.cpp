@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 using types::radians;
 
 /** A file that is private to this process. */
-std::string profileOf(const std::vector<std::pair<double, double>>& speeds) {
+std::string makeProfile(const std::vector<std::pair<double, double>>& speeds) {
     static const Folder folder;
     static int count = 0;
     const std::string file = folder / ("speeds_" + std::to_string(count++) + ".csv");
@@ -34,7 +34,7 @@ std::string profileOf(const std::vector<std::pair<double, double>>& speeds) {
 }
 
 /** 1500 m/s at the surface, with a strong thermocline to any depth. */
-std::string thermocline(double gradient = 0.1) { return profileOf({{0, 1500}, {1000, 1500 + 1000 * gradient}}); }
+std::string thermocline(double gradient = 0.1) { return makeProfile({{0, 1500}, {1000, 1500 + 1000 * gradient}}); }
 
 /** A sonar to 2 km in bins of 2 m; its speed of sound is 1500 m/s. */
 SonarConfig longRange(const std::string& profile, double height_deg = 30) {
@@ -58,7 +58,7 @@ struct Reported {
     types::SonarTruth truth;
 };
 
-Reported reportedOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+Reported getReported(const SonarConfig& config, const types::Snapshot& snapshot) {
     SonarRenderer renderer(config, snapshot.geometry);
     Reported reported;
     renderer.setTruth(reported.ping, &reported.truth);
@@ -91,8 +91,8 @@ double elevationAt(double range, double drop, double gradient) {
 
 TEST(RefractionTest, AFlatBottomInAGradientEchoesFromTheDirectionsOfTheExactArcs) {
     constexpr double drop = 200, gradient = 0.1;
-    const auto geometry = test::sceneOf({test::ground(-drop, 20000)});
-    const Reported reported = reportedOf(longRange(thermocline(gradient)), test::snapshotOf(geometry));
+    const auto geometry = test::makeScene({test::ground(-drop, 20000)});
+    const Reported reported = getReported(longRange(thermocline(gradient)), test::makeSnapshot(geometry));
     int reported_bins = 0, straight_fails = 0;
     for (size_t bin = 450; bin < 1000; bin += 10) {
         const double range = 2 * (static_cast<double>(bin) + 0.5), reported_elevation = reported.truth.elevation[bin];
@@ -123,10 +123,10 @@ TEST(RefractionTest, ALevelRayMeetsAPointHundredMetresAboveAtTwoKilometres) {
     EXPECT_NEAR(rise, 0.1 * 1951 * 1951 / (2 * 1530.0) * 1530 / 1500 * 1530 / 1500, 5) << "the brief form";
     const SonarConfig thin = longRange(thermocline(), 0.4);
     const auto received = [&](double height, const SonarConfig& config) {
-        const auto geometry = test::sceneOf({uprightPlate({met.across, 0, -300 + height})});
+        const auto geometry = test::makeScene({uprightPlate({met.across, 0, -300 + height})});
         SonarRenderer renderer(config, geometry);
         types::Sonar ping;
-        renderer.render(test::snapshotOf(geometry, {0, 0, -300}), ping);
+        renderer.render(test::makeSnapshot(geometry, {0, 0, -300}), ping);
         return ping;
     };
     const types::Sonar ping = received(rise, thin);
@@ -139,14 +139,14 @@ TEST(RefractionTest, ALevelRayMeetsAPointHundredMetresAboveAtTwoKilometres) {
 
 TEST(RefractionTest, WaterOfAnotherSpeedStretchesRangesAndKeepsSpreading) {
     const double ratio = 1500.0 / 1470;
-    SonarConfig config = longRange(profileOf({{0, 1470}, {100, 1470}}));
+    SonarConfig config = longRange(makeProfile({{0, 1470}, {100, 1470}}));
     config.range = 200;
     const auto snapshot = [](double scale) {
-        return test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-20 * scale))}), {}, 0.1, 0.1, 0.2);
+        return test::makeSnapshot(test::makeScene({test::ground(static_cast<float>(-20 * scale))}), {}, 0.1, 0.1, 0.2);
     };
-    const types::Sonar bent = reportedOf(config, snapshot(1)).ping;
+    const types::Sonar bent = getReported(config, snapshot(1)).ping;
     config.water.reset();
-    const types::Sonar plain = reportedOf(config, snapshot(ratio)).ping;
+    const types::Sonar plain = getReported(config, snapshot(ratio)).ping;
     double error = 0, norm = 0;
     for (size_t i = 0; i < plain.bins.size(); ++i) {
         error += std::pow(bent.bins[i] - ratio * ratio * plain.bins[i], 2);
@@ -158,27 +158,27 @@ TEST(RefractionTest, WaterOfAnotherSpeedStretchesRangesAndKeepsSpreading) {
 
 TEST(RefractionTest, WaterOfTheSonarsOwnSpeedChangesNoBit) {
     const auto snapshot =
-        test::snapshotOf(test::sceneOf({test::ground(-20), test::sphere(3, 24)}, -10, {{}, {60, 3, -9}}));
-    SonarConfig config = longRange(profileOf({{0, 1500}, {30, 1500}, {90, 1500}}));
-    const types::Sonar same = reportedOf(config, snapshot).ping;
+        test::makeSnapshot(test::makeScene({test::ground(-20), test::sphere(3, 24)}, -10, {{}, {60, 3, -9}}));
+    SonarConfig config = longRange(makeProfile({{0, 1500}, {30, 1500}, {90, 1500}}));
+    const types::Sonar same = getReported(config, snapshot).ping;
     config.water->profile.reset();
-    EXPECT_EQ(same.bins, reportedOf(config, snapshot).ping.bins);
+    EXPECT_EQ(same.bins, getReported(config, snapshot).ping.bins);
     config.water.reset();
-    EXPECT_EQ(same.bins, reportedOf(config, snapshot).ping.bins);
+    EXPECT_EQ(same.bins, getReported(config, snapshot).ping.bins);
     EXPECT_GT(loudest(same), 0);
 }
 
 /** Speed grows down to 50 m, and falls below: rays of the duct stay in it, other rays descend steeply. */
 TEST(RefractionTest, BelowADuctThereIsAShadow) {
-    const std::string duct = profileOf({{0, 1499}, {50, 1501.5}, {250, 1481.5}});
+    const std::string duct = makeProfile({{0, 1499}, {50, 1501.5}, {250, 1481.5}});
     const auto receivedAt = [&](double depth, const std::string& profile) {
         const auto geometry =
-            test::sceneOf({test::quad({2000, -50, static_cast<float>(-depth) - 2}, {0, 100, 0}, {0, 0, 4})});
+            test::makeScene({test::quad({2000, -50, static_cast<float>(-depth) - 2}, {0, 100, 0}, {0, 0, 4})});
         SonarConfig config = longRange(profile, 12);
         config.range = 2200;
         SonarRenderer renderer(config, geometry);
         types::Sonar ping;
-        renderer.render(test::snapshotOf(geometry, {0, 0, -20}), ping);
+        renderer.render(test::makeSnapshot(geometry, {0, 0, -20}), ping);
         for (const float bin : ping.bins) EXPECT_TRUE(std::isfinite(bin)) << depth << " m deep";
         return loudest(ping);
     };
@@ -192,11 +192,11 @@ TEST(RefractionTest, AnObjectInTheWayOfABentRayHidesObjectsBehind) {
     std::vector<acoustics::RayPoint> at(2);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{0.7, 1.3}, at);
     const auto place = [&](size_t i) { return glm::vec3(at[i].across, 0, -at[i].depth); };
-    const auto both = test::sceneOf({uprightPlate(place(0)), uprightPlate(place(1))}),
-               far = test::sceneOf({uprightPlate(place(1))});
+    const auto both = test::makeScene({uprightPlate(place(0)), uprightPlate(place(1))}),
+               far = test::makeScene({uprightPlate(place(1))});
     const SonarConfig thin = longRange(thermocline(), 0.2);
-    const types::Sonar hidden = reportedOf(thin, test::snapshotOf(both, {0, 0, -300})).ping;
-    const types::Sonar open = reportedOf(thin, test::snapshotOf(far, {0, 0, -300})).ping;
+    const types::Sonar hidden = getReported(thin, test::makeSnapshot(both, {0, 0, -300})).ping;
+    const types::Sonar open = getReported(thin, test::makeSnapshot(far, {0, 0, -300})).ping;
     const size_t near_bin = static_cast<size_t>(0.7 * 1500 / 2), far_bin = static_cast<size_t>(1.3 * 1500 / 2);
     EXPECT_EQ(loudestBin(hidden), near_bin);
     EXPECT_NEAR(static_cast<double>(loudestBin(open)), static_cast<double>(far_bin), 1);
@@ -204,14 +204,14 @@ TEST(RefractionTest, AnObjectInTheWayOfABentRayHidesObjectsBehind) {
 }
 
 TEST(RefractionTest, BentRaysMeetAMovingObjectAtItsPlace) {
-    const auto geometry = test::sceneOf({uprightPlate({0, 0, 0})}, 0, {{0, 0, 5000}});
+    const auto geometry = test::makeScene({uprightPlate({0, 0, 0})}, 0, {{0, 0, 5000}});
     std::vector<acoustics::RayPoint> at(1);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{1.0}, at);
-    types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, -300});
+    types::Snapshot snapshot = test::makeSnapshot(geometry, {0, 0, -300});
     glm::dmat4 place(1);
     place[3] = {at[0].across, 0, -at[0].depth, 1};
     snapshot.moved = {{0, place}};
-    const types::Sonar ping = reportedOf(longRange(thermocline(), 0.4), snapshot).ping;
+    const types::Sonar ping = getReported(longRange(thermocline(), 0.4), snapshot).ping;
     ASSERT_GT(loudest(ping), 0);
     EXPECT_NEAR(static_cast<double>(loudestBin(ping)), 750, 1);
 }
@@ -222,12 +222,12 @@ TEST(RefractionTest, APointTargetEchoesFromItsArcAndNotInAShadow) {
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, elevation, std::vector{time}, at);
     const auto nothing = test::openWater();
     const auto received = [&](const std::string& profile, double pitch, glm::dvec3 place) {
-        types::Snapshot snapshot = test::snapshotOf(nothing, {0, 0, -300}, 0, pitch);
+        types::Snapshot snapshot = test::makeSnapshot(nothing, {0, 0, -300}, 0, pitch);
         snapshot.targets = {{place, 0}};
-        return reportedOf(longRange(profile, 0.2), snapshot).ping;
+        return getReported(longRange(profile, 0.2), snapshot).ping;
     };
     const glm::dvec3 place(at[0].across, 0.5, -at[0].depth);
-    const std::string linear = profileOf({{0, 1500}, {1000, 1600}});
+    const std::string linear = makeProfile({{0, 1500}, {1000, 1600}});
     const types::Sonar ping = received(linear, -elevation, place);
     ASSERT_GT(loudest(ping), 0);
     EXPECT_EQ(loudestBin(ping), static_cast<size_t>(time * 1500 / 2)) << "2 m in 1800";
@@ -238,36 +238,36 @@ TEST(RefractionTest, APointTargetEchoesFromItsArcAndNotInAShadow) {
 }
 
 TEST(RefractionTest, ThePlanStatesWhetherRaysAreBentAndTheBound) {
-    const auto geometry = test::sceneOf({test::ground(-20)});
-    const auto planOf = [&](double range, const std::string& profile) {
+    const auto geometry = test::makeScene({test::ground(-20)});
+    const auto makePlan = [&](double range, const std::string& profile) {
         SonarConfig config = longRange(profile);
         config.range = range;
         config.bin_count = 200;
         return makeRenderPlan(config, *geometry);
     };
-    EXPECT_TRUE(planOf(2000, thermocline()).hasFeature("refraction"));
-    EXPECT_FALSE(planOf(2000, thermocline()).findOmitted("refraction"));
-    const RenderPlan near = planOf(20, profileOf({{0, 1500}, {20, 1500.2}}));
+    EXPECT_TRUE(makePlan(2000, thermocline()).hasFeature("refraction"));
+    EXPECT_FALSE(makePlan(2000, thermocline()).findOmitted("refraction"));
+    const RenderPlan near = makePlan(20, makeProfile({{0, 1500}, {20, 1500.2}}));
     EXPECT_FALSE(near.hasFeature("refraction"));
     ASSERT_TRUE(near.findOmitted("refraction"));
     EXPECT_NEAR(near.findOmitted("refraction")->value, 0.01 * 20 * 20 / 3000, 1e-9);
     EXPECT_NEAR(near.findOmitted("refraction")->bound, 0.1 * 20 * radians(30), 1e-9);
     EXPECT_THAT(describe(*near.findOmitted("refraction"), near.grid).reason,
                 HasSubstr("a gradient of 0.01 1/s bends by"));
-    EXPECT_TRUE(planOf(100, profileOf({{0, 1490}, {9, 1490}})).hasFeature("refraction"))
+    EXPECT_TRUE(makePlan(100, makeProfile({{0, 1490}, {9, 1490}})).hasFeature("refraction"))
         << "no gradient, but another speed than the sonar's: 0.67 m at 100 m, by bins of 0.5 m";
-    EXPECT_FALSE(planOf(100, profileOf({{0, 1498}, {9, 1498}})).hasFeature("refraction")) << "0.13 m";
+    EXPECT_FALSE(makePlan(100, makeProfile({{0, 1498}, {9, 1498}})).hasFeature("refraction")) << "0.13 m";
 }
 
 TEST(RefractionTest, TheRasterisedPathRejectsAProfileThatMatters) {
     SonarConfig config = longRange(thermocline());
     config.visibility = Visibility::Gl;
     config.device = "software";
-    const auto geometry = test::sceneOf({test::ground(-20)});
+    const auto geometry = test::makeScene({test::ground(-20)});
     EXPECT_THAT(whyStraight(config), HasSubstr("only ray tracing"));
     EXPECT_THROW(makeRenderPlan(config, *geometry), types::ConfigError);
     config.range = 20;
-    config.water->profile = profileOf({{0, 1500}, {20, 1500.2}});
+    config.water->profile = makeProfile({{0, 1500}, {20, 1500.2}});
     EXPECT_EQ(whyStraight(config), "") << "negligible refraction is omitted";
     config.visibility = Visibility::Auto;
     config.device = "";

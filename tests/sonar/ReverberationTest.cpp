@@ -13,8 +13,8 @@
 namespace insonify::sonar {
 namespace {
 
-using test::pingOf;
-using test::snapshotOf;
+using test::makePing;
+using test::makeSnapshot;
 
 constexpr types::Shell half_clear{0.0012, 2700, 6000, 3100, 0, false};  // reflects about a half
 constexpr double wall_relief = 0.05;
@@ -24,7 +24,7 @@ double wallTransmitted() { return std::norm(shellResponse(half_clear, 1).transmi
 
 /** Smooth walls of which the first are shells; the others are rigid. */
 types::GeometryPtr smoothWalls(std::vector<types::Mesh> meshes, size_t shells, float wall_slope = wall_relief) {
-    const auto scene = std::make_shared<types::Geometry>(*shellsOf(std::move(meshes), shells, half_clear));
+    const auto scene = std::make_shared<types::Geometry>(*makeShells(std::move(meshes), shells, half_clear));
     for (types::Material& material : scene->materials) {
         material.lambert_db = -200;
         material.reflection = 1;
@@ -40,11 +40,11 @@ SonarConfig facingWalls(double width_deg = 40, int beams = 1) {
 /** Returns the energy about a range, in all beams, times the square of the range, relative to a rigid wall. */
 double levelAt(const types::Sonar& ping, double range, double rigid) {
     double sum = 0;
-    for (uint32_t beam = 0; beam < ping.beam_count; ++beam) sum += energyOf(ping, beam, range - 0.11, range + 0.8);
+    for (uint32_t beam = 0; beam < ping.beam_count; ++beam) sum += sumEnergy(ping, beam, range - 0.11, range + 0.8);
     return sum * range * range / rigid;
 }
 double rigidLevel(const SonarConfig& config) {
-    return test::sumOf(pingOf(config, snapshotOf(smoothWalls({test::wall(5)}, 0)))) * 25;
+    return test::computeSum(makePing(config, makeSnapshot(smoothWalls({test::wall(5)}, 0)))) * 25;
 }
 
 /** Return n is at r1 + (n + 1) d, with the level T^4 R^(2 + 4 n) of sound pressures. */
@@ -52,7 +52,7 @@ TEST(ReverberationTest, TwoPlatesHaveTheReturnsOfSoundBackAndForth) {
     const SonarConfig config = facingWalls();
     const double rigid = rigidLevel(config);
     for (const bool is_rigid : {false, true}) {
-        const auto ping = pingOf(config, snapshotOf(smoothWalls({test::wall(5), test::wall(7)}, is_rigid ? 1 : 2)));
+        const auto ping = makePing(config, makeSnapshot(smoothWalls({test::wall(5), test::wall(7)}, is_rigid ? 1 : 2)));
         const double second = is_rigid ? 1 : wallReflected();
         EXPECT_NEAR(levelAt(ping, 5, rigid) / wallReflected(), 1, 0.02);
         double expected = std::pow(wallTransmitted(), 2) * second;
@@ -62,7 +62,7 @@ TEST(ReverberationTest, TwoPlatesHaveTheReturnsOfSoundBackAndForth) {
                       << " times back: " << 10 * std::log10(level) << " dB at " << 7 + 2 * n << " m, by the formula "
                       << 10 * std::log10(expected) << " dB\n";
             EXPECT_NEAR(10 * std::log10(level / expected), 0, 0.02) << n;
-            EXPECT_LT(energyOf(ping, 0, 6 + 2 * n, 6.8 + 2 * n) / energyOf(ping, 0, 6.8 + 2 * n, 8 + 2 * n), 1e-6);
+            EXPECT_LT(sumEnergy(ping, 0, 6 + 2 * n, 6.8 + 2 * n) / sumEnergy(ping, 0, 6.8 + 2 * n, 8 + 2 * n), 1e-6);
         }
     }
 }
@@ -71,12 +71,12 @@ TEST(ReverberationTest, ReturnsArriveAlongTheNormalOfTheWalls) {
     const SonarConfig config = facingWalls(60, 32);
     const double rigid = rigidLevel(config);
     const double yaw = 0.2;
-    const auto ping = pingOf(config, snapshotOf(smoothWalls({test::wall(5), test::wall(7)}, 2), {}, yaw));
+    const auto ping = makePing(config, makeSnapshot(smoothWalls({test::wall(5), test::wall(7)}, 2), {}, yaw));
     const double expected = std::pow(wallTransmitted(), 2) * std::pow(wallReflected(), 3);
     EXPECT_NEAR(10 * std::log10(levelAt(ping, 9, rigid) / expected), 0, 0.3);
     double bearing = 0, energy = 0;
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
-        const double there = energyOf(ping, beam, 8.8, 10);
+        const double there = sumEnergy(ping, beam, 8.8, 10);
         energy += there;
         bearing += there * ping.bearings[beam].rad;
     }
@@ -89,14 +89,14 @@ TEST(ReverberationTest, ATiltedWallHasItsReturnsAtTheImagesOfTheOther) {
     const double tilt = 0.06;
     types::Mesh far = test::quad({7 - 100 * std::sin(0.06f), -100 * std::cos(0.06f), -100},
                                  {200 * std::sin(0.06f), 200 * std::cos(0.06f), 0}, {0, 0, 200});
-    const auto ping = pingOf(config, snapshotOf(smoothWalls({test::wall(5), far}, 2)));
+    const auto ping = makePing(config, makeSnapshot(smoothWalls({test::wall(5), far}, 2)));
     const glm::dvec2 normal(std::cos(tilt), -std::sin(tilt));  // of the far wall, through (7, 0)
     const glm::dvec2 sonar = 2 * 7 * normal.x * normal;        // the sonar's image in it
     const double expected = std::abs(sonar.x - 5);             // to the near wall
     double range = 0, energy = 0;
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
         for (double at = 8; at < 10; at += 0.1) {
-            const double there = energyOf(ping, beam, at, at + 0.0999);
+            const double there = sumEnergy(ping, beam, at, at + 0.0999);
             range += there * (at + 0.05);
             energy += there;
         }
@@ -107,20 +107,20 @@ TEST(ReverberationTest, ATiltedWallHasItsReturnsAtTheImagesOfTheOther) {
 TEST(ReverberationTest, RoughCurvedAndSingleWallsHaveNoneBitForBit) {
     const SonarConfig config = facingWalls();
     const auto reverberates = [&](const types::GeometryPtr& scene) {
-        const auto ping = pingOf(config, snapshotOf(scene));
-        return energyOf(ping, 0, 8.5, 30) > 0;
+        const auto ping = makePing(config, makeSnapshot(scene));
+        return sumEnergy(ping, 0, 8.5, 30) > 0;
     };
     EXPECT_TRUE(reverberates(smoothWalls({test::wall(5), test::wall(7)}, 2)));
     EXPECT_FALSE(reverberates(smoothWalls({test::wall(5)}, 1)));
     SonarConfig none = config;
     none.max_walls = 0;
-    EXPECT_EQ(pingOf(config, snapshotOf(smoothWalls({test::wall(5)}, 0))).bins,
-              pingOf(none, snapshotOf(smoothWalls({test::wall(5)}, 0))).bins);
+    EXPECT_EQ(makePing(config, makeSnapshot(smoothWalls({test::wall(5)}, 0))).bins,
+              makePing(none, makeSnapshot(smoothWalls({test::wall(5)}, 0))).bins);
     const auto rough = smoothWalls({test::wall(5), test::wall(7)}, 2, 0.4f);
-    const auto ping = pingOf(config, snapshotOf(rough));
+    const auto ping = makePing(config, makeSnapshot(rough));
     double last = 0;
     for (double at = 7; at < 30; at += 0.1)
-        if (energyOf(ping, 0, at, at + 0.0999) > 0) last = at;
+        if (sumEnergy(ping, 0, at, at + 0.0999) > 0) last = at;
     EXPECT_LT(last, 7 / std::pow(std::cos(20 * std::numbers::pi / 180), 2) + 0.2) << "the far wall's end";
 }
 
@@ -128,9 +128,9 @@ TEST(ReverberationTest, RoughCurvedAndSingleWallsHaveNoneBitForBit) {
 TEST(ReverberationTest, ReturnsThatPathsByMirrorsHaveCountOnce) {
     SonarConfig config = facingWalls(), with_paths = config;
     with_paths.multipath.emplace().bounces = 2;
-    const auto snapshot = snapshotOf(smoothWalls({test::wall(5), test::wall(7)}, 1));
+    const auto snapshot = makeSnapshot(smoothWalls({test::wall(5), test::wall(7)}, 1));
     const double rigid = rigidLevel(config);
-    const auto ping = pingOf(config, snapshot), both = pingOf(with_paths, snapshot);
+    const auto ping = makePing(config, snapshot), both = makePing(with_paths, snapshot);
     for (const double range : {7.0, 9.0, 11.0, 13.0}) {
         std::cout << range << " m: " << levelAt(ping, range, rigid) << ", with multipath "
                   << levelAt(both, range, rigid) << "\n";
@@ -153,7 +153,7 @@ TEST(ReverberationTest, WallsWithMapsReflectByTheMaterialsOfTheirMaps) {
         scene->materials.push_back(scene->materials[1]);
         scene->materials[2].roughness_slope.reset();
         scene->materials[2].max_map_strength = strength;
-        const auto ping = pingOf(config, snapshotOf(scene));
+        const auto ping = makePing(config, makeSnapshot(scene));
         for (const int n : {1, 2}) {  // the far wall reflects n + 1 times
             const double expected = std::pow(wallTransmitted(), 2) * std::pow(wallReflected(), 1 + 2 * n) *
                                     std::pow(double{strength}, n + 1),
@@ -180,8 +180,8 @@ TEST(ReverberationTest, PatternsPulsesAndCoherentSpeckleKeepTheEnergy) {
         double level = 0, there = 0;
         for (int place = 0; place < (effect == "coherent" ? 60 : 1); ++place) {  // of other scatterers
             const glm::dvec3 position(0, 3 * place - 60, 0);
-            two.render(snapshotOf(walls, position), ping);
-            one.render(snapshotOf(single, position), rigid);
+            two.render(makeSnapshot(walls, position), ping);
+            one.render(makeSnapshot(single, position), rigid);
             level += levelAt(ping, 9, 1);
             there += levelAt(rigid, 9, 1);
         }
@@ -192,13 +192,13 @@ TEST(ReverberationTest, PatternsPulsesAndCoherentSpeckleKeepTheEnergy) {
 
 TEST(ReverberationTest, TheTruthIsTheWallThatReturnsTheSound) {
     const SonarConfig config = facingWalls();
-    const auto snapshot = snapshotOf(smoothWalls({test::wall(5), test::wall(7)}, 2));
+    const auto snapshot = makeSnapshot(smoothWalls({test::wall(5), test::wall(7)}, 2));
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar ping;
     types::SonarTruth truth;
     renderer.setTruth(ping, &truth);
     renderer.render(snapshot, ping);
-    EXPECT_EQ(ping.bins, pingOf(config, snapshot).bins) << "the truth changes no bin";
+    EXPECT_EQ(ping.bins, makePing(config, snapshot).bins) << "the truth changes no bin";
     for (const auto& [bin, object] : {std::pair(50, 0), {70, 1}, {90, 0}, {110, 1}}) {
         const auto at = static_cast<size_t>(bin);
         EXPECT_EQ(truth.object[at], object) << bin;

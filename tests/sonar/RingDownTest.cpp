@@ -11,14 +11,14 @@ namespace insonify::sonar {
 namespace {
 
 SonarConfig ringingSonar() {
-    SonarConfig config = test::sonarOf({.beams = 4, .bins = 200, .rows = 32});
+    SonarConfig config = test::getSonar({.beams = 4, .bins = 200, .rows = 32});
     config.visibility = Visibility::Cpu;
     config.pulse.emplace().bandwidth_khz = 4;
     return config;
 }
 
 types::Sonar ringingPing(const SonarConfig& config, const types::GeometryPtr& geometry) {
-    return test::pingOf(config, test::snapshotOf(geometry));
+    return test::makePing(config, test::makeSnapshot(geometry));
 }
 
 TEST(RingDownTest, EveryBeamHasTheMeanOfItsDecayOverEachBin) {
@@ -37,7 +37,7 @@ TEST(RingDownTest, EveryBeamHasTheMeanOfItsDecayOverEachBin) {
 }
 
 TEST(RingDownTest, IsAddedToTheEchoesAndIsNoEcho) {
-    const auto geometry = test::sceneOf({test::wall(10)});
+    const auto geometry = test::makeScene({test::wall(10)});
     const types::Sonar plain = ringingPing(ringingSonar(), geometry);
     SonarConfig config = ringingSonar();
     config.pulse->ring_down = acoustics::RingDownConfig{-3000, 25};
@@ -46,15 +46,15 @@ TEST(RingDownTest, IsAddedToTheEchoesAndIsNoEcho) {
     const types::Sonar received = ringingPing(config, geometry);
     EXPECT_GT(received.bins[0], 0.7f);
     EXPECT_NEAR(received.bins[100], plain.bins[100], 1e-6f * plain.bins[100]);
-    const auto behind = test::sceneOf({test::wall(-10)});
+    const auto behind = test::makeScene({test::wall(-10)});
     SonarRenderer deaf(config, behind);
     types::Sonar ping;
-    deaf.render(test::snapshotOf(behind), ping);
+    deaf.render(test::makeSnapshot(behind), ping);
     EXPECT_FALSE(deaf.hasEchoes());
 }
 
 TEST(RingDownTest, ThePlanStatesWhetherItIsAdded) {
-    const auto geometry = test::sceneOf({test::wall(10)});
+    const auto geometry = test::makeScene({test::wall(10)});
     SonarConfig config = ringingSonar();
     EXPECT_EQ(makeRenderPlan(config, *geometry).findOmitted("transmit ring-down")->reason, Reason::NotConfigured);
     config.pulse->ring_down = acoustics::RingDownConfig{0, 25};

@@ -62,17 +62,17 @@ types::Mesh exactBall(float radius, uint32_t columns) {
 }
 
 SonarConfig closeSonar() {
-    SonarConfig config = test::sonarOf(
+    SonarConfig config = test::getSonar(
         {.beams = 1, .width_deg = 10, .height_deg = 10, .bins = 400, .bin = 0.02, .rows = 128, .columns = 128});
     config.visibility = Visibility::Cpu;
     return config;
 }
 
 types::Sonar pingOfBall(types::Mesh mesh, const glm::dmat3& shape = glm::dmat3(1)) {
-    auto scene = std::make_shared<types::Geometry>(*test::sceneOf({std::move(mesh)}, 0, {{6, 0, 0}}));
+    auto scene = std::make_shared<types::Geometry>(*test::makeScene({std::move(mesh)}, 0, {{6, 0, 0}}));
     const glm::dmat4 place = scene->objects[0].world_from_object;
     scene->objects[0].world_from_object = place * glm::dmat4(shape);
-    return test::pingOf(closeSonar(), test::snapshotOf(scene));
+    return test::makePing(closeSonar(), test::makeSnapshot(scene));
 }
 
 double difference(const types::Sonar& a, const types::Sonar& b) {

@@ -28,7 +28,7 @@ std::vector<SonarConfig> rasterSonars() {
     std::vector<SonarConfig> all;
     for (int choices = 0; choices < 32; ++choices)
         for (int volume = 0; volume < 3; ++volume) {
-            SonarConfig config = test::sonarOf({.beams = 2, .width_deg = 20, .bins = 4, .rows = 8, .columns = 4});
+            SonarConfig config = test::getSonar({.beams = 2, .width_deg = 20, .bins = 4, .rows = 8, .columns = 4});
             config.visibility = Visibility::Gl;
             config.device = "software";
             if (choices & 1) config.model = Model::Cerqueira2017;
@@ -114,11 +114,11 @@ struct ShaderTest : testing::Test {
             GTEST_SKIP() << "SKIPPED: no glslangValidator (Debian: glslang-tools; scripts/setup installs it)";
     }
     /** Returns the errors of glslangValidator for files of the folder; empty when it accepts all. */
-    std::string messagesOf(const std::string& arguments) const {
+    std::string getMessages(const std::string& arguments) const {
         const std::string call =
             "cd " + folder_.path().string() + " && glslangValidator " + arguments + " > answer.txt 2>&1";
         const int status = std::system(call.c_str());
-        const std::vector<char> text = bytesOf(folder_ / "answer.txt");
+        const std::vector<char> text = toBytes(folder_ / "answer.txt");
         return status == 0 ? "" : std::string(text.begin(), text.end());
     }
     /** Writes a shader into the folder, in a file whose ending is its stage; returns the file's name. */
@@ -148,7 +148,7 @@ TEST_F(ShaderTest, EachSetOfFeaturesIsValidGlsl) {
         compiled.merge(featuresIn(shader.text, "#define (HAVE_\\w+)"));
         known.merge(featuresIn(shader.text, "(?:ifdef |ifndef |defined\\()(HAVE_\\w+)"));
     }
-    EXPECT_EQ(messagesOf(files), "");
+    EXPECT_EQ(getMessages(files), "");
     size_t feature_sets = 0;
     forEachFeatureSet([&](const RenderPlan&, const types::Geometry&) { ++feature_sets; });
     EXPECT_EQ(deposits, feature_sets) << "a program for each";
@@ -164,17 +164,17 @@ TEST_F(ShaderTest, StagesFitTogether) {
         return "-l " + stage(GL_VERTEX_SHADER, name + ".vert.glsl") + " " +
                stage(GL_FRAGMENT_SHADER, name + ".frag.glsl");
     };
-    EXPECT_EQ(messagesOf(program("surface", {})), "");
-    EXPECT_EQ(messagesOf(program("surface", {"HAVE_NORMAL_MAP"})), "");
-    EXPECT_EQ(messagesOf(program("resolve", {})), "");
+    EXPECT_EQ(getMessages(program("surface", {})), "");
+    EXPECT_EQ(getMessages(program("surface", {"HAVE_NORMAL_MAP"})), "");
+    EXPECT_EQ(getMessages(program("resolve", {})), "");
 }
 
 TEST_F(ShaderTest, ReportsAnErrorWithItsFileAndPlace) {
     const std::string right = gpu::shaderSource("deposit.comp.glsl", {"HAVE_PHYSICAL"});
     const std::string wrong = right + "float wrong() { return no_such_thing; }\n";
-    EXPECT_THAT(messagesOf(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", wrong})),
+    EXPECT_THAT(getMessages(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", wrong})),
                 AllOf(HasSubstr("deposit.comp.glsl.comp"), HasSubstr("'no_such_thing' : undeclared identifier")));
-    EXPECT_THAT(messagesOf(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", right})), IsEmpty());
+    EXPECT_THAT(getMessages(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", right})), IsEmpty());
 }
 
 TEST(ShaderTextTest, ComputeShadersHaveAtMostEightStorageBuffers) {

@@ -14,7 +14,7 @@ namespace {
 
 using test::Form;
 using test::ground;
-using test::sceneOf;
+using test::makeScene;
 
 constexpr double height = 8;  // above the bottom [m]
 
@@ -29,7 +29,7 @@ struct SideScanTaskTest : test::TaskBench<SideScanTask, types::SnapshotPtr, type
         config.depression_deg = 50;
         return config;
     }
-    types::SonarPtr lineOf(types::Snapshot snapshot) {
+    types::SonarPtr makeLine(types::Snapshot snapshot) {
         return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
     static types::Sonar side(const types::Sonar& line, uint32_t beam) {
@@ -54,7 +54,7 @@ struct SideScanTaskTest : test::TaskBench<SideScanTask, types::SnapshotPtr, type
 
 TEST_F(SideScanTaskTest, AFlatBottomFollowsLambertAlongTheGroundOnBothSides) {
     startWith(sideScan());
-    const auto line = lineOf(test::snapshotOf(sceneOf({ground(0)}, -10), {3, 4, height}, types::radians(70)));
+    const auto line = makeLine(test::makeSnapshot(makeScene({ground(0)}, -10), {3, 4, height}, types::radians(70)));
     ASSERT_TRUE(line) << task_.lastError();
     ASSERT_EQ(line->beam_count, 2u);
     const double along = types::radians(0.5);
@@ -67,7 +67,7 @@ TEST_F(SideScanTaskTest, AFlatBottomFollowsLambertAlongTheGroundOnBothSides) {
 TEST_F(SideScanTaskTest, TheFirstReturnIsAtTheHeightAndTheLastWhereTheUpperEdgeMeetsTheBottom) {
     SideScanConfig config = sideScan();
     startWith(config);
-    const auto line = lineOf(test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}));
+    const auto line = makeLine(test::makeSnapshot(makeScene({ground(0)}), {0, 0, height}));
     ASSERT_TRUE(line) << task_.lastError();
     for (const uint32_t beam : {0u, 1u}) {
         const types::Sonar one = side(*line, beam);
@@ -80,7 +80,7 @@ TEST_F(SideScanTaskTest, TheFirstReturnIsAtTheHeightAndTheLastWhereTheUpperEdgeM
     task_.stop();
     task_.cleanup();
     startWith(config);
-    const auto narrow = lineOf(test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}));
+    const auto narrow = makeLine(test::makeSnapshot(makeScene({ground(0)}), {0, 0, height}));
     ASSERT_TRUE(narrow) << task_.lastError();
     const types::Sonar one = side(*narrow, 1);
     const double bin = one.binStart(1);
@@ -93,9 +93,9 @@ TEST_F(SideScanTaskTest, TheFirstReturnIsAtTheHeightAndTheLastWhereTheUpperEdgeM
 
 TEST_F(SideScanTaskTest, PortAndStarboardAreCorrectAndTheLineHasTheWidthOfTheBeam) {
     startWith(sideScan());
-    const auto echoesOf = [&](glm::dvec3 target, double yaw) {
-        const auto line =
-            lineOf(test::snapshotOf(sceneOf({test::sphere(0.3)}, 0, {target}), {0, 0, height}, types::radians(yaw)));
+    const auto getEchoes = [&](glm::dvec3 target, double yaw) {
+        const auto line = makeLine(
+            test::makeSnapshot(makeScene({test::sphere(0.3)}, 0, {target}), {0, 0, height}, types::radians(yaw)));
         EXPECT_TRUE(line) << task_.lastError();
         EXPECT_NEAR(line->bearings[0].deg(), -90, 1e-9);
         EXPECT_NEAR(line->bearings[1].deg(), 90, 1e-9);
@@ -104,10 +104,10 @@ TEST_F(SideScanTaskTest, PortAndStarboardAreCorrectAndTheLineHasTheWidthOfTheBea
         return std::pair{std::ranges::any_of(side(*line, 0).bins, [](float bin) { return bin > 0; }),
                          std::ranges::any_of(side(*line, 1).bins, [](float bin) { return bin > 0; })};
     };
-    EXPECT_EQ(echoesOf({0, 12, 1}, 0), std::pair(false, true)) << "west of a vehicle that looks north: port";
-    EXPECT_EQ(echoesOf({0, -12, 1}, 0), std::pair(true, false));
-    EXPECT_EQ(echoesOf({0, -12, 1}, 180), std::pair(false, true)) << "turned round";
-    EXPECT_EQ(echoesOf({2, 12, 1}, 0), std::pair(false, false)) << "ahead of the line";
+    EXPECT_EQ(getEchoes({0, 12, 1}, 0), std::pair(false, true)) << "west of a vehicle that looks north: port";
+    EXPECT_EQ(getEchoes({0, -12, 1}, 0), std::pair(true, false));
+    EXPECT_EQ(getEchoes({0, -12, 1}, 180), std::pair(false, true)) << "turned round";
+    EXPECT_EQ(getEchoes({2, 12, 1}, 0), std::pair(false, false)) << "ahead of the line";
 }
 
 /** The two-way weight of a beam's law in the bins of one side, at the ranges where the bottom is at an angle. */
@@ -119,7 +119,7 @@ TEST_F(SideScanTaskTest, TheLawAcrossTheTrackIsAboutTheAxisOfEachBeam) {
     config.sonar.beam_pattern->receive.elevation->weighting = acoustics::Weighting::Gaussian;
     config.sonar.beam_pattern->receive.elevation->width_deg = 40;
     startWith(config);
-    const auto line = lineOf(test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}));
+    const auto line = makeLine(test::makeSnapshot(makeScene({ground(0)}), {0, 0, height}));
     ASSERT_TRUE(line) << task_.lastError();
     const Form flat = bottom(1, types::radians(0.5));
     for (const uint32_t beam : {0u, 1u}) {
@@ -139,9 +139,9 @@ TEST_F(SideScanTaskTest, TheTruthsElevationsAreAboveTheVehiclesPlane) {
     task_.truth.connectTo(reported.port, framework::ConnPolicy::data());
     startWith(sideScan());
     for (const double roll : {0.0, 6.0}) {
-        types::Snapshot snapshot = test::snapshotOf(sceneOf({ground(0)}, -10), {3, 4, height}, types::radians(70));
+        types::Snapshot snapshot = test::makeSnapshot(makeScene({ground(0)}, -10), {3, 4, height}, types::radians(70));
         snapshot.sonar.orientation *= glm::angleAxis(types::radians(roll), glm::dvec3(1, 0, 0));
-        const auto line = lineOf(snapshot);
+        const auto line = makeLine(snapshot);
         types::SonarTruthPtr truth;
         ASSERT_TRUE(line && reported.port.readNewest(truth) == framework::FlowStatus::NewData) << task_.lastError();
         size_t compared = 0;

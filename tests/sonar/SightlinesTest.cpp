@@ -30,7 +30,7 @@ bool isCrossed(const types::Geometry& geometry, const std::vector<glm::dmat4>& p
     return false;
 }
 
-std::vector<glm::dmat4> placesOf(const types::Snapshot& snapshot) {
+std::vector<glm::dmat4> getPlaces(const types::Snapshot& snapshot) {
     std::vector<glm::dmat4> places;
     for (const types::Object& object : snapshot.geometry->objects) places.push_back(object.world_from_object);
     for (const types::MovedObject& moved : snapshot.moved) places[moved.object] = moved.world_from_object;
@@ -42,7 +42,7 @@ TEST(SightlinesTest, APointIsVisibleIfNoTriangleIsBeforeIt) {
     for (const types::GeometryPtr& geometry :
          {types::GeometryPtr(clusteredHarbour()), types::GeometryPtr(test::surfaces())}) {
         Sightlines lines(*geometry), by_trees(*geometry, Sightlines::Lines::Many);
-        types::Snapshot snapshot = test::snapshotOf(geometry);
+        types::Snapshot snapshot = test::makeSnapshot(geometry);
         int open = 0;
         for (int ping = 0; ping < 20; ++ping) {
             snapshot.sonar.position = uniformVector(random, 3);
@@ -52,7 +52,7 @@ TEST(SightlinesTest, APointIsVisibleIfNoTriangleIsBeforeIt) {
                                                   glm::dvec3(1, 2, 3))}};
             lines.place(snapshot);
             by_trees.place(snapshot);
-            const auto places = placesOf(snapshot);
+            const auto places = getPlaces(snapshot);
             for (int i = 0; i < 25; ++i) {
                 const glm::dvec3 point = snapshot.sonar.position + uniformVector(random, 14);
                 const bool crossed = isCrossed(*geometry, places, snapshot.sonar.position, point);
@@ -67,45 +67,45 @@ TEST(SightlinesTest, APointIsVisibleIfNoTriangleIsBeforeIt) {
 }
 
 TEST(SightlinesTest, AnObjectFlattenedByItsScaleHidesByTreesToo) {
-    auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::sphere(1, 20)}));
+    auto geometry = std::make_shared<types::Geometry>(*test::makeScene({test::sphere(1, 20)}));
     geometry->objects[0].world_from_object = glm::scale(glm::dmat4(1), {0.0, 1.0, 1.0});
     Sightlines lines(*geometry, Sightlines::Lines::Many);
-    lines.place(test::snapshotOf(geometry, {-5, 0.1, 0.2}));
+    lines.place(test::makeSnapshot(geometry, {-5, 0.1, 0.2}));
     EXPECT_FALSE(lines.isOpen({5, 0.1, 0.2}));
     EXPECT_TRUE(lines.isOpen({5, 2.5, 0.2}));
 }
 
 TEST(SightlinesTest, TrianglesWithinAMillimetreOfEitherEndHideNothing) {
-    const auto geometry = test::sceneOf({test::wall(5)});
+    const auto geometry = test::makeScene({test::wall(5)});
     Sightlines lines(*geometry);
-    lines.place(test::snapshotOf(geometry, {4.9995, 0, 0}));
+    lines.place(test::makeSnapshot(geometry, {4.9995, 0, 0}));
     EXPECT_TRUE(lines.isOpen({9, 0, 0}));
-    lines.place(test::snapshotOf(geometry));
+    lines.place(test::makeSnapshot(geometry));
     EXPECT_TRUE(lines.isOpen({5, 1, 1}));
     EXPECT_TRUE(lines.isOpen({5.0009, 0, 0}));
     EXPECT_FALSE(lines.isOpen({5.002, 0, 0}));
 }
 
 TEST(SightlinesTest, ASonarIsInsideAMeshThatShowsOnlyBacks) {
-    const auto insideOf = [](const types::GeometryPtr& geometry, const glm::dvec3& place) {
+    const auto findInside = [](const types::GeometryPtr& geometry, const glm::dvec3& place) {
         Sightlines lines(*geometry);
-        lines.place(test::snapshotOf(geometry, place));
+        lines.place(test::makeSnapshot(geometry, place));
         return lines.enclosing();
     };
     types::Mesh pool = test::sphere(2, 20);  // with inward faces, as in a tank
     for (size_t i = 0; i < pool.indices.size(); i += 3) std::swap(pool.indices[i], pool.indices[i + 1]);
     const auto scene =
-        test::sceneOf({test::ground(-4, 200), test::sphere(2, 20), pool}, 0, {{0, 0, 0}, {10, 0, 0}, {-10, 0, 0}});
-    EXPECT_EQ(insideOf(scene, {10, 0.3, 0.2}), std::optional<uint32_t>(1));
-    EXPECT_EQ(insideOf(scene, {11.9, 0, 0}), std::optional<uint32_t>(1));
-    EXPECT_FALSE(insideOf(scene, {12.1, 0, 0}));
-    EXPECT_FALSE(insideOf(scene, {-10, 0, 0})) << "a tank";
-    EXPECT_FALSE(insideOf(scene, {0, 0, 0}));
-    EXPECT_FALSE(insideOf(scene, {0, 0, -5})) << "below a sheet";
+        test::makeScene({test::ground(-4, 200), test::sphere(2, 20), pool}, 0, {{0, 0, 0}, {10, 0, 0}, {-10, 0, 0}});
+    EXPECT_EQ(findInside(scene, {10, 0.3, 0.2}), std::optional<uint32_t>(1));
+    EXPECT_EQ(findInside(scene, {11.9, 0, 0}), std::optional<uint32_t>(1));
+    EXPECT_FALSE(findInside(scene, {12.1, 0, 0}));
+    EXPECT_FALSE(findInside(scene, {-10, 0, 0})) << "a tank";
+    EXPECT_FALSE(findInside(scene, {0, 0, 0}));
+    EXPECT_FALSE(findInside(scene, {0, 0, -5})) << "below a sheet";
     const auto harbour = clusteredHarbour();
-    EXPECT_EQ(insideOf(harbour, {9, 4, -3.2}), std::optional<uint32_t>(1));
-    EXPECT_EQ(insideOf(harbour, {-12, 6, -2}), std::optional<uint32_t>(2)) << "mirrored";
-    EXPECT_FALSE(insideOf(harbour, {0, 0, 0}));
+    EXPECT_EQ(findInside(harbour, {9, 4, -3.2}), std::optional<uint32_t>(1));
+    EXPECT_EQ(findInside(harbour, {-12, 6, -2}), std::optional<uint32_t>(2)) << "mirrored";
+    EXPECT_FALSE(findInside(harbour, {0, 0, 0}));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ struct RandomSonar {
 
     types::Sonar ping(Deposit deposit) {
         config.deposit = deposit;
-        return test::pingOf(config, snapshot, options);
+        return test::makePing(config, snapshot, options);
     }
 
 private:
@@ -46,13 +46,13 @@ private:
         const int bins = static_cast<int>(std::min(bins_to_the_end, 30000.0));
         const int beams = static_cast<int>(between(1, 65));
         const double width = chance(0.2) ? 180 : between(10, 140);
-        config = test::sonarOf({.beams = beams,
-                                .width_deg = width,
-                                .height_deg = chance(0.2) ? between(80, 150) : between(1, 60),
-                                .bins = bins,
-                                .bin = range / bins,
-                                .rows = static_cast<int>(scaleBetween(8, 200)),
-                                .columns = static_cast<int>(between(1, 9))});
+        config = test::getSonar({.beams = beams,
+                                 .width_deg = width,
+                                 .height_deg = chance(0.2) ? between(80, 150) : between(1, 60),
+                                 .bins = bins,
+                                 .bin = range / bins,
+                                 .rows = static_cast<int>(scaleBetween(8, 200)),
+                                 .columns = static_cast<int>(between(1, 9))});
         config.visibility = Visibility::Gl;
         config.device = "software";
         config.range_rounding = RangeRounding::Exact;
@@ -97,7 +97,7 @@ private:
                                                        : glm::dvec3(0);
         for (auto& object : geometry->objects) object.world_from_object[3] += glm::dvec4(away, 0);
         snapshot =
-            test::snapshotOf(geometry, position + away, between(-3.1, 3.1), between(-0.4, 0.4), between(-0.5, 0.5));
+            test::makeSnapshot(geometry, position + away, between(-3.1, 3.1), between(-0.4, 0.4), between(-0.5, 0.5));
     }
 
     std::mt19937 random;

@@ -11,7 +11,7 @@
 namespace insonify::sonar {
 namespace {
 
-using test::sceneOf;
+using test::makeScene;
 
 constexpr double cloud_bin = 0.03;  // 20 us at 1500 m/s [m]
 
@@ -27,7 +27,7 @@ struct Sonar3dTaskTest : test::TaskBench<Sonar3dTask, types::SnapshotPtr, types:
         config.sonar.quality.rows = config.sonar.quality.columns_per_beam = 8;
         return config;
     }
-    types::DepthMapPtr mapOf(types::Snapshot snapshot) {
+    types::DepthMapPtr makeMap(types::Snapshot snapshot) {
         return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
     /** A pattern reaches far beyond its beam: few rows in its main lobe would show a plate in neighbouring beams alone.
@@ -48,7 +48,7 @@ struct Sonar3dTaskTest : test::TaskBench<Sonar3dTask, types::SnapshotPtr, types:
         receive.width_deg = 0.6;
         startWith(config);
         const auto plate = test::quad(8.0 * ahead - half * (across + up), 2 * half * across, 2 * half * up);
-        const auto map = mapOf(test::snapshotOf(sceneOf({plate})));
+        const auto map = makeMap(test::makeSnapshot(makeScene({plate})));
         ASSERT_TRUE(map) << task_.lastError();
         const auto strongest = std::ranges::max_element(map->remissions) - map->remissions.begin();
         const auto offDeg = [&](size_t cell) { return types::degrees(map->horizontal_interval[cell % 80]) - 12; };
@@ -66,7 +66,7 @@ TEST_F(Sonar3dTaskTest, AWallIsAtTheRangeOfEachDirection) {
     constexpr double distance = 6;
     startWith(grid());
     for (const double yaw : {0.0, 20.0}) {
-        const auto map = mapOf(test::snapshotOf(sceneOf({test::wall(distance)}), {}, types::radians(yaw)));
+        const auto map = makeMap(test::makeSnapshot(makeScene({test::wall(distance)}), {}, types::radians(yaw)));
         ASSERT_TRUE(map) << task_.lastError();
         ASSERT_EQ(map->distances.size(), 1200u);
         double worst = 0;
@@ -90,7 +90,7 @@ TEST_F(Sonar3dTaskTest, RangesAreExactForBinsOfFractionalMicroseconds) {
     config.sonar.bin_count = 800;
     config.sonar.range_rounding = RangeRounding::Exact;
     startWith(config);
-    const auto map = mapOf(test::snapshotOf(sceneOf({test::wall(5)})));
+    const auto map = makeMap(test::makeSnapshot(makeScene({test::wall(5)})));
     ASSERT_TRUE(map) << task_.lastError();
     double worst = 0;
     for (size_t cell = 0; cell < map->distances.size(); ++cell)
@@ -108,7 +108,7 @@ TEST_F(Sonar3dTaskTest, ASphereIsAtTheRangeOfEachDirectionAndNothingNextToIt) {
     config.vertical = {80, 40};
     config.sonar.beam_height_deg = 0.5;
     startWith(config);
-    const auto map = mapOf(test::snapshotOf(sceneOf({test::sphere(radius)}, 0, {centre})));
+    const auto map = makeMap(test::makeSnapshot(makeScene({test::sphere(radius)}, 0, {centre})));
     ASSERT_TRUE(map) << task_.lastError();
     double worst = 0;
     int met = 0, weak = 0;
@@ -142,7 +142,7 @@ TEST_F(Sonar3dTaskTest, ATaylorPatternShowsAPlateInItsOwnBeams) {
 TEST_F(Sonar3dTaskTest, RowsRunDownAndColumnsFromPortToStarboard) {
     startWith(grid());
     const auto plate = test::quad({5, 1.5, 0.5}, {0, 1, 0}, {0, 0, 1});  // ahead, to port, above
-    const auto map = mapOf(test::snapshotOf(sceneOf({plate})));
+    const auto map = makeMap(test::makeSnapshot(makeScene({plate})));
     ASSERT_TRUE(map) << task_.lastError();
     EXPECT_LT(map->vertical_interval.front(), map->vertical_interval.back());
     EXPECT_GT(map->horizontal_interval.front(), map->horizontal_interval.back());
@@ -161,7 +161,8 @@ TEST_F(Sonar3dTaskTest, SoundingsAreTheSameInTheWorld) {
     test::Reader<types::PointCloudPtr> clouds;
     task_.soundings.connectTo(clouds.port, framework::ConnPolicy::buffer(2));
     startWith(grid());
-    ASSERT_TRUE(mapOf(test::snapshotOf(sceneOf({test::ground(0)}), {3, -2, 4}, types::radians(50), types::radians(35))))
+    ASSERT_TRUE(
+        makeMap(test::makeSnapshot(makeScene({test::ground(0)}), {3, -2, 4}, types::radians(50), types::radians(35))))
         << task_.lastError();
     types::PointCloudPtr cloud;
     ASSERT_TRUE(clouds.port.readNew(cloud));
@@ -177,7 +178,7 @@ TEST_F(Sonar3dTaskTest, DetectionsAreTheRangeImageByTravelTimes) {
     task_.detections.connectTo(reader.port, framework::ConnPolicy::buffer(2));
     startWith(grid());
     const auto plate = test::quad({5, 1.5, 0.5}, {0, 1, 0}, {0, 0, 1});  // ahead, to port, above
-    const auto map = mapOf(test::snapshotOf(sceneOf({plate})));
+    const auto map = makeMap(test::makeSnapshot(makeScene({plate})));
     types::SonarDetectionsPtr found;
     ASSERT_TRUE(map && reader.port.readNew(found)) << task_.lastError();
     ASSERT_EQ(found->travel_times.size(), map->distances.size());
@@ -210,8 +211,8 @@ TEST_F(Sonar3dTaskTest, ThePingIsTheSumOverAllElevations) {
     Sonar3dConfig config = grid();
     config.sonar.quality.rows = config.sonar.quality.columns_per_beam = 16;
     startWith(config);
-    const types::Snapshot scene = test::snapshotOf(sceneOf({test::wall(6)}));
-    ASSERT_TRUE(mapOf(scene)) << task_.lastError();
+    const types::Snapshot scene = test::makeSnapshot(makeScene({test::wall(6)}));
+    ASSERT_TRUE(makeMap(scene)) << task_.lastError();
     types::SonarPtr ping;
     ASSERT_TRUE(pings.port.readNew(ping));
     SonarConfig whole = config.sonar;
@@ -238,11 +239,11 @@ TEST_F(Sonar3dTaskTest, AWeakEchoInThePingIsNoReturn) {
     config.detection.threshold_db = -5;
     startWith(config);
     auto geometry = std::make_shared<types::Geometry>(
-        *sceneOf({test::quad({5, 1, -1}, {0, 2, 0}, {0, 0, 2}), test::quad({5, -3, -1}, {0, 2, 0}, {0, 0, 2})}));
+        *makeScene({test::quad({5, 1, -1}, {0, 2, 0}, {0, 0, 2}), test::quad({5, -3, -1}, {0, 2, 0}, {0, 0, 2})}));
     geometry->materials.push_back(geometry->materials[0]);
     geometry->materials[1].lambert_db = -20;
     for (types::Cluster& cluster : geometry->meshes[1].clusters) cluster.material = 1;
-    const auto map = mapOf(test::snapshotOf(geometry));
+    const auto map = makeMap(test::makeSnapshot(geometry));
     ASSERT_TRUE(map) << task_.lastError();
     size_t port = 0, starboard = 0;
     for (size_t cell = 0; cell < map->distances.size(); ++cell)
@@ -253,14 +254,14 @@ TEST_F(Sonar3dTaskTest, AWeakEchoInThePingIsNoReturn) {
 
 /** A ball before a wall. */
 types::Snapshot ballBeforeWall() {
-    return test::snapshotOf(sceneOf({test::sphere(1.5f), test::wall(12)}, 0, {{6, 1, 0.5}, {}}));
+    return test::makeSnapshot(makeScene({test::sphere(1.5f), test::wall(12)}, 0, {{6, 1, 0.5}, {}}));
 }
 
 TEST_F(Sonar3dTaskTest, EachCellOfTheMapNamesItsObject) {
     test::Reader<types::SonarTruthPtr> truths{"truths"};
     task_.range_truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
     startWith(grid());
-    const auto map = mapOf(ballBeforeWall());
+    const auto map = makeMap(ballBeforeWall());
     ASSERT_TRUE(map) << task_.lastError();
     types::SonarTruthPtr truth;
     ASSERT_TRUE(truths.port.readNew(truth));
@@ -299,9 +300,9 @@ TEST_F(Sonar3dTaskTest, ThePingsTruthIsThatOfAFanOfTheWholeHeight) {
     config.horizontal = {40, 40};
     config.sonar.quality.rows = config.sonar.quality.columns_per_beam = 16;
     startWith(config);
-    auto geometry = sceneOf({test::sphere(1.5f), test::wall(12), test::ground(-2.5f)}, 0, {{6, 1, 0.5}, {}, {}});
-    const types::Snapshot scene = test::snapshotOf(geometry);
-    ASSERT_TRUE(mapOf(scene)) << task_.lastError();
+    auto geometry = makeScene({test::sphere(1.5f), test::wall(12), test::ground(-2.5f)}, 0, {{6, 1, 0.5}, {}, {}});
+    const types::Snapshot scene = test::makeSnapshot(geometry);
+    ASSERT_TRUE(makeMap(scene)) << task_.lastError();
     types::SonarTruthPtr truth;
     ASSERT_TRUE(truths.port.readNew(truth));
     ASSERT_EQ(truth->diagnostic(), nullptr);
@@ -339,13 +340,13 @@ TEST_F(Sonar3dTaskTest, ThePingsTruthIsThatOfAFanOfTheWholeHeight) {
 
 TEST_F(Sonar3dTaskTest, ReadingTheTruthChangesNoBin) {
     startWith(grid());
-    const auto before = mapOf(ballBeforeWall());
+    const auto before = makeMap(ballBeforeWall());
     ASSERT_TRUE(before) << task_.lastError();
     test::Reader<types::SonarTruthPtr> truths{"truths"};
     task_.range_truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
     types::Snapshot later = ballBeforeWall();
     later.time = types::Time::fromSeconds(5);
-    const auto after = mapOf(later);
+    const auto after = makeMap(later);
     ASSERT_TRUE(after) << task_.lastError();
     EXPECT_EQ(before->distances, after->distances);
     EXPECT_EQ(before->remissions, after->remissions);
@@ -357,7 +358,7 @@ TEST_F(Sonar3dTaskTest, AnEchoTooWeakForAReturnHasNoObject) {
     Sonar3dConfig config = grid();
     config.detection.threshold_db = -5;
     startWith(config);
-    const auto map = mapOf(ballBeforeWall());
+    const auto map = makeMap(ballBeforeWall());
     ASSERT_TRUE(map) << task_.lastError();
     types::SonarTruthPtr truth;
     ASSERT_TRUE(truths.port.readNew(truth));
@@ -376,7 +377,7 @@ TEST_F(Sonar3dTaskTest, ASilentSonarReportsItsDirections) {
     environment->warn = [&](const std::string& text) { reported += text; };
     task_.setEnvironment(environment);
     startWith(grid());
-    const auto map = mapOf(test::snapshotOf(sceneOf({test::wall(60)})));
+    const auto map = makeMap(test::makeSnapshot(makeScene({test::wall(60)})));
     ASSERT_TRUE(map) << task_.lastError();
     EXPECT_TRUE(std::ranges::none_of(map->distances, [](float distance) { return std::isfinite(distance); }));
     EXPECT_THAT(reported, testing::HasSubstr("beyond the range of 15 m"));
@@ -397,7 +398,7 @@ TEST_F(Sonar3dTaskTest, TheRingDownOfThePingIsThatOfTheSonarForAnyNumberOfRows) 
             config.sonar.imperfections.reset();
             if (imperfect) config.sonar.imperfections.emplace().clock_jitter_us = 0;
             startWith(config);
-            ASSERT_TRUE(mapOf(test::snapshotOf(test::openWater()))) << task_.lastError();
+            ASSERT_TRUE(makeMap(test::makeSnapshot(test::openWater()))) << task_.lastError();
             types::SonarPtr ping;
             ASSERT_TRUE(pings.port.readNew(ping));
             const double width = ping->binStart(1), rate = std::log(10);

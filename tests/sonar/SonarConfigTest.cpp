@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 template <class Config>
-std::vector<std::string> diagnosticsOf(const char* yaml) {
+std::vector<std::string> findDiagnostics(const char* yaml) {
     framework::ConfigReader reader("sonar.yml");
     Config config;
     reader.read(YAML::Load(yaml), "", config);
@@ -28,7 +28,7 @@ std::vector<std::string> diagnosticsOf(const char* yaml) {
 }
 
 TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
-    EXPECT_THAT(diagnosticsOf<SonarConfig>(R"(
+    EXPECT_THAT(findDiagnostics<SonarConfig>(R"(
         model: physical
         range: 75
         range_min: 0.5
@@ -46,67 +46,69 @@ TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
         deposit: cpu
         draw_all: true)"),
                 IsEmpty());
-    EXPECT_THAT(diagnosticsOf<SonarConfig>("{model: cerqueira2017, published: true, absorption: {db_per_m: 0.2}}"),
+    EXPECT_THAT(findDiagnostics<SonarConfig>("{model: cerqueira2017, published: true, absorption: {db_per_m: 0.2}}"),
                 IsEmpty());
-    EXPECT_THAT(
-        diagnosticsOf<ScanningSonarConfig>("head: {left_deg: 60, right_deg: -60, step_deg: 0.9, speed_deg_per_s: 90}"),
-        IsEmpty());
-    EXPECT_THAT(diagnosticsOf<ScanningSonarConfig>("{}"), IsEmpty());
+    EXPECT_THAT(findDiagnostics<ScanningSonarConfig>(
+                    "head: {left_deg: 60, right_deg: -60, step_deg: 0.9, speed_deg_per_s: 90}"),
+                IsEmpty());
+    EXPECT_THAT(findDiagnostics<ScanningSonarConfig>("{}"), IsEmpty());
 }
 
 TEST(SonarConfigTest, AProfilerAndAnAltimeterRejectInvalidThresholdsAndBeams) {
     EXPECT_THAT(
-        diagnosticsOf<ProfilerConfig>("{beam_count: 64, detection: {threshold_db: -40, gate_db: 6, floor_db: -140}}"),
+        findDiagnostics<ProfilerConfig>("{beam_count: 64, detection: {threshold_db: -40, gate_db: 6, floor_db: -140}}"),
         IsEmpty());
-    EXPECT_THAT(diagnosticsOf<ProfilerConfig>("detection: {threshold_db: 5}"),
+    EXPECT_THAT(findDiagnostics<ProfilerConfig>("detection: {threshold_db: 5}"),
                 ElementsAre(AllOf(HasSubstr("detection.threshold_db"), HasSubstr("-300"), HasSubstr("0"))));
-    EXPECT_THAT(diagnosticsOf<ProfilerConfig>("detection: {gate_db: 0}"), ElementsAre(HasSubstr("detection.gate_db")));
-    EXPECT_THAT(diagnosticsOf<ProfilerConfig>("range_min: 60"), ElementsAre(HasSubstr("range_min: is 60 m")));
-    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("{beam_width_deg: 120, beam_height_deg: 120, threshold_db: -30}"),
+    EXPECT_THAT(findDiagnostics<ProfilerConfig>("detection: {gate_db: 0}"),
+                ElementsAre(HasSubstr("detection.gate_db")));
+    EXPECT_THAT(findDiagnostics<ProfilerConfig>("range_min: 60"), ElementsAre(HasSubstr("range_min: is 60 m")));
+    EXPECT_THAT(findDiagnostics<AltimeterConfig>("{beam_width_deg: 120, beam_height_deg: 120, threshold_db: -30}"),
                 IsEmpty());
-    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("beam_width_deg: 121"), ElementsAre(HasSubstr("one beam may have 120")));
-    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("threshold_db: 1"), ElementsAre(HasSubstr("threshold_db")));
-    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("beam_count: 2"), ElementsAre(HasSubstr("beam_count")));
-    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("detection: {gate_db: 3}"), ElementsAre(HasSubstr("detection")));
+    EXPECT_THAT(findDiagnostics<AltimeterConfig>("beam_width_deg: 121"),
+                ElementsAre(HasSubstr("one beam may have 120")));
+    EXPECT_THAT(findDiagnostics<AltimeterConfig>("threshold_db: 1"), ElementsAre(HasSubstr("threshold_db")));
+    EXPECT_THAT(findDiagnostics<AltimeterConfig>("beam_count: 2"), ElementsAre(HasSubstr("beam_count")));
+    EXPECT_THAT(findDiagnostics<AltimeterConfig>("detection: {gate_db: 3}"), ElementsAre(HasSubstr("detection")));
 }
 
 TEST(SonarConfigTest, ASideScanRejectsInvalidBeamsByItsOwnNames) {
-    EXPECT_THAT(diagnosticsOf<SideScanConfig>("{beam_width_deg: 1, beam_height_deg: 60, depression_deg: 20, "
-                                              "quality: {rows: 4, columns_per_beam: 1024}}"),
+    EXPECT_THAT(findDiagnostics<SideScanConfig>("{beam_width_deg: 1, beam_height_deg: 60, depression_deg: 20, "
+                                                "quality: {rows: 4, columns_per_beam: 1024}}"),
                 IsEmpty());
-    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_height_deg: 130"),
+    EXPECT_THAT(findDiagnostics<SideScanConfig>("beam_height_deg: 130"),
                 ElementsAre("beam_height_deg: is 130 deg; a side-scan's beam may have 120"));
-    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_width_deg: 200"),
+    EXPECT_THAT(findDiagnostics<SideScanConfig>("beam_width_deg: 200"),
                 ElementsAre(HasSubstr("beam_width_deg: is 200 deg")));
-    EXPECT_THAT(diagnosticsOf<SideScanConfig>("depression_deg: -5"), ElementsAre(HasSubstr("depression_deg")));
-    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
-    EXPECT_THAT(diagnosticsOf<SideScanConfig>("quality: {columns_per_beam: 5000}"),
+    EXPECT_THAT(findDiagnostics<SideScanConfig>("depression_deg: -5"), ElementsAre(HasSubstr("depression_deg")));
+    EXPECT_THAT(findDiagnostics<SideScanConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
+    EXPECT_THAT(findDiagnostics<SideScanConfig>("quality: {columns_per_beam: 5000}"),
                 ElementsAre(HasSubstr("quality.columns_per_beam")));
-    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_pattern: {transmit: {elevation: {width_deg: 50}}}"),
+    EXPECT_THAT(findDiagnostics<SideScanConfig>("beam_pattern: {transmit: {elevation: {width_deg: 50}}}"),
                 ElementsAre(HasSubstr("receive.elevation")));
-    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_count: 3"), ElementsAre(HasSubstr("beam_count")));
+    EXPECT_THAT(findDiagnostics<SideScanConfig>("beam_count: 3"), ElementsAre(HasSubstr("beam_count")));
 }
 
 TEST(SonarConfigTest, A3dSonarRejectsInvalidGridsByItsOwnNames) {
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>(
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>(
                     "{horizontal: {beam_count: 128, field_of_view_deg: 60}, vertical: {beam_count: 32, "
                     "field_of_view_deg: 20}, beam_height_deg: 0.6, quality: {rows: 2}}"),
                 IsEmpty());
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("{}"), IsEmpty());
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("{horizontal: {beam_count: 1024}, vertical: {beam_count: 1024}}"),
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>("{}"), IsEmpty());
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>("{horizontal: {beam_count: 1024}, vertical: {beam_count: 1024}}"),
                 ElementsAre(HasSubstr("horizontal.beam_count: is 1024, with 1024 in the vertical 1048576 beams")));
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("vertical: {beam_count: 0}"),
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>("vertical: {beam_count: 0}"),
                 ElementsAre(HasSubstr("vertical.beam_count")));
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("horizontal: {field_of_view_deg: 270}"),
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>("horizontal: {field_of_view_deg: 270}"),
                 ElementsAre(HasSubstr("horizontal.field_of_view_deg")));
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("beam_height_deg: 130"),
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>("beam_height_deg: 130"),
                 ElementsAre(HasSubstr("beam_height_deg: is 130 deg")));
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("quality: {target_error: 0.01}"),
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>("quality: {target_error: 0.01}"),
                 ElementsAre(HasSubstr("quality: has a target")));
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("beam_pattern: {transmit: {azimuth: {width_deg: 90}}}"),
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>("beam_pattern: {transmit: {azimuth: {width_deg: 90}}}"),
                 ElementsAre(HasSubstr("beam_pattern.transmit.azimuth")));
-    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("detection: {threshold_db: 3}"),
+    EXPECT_THAT(findDiagnostics<Sonar3dConfig>("detection: {threshold_db: 3}"),
                 ElementsAre(HasSubstr("detection.threshold_db")));
 }
 
@@ -150,14 +152,14 @@ TEST(SonarConfigTest, RejectsValuesOutOfBounds) {
                              "{bearings_deg: [0, 200], beam_width_deg: 1}",
                              "beam_count: 2.5",
                              "model: magic"})
-        EXPECT_EQ(diagnosticsOf<SonarConfig>(yaml).size(), 1u) << yaml;
+        EXPECT_EQ(findDiagnostics<SonarConfig>(yaml).size(), 1u) << yaml;
 }
 
 TEST(SonarConfigTest, MultipathNeedsRaysAndHasBounds) {
     const auto fault = [](const char* yaml, const char* text) {
-        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
+        EXPECT_THAT(findDiagnostics<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
     };
-    EXPECT_THAT(diagnosticsOf<SonarConfig>("multipath: {surface: {wind_m_s: 0}, bounces: 2}"), IsEmpty());
+    EXPECT_THAT(findDiagnostics<SonarConfig>("multipath: {surface: {wind_m_s: 0}, bounces: 2}"), IsEmpty());
     fault("multipath: {bounces: 3}", "multipath.bounces");
     fault("multipath: {bounces: -1}", "multipath.bounces");
     fault("multipath: {bounces: 1.5}", "multipath.bounces");
@@ -167,17 +169,17 @@ TEST(SonarConfigTest, MultipathNeedsRaysAndHasBounds) {
     fault("multipath: {}\nvisibility: gl", "visibility: is gl with multipath, which needs rays");
     fault("multipath: {}\ndeposit: gpu", "deposit: is gpu with multipath, which needs rays");
     fault("multipath: {}\nmodel: cerqueira2017", "multipath: is given with model: cerqueira2017");
-    EXPECT_THAT(diagnosticsOf<SonarConfig>("multipath: {bounces: 0}\nvisibility: gl\ndevice: software"), IsEmpty());
+    EXPECT_THAT(findDiagnostics<SonarConfig>("multipath: {bounces: 0}\nvisibility: gl\ndevice: software"), IsEmpty());
 }
 
 TEST(SonarConfigTest, WaterScattersByOneStrengthOrByLayers) {
     const auto diagnostic = [](const char* yaml, const char* text) {
-        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
+        EXPECT_THAT(findDiagnostics<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
     };
-    EXPECT_THAT(diagnosticsOf<SonarConfig>("volume: {strength_db: -70}"), IsEmpty());
-    EXPECT_THAT(
-        diagnosticsOf<SonarConfig>("volume: [{top_m: 1, bottom_m: 5, strength_db: -70}, {top_m: 5, strength_db: -80}]"),
-        IsEmpty());
+    EXPECT_THAT(findDiagnostics<SonarConfig>("volume: {strength_db: -70}"), IsEmpty());
+    EXPECT_THAT(findDiagnostics<SonarConfig>(
+                    "volume: [{top_m: 1, bottom_m: 5, strength_db: -70}, {top_m: 5, strength_db: -80}]"),
+                IsEmpty());
     diagnostic("volume: {}", "volume: has no strength_db");
     diagnostic("volume: -70", "volume: is -70; must be a list");
     diagnostic("volume: {strength_db: 1}", "volume.strength_db: is 1");
@@ -191,7 +193,7 @@ TEST(SonarConfigTest, WaterScattersByOneStrengthOrByLayers) {
 
 TEST(SonarConfigTest, BeamsAndPulsesNeedTheirParameters) {
     const auto diagnostic = [](const char* yaml, const char* text) {
-        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
+        EXPECT_THAT(findDiagnostics<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
     };
     diagnostic("beam_pattern: {}", "beam_pattern: has no law");
     diagnostic("beam_pattern: {receive: {azimuth: {weighting: hann}}}", "receive.azimuth: has no width");
@@ -202,7 +204,7 @@ TEST(SonarConfigTest, BeamsAndPulsesNeedTheirParameters) {
     diagnostic("pulse: {bandwidth_khz: 20, duration_us: 20}", "give one of the two");
     diagnostic("{model: cerqueira2017, pulse: {bandwidth_khz: 20}}", "it belongs to physical");
     EXPECT_THAT(
-        diagnosticsOf<SonarConfig>("{frequency_khz: 700, beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}}"),
+        findDiagnostics<SonarConfig>("{frequency_khz: 700, beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}}"),
         testing::IsEmpty());
 }
 
@@ -237,7 +239,7 @@ TEST(SonarConfigTest, ReportsContradictoryValues) {
           Case{"{model: cerqueira2017, published: true, field_of_view_deg: 180}", "published: ", "less than 180"},
           Case{"{range: 1, bin_count: 1000}", "range: ",
                "1000 bins of whole microseconds reach 1.5 m, which may be at most 25 % more: give 1.5 m, lower"}})
-        EXPECT_THAT(diagnosticsOf<SonarConfig>(c.yaml), ElementsAre(AllOf(HasSubstr(c.path), HasSubstr(c.words))))
+        EXPECT_THAT(findDiagnostics<SonarConfig>(c.yaml), ElementsAre(AllOf(HasSubstr(c.path), HasSubstr(c.words))))
             << c.yaml;
 }
 
@@ -258,21 +260,21 @@ TEST(SonarConfigTest, TheDefaultQualityIsAnErrorOfFivePerCentWithACapOfSamples) 
 }
 
 TEST(SonarConfigTest, OneWideBeamMayHaveThousandsOfColumns) {
-    EXPECT_THAT(diagnosticsOf<ScanningSonarConfig>("{beam_width_deg: 60, quality: {columns_per_beam: 4096}}"),
+    EXPECT_THAT(findDiagnostics<ScanningSonarConfig>("{beam_width_deg: 60, quality: {columns_per_beam: 4096}}"),
                 IsEmpty());
 }
 
 TEST(SonarConfigTest, RejectsARangeThatBinsDoNotReachWithTheNextRangesThatFit) {
-    const auto refused = diagnosticsOf<SonarConfig>("{range: 2.97, bin_count: 675, speed_of_sound: 1466}");
+    const auto refused = findDiagnostics<SonarConfig>("{range: 2.97, bin_count: 675, speed_of_sound: 1466}");
     EXPECT_THAT(refused, ElementsAre(HasSubstr("range: is 2.97 m; 675 bins of whole microseconds reach 3.9582 m, which "
                                                "may be at most 25 % more: give 2.968 m or 3.958 m, lower bin_count")));
     for (const char* fits : {"{range: 2.968, bin_count: 675, speed_of_sound: 1466}",
                              "{range: 3.958, bin_count: 675, speed_of_sound: 1466}"})
-        EXPECT_THAT(diagnosticsOf<SonarConfig>(fits), IsEmpty());
+        EXPECT_THAT(findDiagnostics<SonarConfig>(fits), IsEmpty());
 }
 
 TEST(SonarConfigTest, ExactRangesNeedNoWholeMicroseconds) {
-    EXPECT_THAT(diagnosticsOf<SonarConfig>("{range: 1, bin_count: 1000, range_rounding: exact}"), IsEmpty());
+    EXPECT_THAT(findDiagnostics<SonarConfig>("{range: 1, bin_count: 1000, range_rounding: exact}"), IsEmpty());
 }
 
 TEST(SonarConfigTest, RejectsImpossibleHeads) {
@@ -290,7 +292,7 @@ TEST(SonarConfigTest, RejectsImpossibleHeads) {
           Case{"head: {step_deg: -1}", "0.001 to 360"}, Case{"head: {step_deg: .nan}", "must be a finite number"},
           Case{"field_of_view_deg: 120", "is not a key here"}, Case{"beam_count: 2", "is not a key here"},
           Case{"{range: 10, range_min: 20}", "must be below range"}})
-        EXPECT_THAT(diagnosticsOf<ScanningSonarConfig>(c.yaml), ElementsAre(HasSubstr(c.words))) << c.yaml;
+        EXPECT_THAT(findDiagnostics<ScanningSonarConfig>(c.yaml), ElementsAre(HasSubstr(c.words))) << c.yaml;
 }
 
 TEST(SonarConfigTest, TheWidthOfABeamIsOneBeamsOrByConventionTheWholeFans) {
@@ -303,13 +305,13 @@ TEST(SonarConfigTest, TheWidthOfABeamIsOneBeamsOrByConventionTheWholeFans) {
     config.beam_width_convention = BeamWidthConvention::TotalFov;
     EXPECT_DOUBLE_EQ(config.fan().coverageDeg(), 130);
     EXPECT_DOUBLE_EQ(config.fan().beamWidthDeg(), 130.0 / 60);
-    EXPECT_THAT(diagnosticsOf<SonarConfig>("{beam_width_deg: 130, beam_width_convention: total_fov}"), IsEmpty());
+    EXPECT_THAT(findDiagnostics<SonarConfig>("{beam_width_deg: 130, beam_width_convention: total_fov}"), IsEmpty());
 }
 
 TEST(SonarConfigTest, BeamsOfAFanMayBeWiderThanTheirSpacing) {
     for (const char* fov : {"130", "120"}) {  // also the default, if it is given
         const std::string yaml = "{beam_count: 512, field_of_view_deg: " + std::string(fov) + ", beam_width_deg: 1}";
-        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml.c_str()), IsEmpty()) << yaml;
+        EXPECT_THAT(findDiagnostics<SonarConfig>(yaml.c_str()), IsEmpty()) << yaml;
     }
     SonarConfig config;
     config.beam_count = 512;

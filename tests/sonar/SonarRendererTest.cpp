@@ -20,12 +20,12 @@ using ::testing::Each;
 using ::testing::HasSubstr;
 
 SonarConfig oneFan() {
-    SonarConfig config = test::sonarOf({.beams = 32, .width_deg = 100, .height_deg = 40, .bins = 400, .rows = 128});
+    SonarConfig config = test::getSonar({.beams = 32, .width_deg = 100, .height_deg = 40, .bins = 400, .rows = 128});
     config.device = "software";
     return config;
 }
 
-std::vector<float> binsSeen(const types::Snapshot& snapshot) { return test::pingOf(oneFan(), snapshot).bins; }
+std::vector<float> binsSeen(const types::Snapshot& snapshot) { return test::makePing(oneFan(), snapshot).bins; }
 
 double energy(const std::vector<float>& bins) { return std::accumulate(bins.begin(), bins.end(), 0.0); }
 
@@ -34,7 +34,7 @@ types::Mesh farWall() { return test::quad({10, -50, -50}, {0, 100, 0}, {0, 0, 10
 }  // namespace
 
 TEST(SonarRendererTest, SonarsSideBySideRenderTheSameAsAlone) {
-    const auto snapshot = test::snapshotOf(test::surfaces());
+    const auto snapshot = test::makeSnapshot(test::surfaces());
     const std::vector<float> alone = binsSeen(snapshot);
     ASSERT_GT(energy(alone), 0);
     std::atomic<int> differing = 0;
@@ -60,7 +60,7 @@ TEST(SonarRendererTest, ARasterisingSonarThatIsChangedRendersAsOneMadeSo) {
     surfaces->materials.front().has_acoustics = true;
     surfaces->materials.front().seabed = "coarse_sand";
     surfaces->materials.front().roughness_slope = 0.2;
-    const auto snapshot = test::snapshotOf(types::GeometryPtr(surfaces));
+    const auto snapshot = test::makeSnapshot(types::GeometryPtr(surfaces));
     std::vector<SonarConfig> all(9, oneFan());
     for (SonarConfig& config : all) config.frequency_khz = 60;
     all[1].range *= 1.7;
@@ -73,7 +73,7 @@ TEST(SonarRendererTest, ARasterisingSonarThatIsChangedRendersAsOneMadeSo) {
     all[6].deposit = Deposit::Gpu;
     all[7].visibility = Visibility::Cpu;
     std::vector<std::vector<float>> made;  // first: one renderer on a thread at a time
-    for (const SonarConfig& config : all) made.push_back(test::pingOf(config, snapshot).bins);
+    for (const SonarConfig& config : all) made.push_back(test::makePing(config, snapshot).bins);
     SonarRenderer changed(all[0], snapshot.geometry);
     types::Sonar ping;
     for (size_t i = 0; i < all.size(); ++i) {
@@ -88,7 +88,7 @@ TEST(SonarRendererTest, ARasterisingSonarThatIsChangedRendersAsOneMadeSo) {
 }
 
 TEST(SonarRendererTest, RejectsAnotherThread) {
-    const auto snapshot = test::snapshotOf(test::surfaces());
+    const auto snapshot = test::makeSnapshot(test::surfaces());
     SonarRenderer renderer(oneFan(), snapshot.geometry);
     std::string error;
     std::thread([&] {
@@ -103,26 +103,26 @@ TEST(SonarRendererTest, RejectsAnotherThread) {
 }
 
 TEST(SonarRendererTest, NothingInViewIsSilence) {
-    const types::Snapshot ahead = test::snapshotOf(test::sceneOf({farWall()}));
+    const types::Snapshot ahead = test::makeSnapshot(test::makeScene({farWall()}));
     EXPECT_GT(energy(binsSeen(ahead)), 0);
-    EXPECT_THAT(binsSeen(test::snapshotOf(std::make_shared<types::Geometry>())), Each(0)) << "empty";
-    EXPECT_THAT(binsSeen(test::snapshotOf(ahead.geometry, {20, 0, 0})), Each(0)) << "behind";
-    EXPECT_THAT(binsSeen(test::snapshotOf(ahead.geometry, {-50, 0, 0})), Each(0)) << "beyond the range";
-    EXPECT_THAT(binsSeen(test::snapshotOf(ahead.geometry, {9.95, 0, 0})), Each(testing::Ge(0)))
+    EXPECT_THAT(binsSeen(test::makeSnapshot(std::make_shared<types::Geometry>())), Each(0)) << "empty";
+    EXPECT_THAT(binsSeen(test::makeSnapshot(ahead.geometry, {20, 0, 0})), Each(0)) << "behind";
+    EXPECT_THAT(binsSeen(test::makeSnapshot(ahead.geometry, {-50, 0, 0})), Each(0)) << "beyond the range";
+    EXPECT_THAT(binsSeen(test::makeSnapshot(ahead.geometry, {9.95, 0, 0})), Each(testing::Ge(0)))
         << "nearer than range_min";
 }
 
 TEST(SonarRendererTest, ObjectsNearerThanTheBlankingAreSilentAndCastShadows) {
     const types::Mesh plate = test::quad({0.5, -1, -1}, {0, 2, 0}, {0, 0, 2});
     const types::Mesh target = test::quad({5, -20, -20}, {0, 40, 0}, {0, 0, 40});
-    const types::GeometryPtr both = test::sceneOf({plate, target}), alone = test::sceneOf({target});
+    const types::GeometryPtr both = test::makeScene({plate, target}), alone = test::makeScene({target});
     for (const Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {
         const auto received = [&](const types::GeometryPtr& geometry, double range_min) {
             SonarConfig config = oneFan();
             config.visibility = visibility;
             if (visibility == Visibility::Cpu) config.device.clear();
             config.range_min = range_min;
-            const types::Sonar ping = test::pingOf(config, test::snapshotOf(geometry));
+            const types::Sonar ping = test::makePing(config, test::makeSnapshot(geometry));
             double near = 0, far = 0;  // of 2 m: all of the plate that is in view is within 0.9 m
             for (size_t i = 0; i < ping.bins.size(); ++i) (i % 400 < 20 ? near : far) += ping.bins[i];
             return std::pair(near, far);
@@ -138,19 +138,19 @@ TEST(SonarRendererTest, ObjectsNearerThanTheBlankingAreSilentAndCastShadows) {
 }
 
 TEST(SonarRendererTest, ASonarOnASurfaceOrInsideABodyHasFiniteEchoes) {
-    const auto ball = test::sceneOf({test::sphere(5, 32)});
+    const auto ball = test::makeScene({test::sphere(5, 32)});
     for (double x : {0.0, 4.0, 4.99, 5.0, 5.01})
-        EXPECT_THAT(binsSeen(test::snapshotOf(ball, {x, 0, 0}, 0.3)),
+        EXPECT_THAT(binsSeen(test::makeSnapshot(ball, {x, 0, 0}, 0.3)),
                     Each(testing::AllOf(testing::Ge(0), testing::Le(1e6f))))
             << x;
-    EXPECT_GT(energy(binsSeen(test::snapshotOf(ball))), 0) << "the inside reflects";
+    EXPECT_GT(energy(binsSeen(test::makeSnapshot(ball))), 0) << "the inside reflects";
 }
 
 TEST(SonarRendererTest, FacesTurnedAwayReflectTheSame) {
     types::Mesh turned = farWall();
     std::ranges::reverse(turned.indices);
-    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({turned}))),
-              binsSeen(test::snapshotOf(test::sceneOf({farWall()}))));
+    EXPECT_EQ(binsSeen(test::makeSnapshot(test::makeScene({turned}))),
+              binsSeen(test::makeSnapshot(test::makeScene({farWall()}))));
 }
 
 TEST(SonarRendererTest, DoubledFacesAndTrianglesWithoutAreaAddNothing) {
@@ -159,10 +159,11 @@ TEST(SonarRendererTest, DoubledFacesAndTrianglesWithoutAreaAddNothing) {
     doubled.clusters[0].index_count = 12;
     degenerate.indices.insert(degenerate.indices.end(), {0, 0, 1, 0, 2, 2});
     degenerate.clusters[0].index_count = 12;
-    const auto bins = binsSeen(test::snapshotOf(test::sceneOf({farWall()})));
-    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({doubled}))), bins);
-    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({degenerate}))), bins);
-    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({farWall(), farWall()}))), bins) << "an object in the same place";
+    const auto bins = binsSeen(test::makeSnapshot(test::makeScene({farWall()})));
+    EXPECT_EQ(binsSeen(test::makeSnapshot(test::makeScene({doubled}))), bins);
+    EXPECT_EQ(binsSeen(test::makeSnapshot(test::makeScene({degenerate}))), bins);
+    EXPECT_EQ(binsSeen(test::makeSnapshot(test::makeScene({farWall(), farWall()}))), bins)
+        << "an object in the same place";
 }
 
 TEST(SonarRendererTest, FarFromTheOriginOfTheWorldEchoesAreTheSame) {
@@ -170,8 +171,8 @@ TEST(SonarRendererTest, FarFromTheOriginOfTheWorldEchoesAreTheSame) {
     auto there = std::make_shared<types::Geometry>(*here);
     const glm::dvec3 offset(500'000, 4'500'000, -100);  // as in UTM
     for (types::Object& object : there->objects) object.world_from_object[3] += glm::dvec4(offset, 0);
-    const auto bins = binsSeen(test::snapshotOf(here, {0, 0, 0}, 0.1, 0.1));
-    EXPECT_LT(test::relativeL2(binsSeen(test::snapshotOf(there, offset, 0.1, 0.1)), bins), 1e-6);
+    const auto bins = binsSeen(test::makeSnapshot(here, {0, 0, 0}, 0.1, 0.1));
+    EXPECT_LT(test::relativeL2(binsSeen(test::makeSnapshot(there, offset, 0.1, 0.1)), bins), 1e-6);
 }
 
 TEST(SonarRendererTest, FarFromTheOriginOfATileEchoesAreTheSame) {
@@ -186,18 +187,19 @@ TEST(SonarRendererTest, FarFromTheOriginOfATileEchoesAreTheSame) {
     config.range_rounding = RangeRounding::Exact;
     config.device = "software";
     const auto bins = [&](const types::Mesh& mesh, const glm::dvec3& sonar) {
-        const auto scene = test::sceneOf({mesh});
+        const auto scene = test::makeScene({mesh});
         types::Sonar ping;
-        SonarRenderer(config, scene).render(test::snapshotOf(scene, sonar, 0.3, 0.2), ping);
+        SonarRenderer(config, scene).render(test::makeSnapshot(scene, sonar, 0.3, 0.2), ping);
         return ping.bins;
     };
     EXPECT_LT(test::relativeL2(bins(there, offset), bins(here, {})), 1e-5);
 }
 
 TEST(SonarRendererTest, ASeaFloorOfTwoHugeTrianglesIsASeaFloor) {
-    const auto small = binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1000)}), {}, 0, 0.2));
-    EXPECT_LT(test::relativeL2(binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small),
-              0.01);
+    const auto small = binsSeen(test::makeSnapshot(test::makeScene({test::ground(-5, 1000)}), {}, 0, 0.2));
+    EXPECT_LT(
+        test::relativeL2(binsSeen(test::makeSnapshot(test::makeScene({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small),
+        0.01);
 }
 
 }  // namespace insonify::sonar

@@ -18,14 +18,14 @@ struct SonarTaskTest : test::TaskBench<SonarTask, types::SnapshotPtr, types::Son
     SonarTaskTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
     void start(const SonarConfig& config = smallSonar()) { startWith(config); }
     /** Returns the ping of one snapshot; null without a ping. */
-    types::SonarPtr pingOf(types::Snapshot snapshot) {
+    types::SonarPtr makePing(types::Snapshot snapshot) {
         return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
 };
 
 TEST_F(SonarTaskTest, APingCarriesTheTimeOfItsSnapshotAndTheGridOfItsBins) {
     start();
-    const auto ping = pingOf(facingWall(5));
+    const auto ping = makePing(facingWall(5));
     ASSERT_TRUE(ping) << task_.lastError();
     EXPECT_EQ(ping->time, types::Time{7'000'000});
     EXPECT_EQ(ping->beam_count, 8u);
@@ -50,7 +50,7 @@ TEST_F(SonarTaskTest, ABeamWiderThanItsSpacingReceivesItsNeighboursEchoes) {
         task_.stop();
         task_.cleanup();
         start(config);
-        const auto ping = pingOf(facingWall(5));
+        const auto ping = makePing(facingWall(5));
         EXPECT_EQ(ping->beam_count, 8u);
         EXPECT_NEAR(ping->bearings[3].deg(), -5, 1e-9);
         EXPECT_NEAR(ping->beam_width.deg(), width.value_or(10), 1e-6);
@@ -76,20 +76,20 @@ TEST_F(SonarTaskTest, AnInvalidPoseIsARunTimeErrorUntilTheNextValidPose) {
     empty.geometry = nullptr;
     strange.moved.push_back({static_cast<uint32_t>(strange.geometry->objects.size()), glm::dmat4(1)});
     for (const types::Snapshot& bad : {lost, unturned, spun, empty, strange}) {
-        EXPECT_FALSE(pingOf(bad));
+        EXPECT_FALSE(makePing(bad));
         EXPECT_EQ(task_.state(), TaskState::RunTimeError);
         EXPECT_FALSE(task_.lastError().empty());
-        EXPECT_TRUE(pingOf(facingWall(5)));
+        EXPECT_TRUE(makePing(facingWall(5)));
         EXPECT_EQ(task_.state(), TaskState::Running);
     }
 }
 
 TEST_F(SonarTaskTest, AQuaternionThatIsNotOfUnitLengthIsNormalised) {
     start();
-    const auto ping = pingOf(facingWall(5));
+    const auto ping = makePing(facingWall(5));
     types::Snapshot longer = facingWall(5);
     longer.sonar.orientation *= 1.001;
-    const auto same = pingOf(longer);
+    const auto same = makePing(longer);
     ASSERT_TRUE(ping && same);
     EXPECT_EQ(ping->bins, same->bins);
 }
@@ -99,7 +99,7 @@ TEST_F(SonarTaskTest, ReportsAmbiguousPingsCloserThanTheTwoWayTravelTime) {
     const auto pingAt = [&](double seconds) {
         types::Snapshot snapshot = facingWall(5);
         snapshot.time = types::Time::fromSeconds(seconds);
-        return pingOf(snapshot);
+        return makePing(snapshot);
     };
     start();  // 15 m there and back at 1500 m/s: 20 ms
     ASSERT_TRUE(pingAt(1) && pingAt(1.1));
@@ -118,7 +118,7 @@ TEST_F(SonarTaskTest, AJumpingSonarPingsFromItsNewPlaceAndWarnsOnce) {
         types::Snapshot snapshot = facingWall(5);
         snapshot.time = types::Time::fromSeconds(seconds += 1);
         snapshot.sonar.position.y = y;
-        return pingOf(snapshot);
+        return makePing(snapshot);
     };
     start();
     const auto first = pingAt(0);
@@ -149,7 +149,7 @@ TEST_F(SonarTaskTest, TheJumpOfALoopingTrajectoryIsReportedOnce) {
         types::Snapshot snapshot = facingWall(5);
         snapshot.time = types::Time::fromSeconds(seconds += 0.1);
         snapshot.sonar.position.y = y;
-        return pingOf(snapshot);
+        return makePing(snapshot);
     };
     start();
     for (int turn = 0; turn < 5; ++turn)  // back by 20 m in 0.1 s, each turn at another phase
@@ -162,19 +162,19 @@ TEST_F(SonarTaskTest, TheJumpOfALoopingTrajectoryIsReportedOnce) {
 
 TEST_F(SonarTaskTest, ANewSceneIsRenderedFromTheNextPing) {
     start();
-    EXPECT_NEAR(firstEcho(*pingOf(facingWall(5)), 4), 5, 0.16);
-    EXPECT_NEAR(firstEcho(*pingOf(facingWall(9)), 4), 9, 0.16);
+    EXPECT_NEAR(firstEcho(*makePing(facingWall(5)), 4), 5, 0.16);
+    EXPECT_NEAR(firstEcho(*makePing(facingWall(9)), 4), 9, 0.16);
 }
 
 TEST_F(SonarTaskTest, CanBeCleanedUpAndConfiguredAgain) {
     start();
-    ASSERT_TRUE(pingOf(facingWall(5)));
+    ASSERT_TRUE(makePing(facingWall(5)));
     ASSERT_TRUE(task_.stop());
     ASSERT_TRUE(task_.cleanup());
     SonarConfig config = smallSonar();
     config.beam_count = 4;
     start(config);
-    EXPECT_EQ(pingOf(facingWall(5))->beam_count, 4u);
+    EXPECT_EQ(makePing(facingWall(5))->beam_count, 4u);
 }
 
 TEST_F(SonarTaskTest, NoticesAreThoseOfTheConfigurationUntilTheSceneIsKnown) {
@@ -182,17 +182,17 @@ TEST_F(SonarTaskTest, NoticesAreThoseOfTheConfigurationUntilTheSceneIsKnown) {
     config.speed_of_sound = 1700;
     start(config);
     EXPECT_THAT(task_.notices(), ::testing::Contains(::testing::HasSubstr("speed of sound is 1700 m/s")));
-    ASSERT_TRUE(pingOf(facingWall(5)));
+    ASSERT_TRUE(makePing(facingWall(5)));
     EXPECT_THAT(task_.notices(), ::testing::Contains(::testing::HasSubstr("medium sand")));
 }
 
 TEST_F(SonarTaskTest, AChangedPropertyAppliesFromTheNextPing) {
     const auto set = [&](const char* setter, const char* value) { task_.operation(setter)->callText({value}); };
     start();
-    ASSERT_TRUE(pingOf(facingWall(5)));
+    ASSERT_TRUE(makePing(facingWall(5)));
     set("setBin_count", "50");
     set("setRange", "10");
-    auto ping = pingOf(facingWall(5));
+    auto ping = makePing(facingWall(5));
     ASSERT_TRUE(ping) << task_.lastError();
     EXPECT_EQ(ping->bin_count, 50u);
     EXPECT_NEAR(ping->binStart(50), 10, 0.1);

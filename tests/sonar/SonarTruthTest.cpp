@@ -27,7 +27,7 @@ struct Truths {
     }
 };
 
-Truths truthsOf(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 0) {
+Truths getTruths(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 0) {
     SonarRenderer renderer(config, snapshot.geometry, {.threads = threads});
     Truths labelled;
     renderer.setTruth(labelled.ping, &labelled.truth);
@@ -37,7 +37,7 @@ Truths truthsOf(const SonarConfig& config, const types::Snapshot& snapshot, int 
 
 /** 16 beams of 5 deg, 200 bins of 0.1 m, 60 deg high. */
 SonarConfig truthFan() {
-    return test::sonarOf({.beams = 16, .width_deg = 80, .height_deg = 60, .bins = 200, .rows = 512, .columns = 4});
+    return test::getSonar({.beams = 16, .width_deg = 80, .height_deg = 60, .bins = 200, .rows = 512, .columns = 4});
 }
 
 struct Way {
@@ -56,14 +56,15 @@ constexpr Way ways[] = {{"Rays", Visibility::Cpu, Deposit::Auto},
                         {"Drawn", Visibility::Gl, Deposit::Cpu},
                         {"DrawnAndDepositedOnTheDevice", Visibility::Gl, Deposit::Gpu}};
 
-using test::bitsOf;
+using test::getBits;
 
 class SonarTruthTest : public testing::TestWithParam<Way> {};
 
 /** A bottom 3 m below a level sonar: at slant range r it is at the depression asin(3 / r), which is also its grazing
  *  angle. With bins of 0.1 m and samples of 0.1 deg the mean is within 3 mrad. */
 TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
-    const Truths labelled = truthsOf(GetParam().of(truthFan()), test::snapshotOf(test::sceneOf({test::ground(-3)})));
+    const Truths labelled =
+        getTruths(GetParam().of(truthFan()), test::makeSnapshot(test::makeScene({test::ground(-3)})));
     double maximum = 0;
     for (size_t beam = 0; beam < 16; ++beam)
         for (double r = 6.55; r < 19.9; r += 0.1) {  // below 6 m the aperture ends
@@ -83,8 +84,8 @@ TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
 /** A plate on the bottom, 5 m ahead and 2 m high, hides the bottom from 5.83 m (its foot, straight ahead) to where the
  *  ray over its upper edge meets the bottom: 15 m ahead, at a slant range of 15.30 m. */
 TEST_P(SonarTruthTest, APlateCastsItsShadowOnTheBottomBehindIt) {
-    const auto scene = test::sceneOf({test::ground(-3), test::quad({5, -20, -3}, {0, 40, 0}, {0, 0, 2})});
-    const Truths labelled = truthsOf(GetParam().of(truthFan()), test::snapshotOf(scene));
+    const auto scene = test::makeScene({test::ground(-3), test::quad({5, -20, -3}, {0, 40, 0}, {0, 0, 2})});
+    const Truths labelled = getTruths(GetParam().of(truthFan()), test::makeSnapshot(scene));
     for (const size_t beam : {size_t{7}, size_t{8}}) {
         for (double r = 6.15; r < 15.1; r += 0.1) {
             EXPECT_EQ(labelled.truth.shadow[labelled.at(r, beam)], 1) << r;
@@ -123,7 +124,7 @@ types::Snapshot scatteredBalls() {
         meshes.push_back(test::sphere(0.6f, 16));
         places.emplace_back(5 + i, i % 2 ? 2.0 * i - 8 : 8 - 2.0 * i, -0.3 * i);
     }
-    return test::snapshotOf(test::sceneOf(std::move(meshes), -10, places));
+    return test::makeSnapshot(test::makeScene(std::move(meshes), -10, places));
 }
 
 TEST_P(SonarTruthTest, TruthChangesNoBin) {
@@ -145,9 +146,9 @@ TEST_P(SonarTruthTest, TruthChangesNoBin) {
 TEST_P(SonarTruthTest, TruthIsTheSameOnAnyNumberOfThreads) {
     const types::Snapshot snapshot = scatteredBalls();
     for (const SonarConfig& config : manyKinds()) {
-        const std::vector<uint32_t> one = bitsOf(truthsOf(GetParam().of(config), snapshot, 1).truth);
+        const std::vector<uint32_t> one = getBits(getTruths(GetParam().of(config), snapshot, 1).truth);
         for (const int threads : {2, 5})
-            EXPECT_EQ(one, bitsOf(truthsOf(GetParam().of(config), snapshot, threads).truth)) << threads;
+            EXPECT_EQ(one, getBits(getTruths(GetParam().of(config), snapshot, threads).truth)) << threads;
     }
 }
 
@@ -159,8 +160,9 @@ TEST(PublishedTruthTest, MissesAreNoObjects) {
     SonarConfig config = ways[1].of(truthFan());
     config.model = Model::Cerqueira2017;
     config.published = true;
-    const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::quad({8, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
-    const Truths labelled = truthsOf(config, snapshot);
+    const types::Snapshot snapshot =
+        test::makeSnapshot(test::makeScene({test::quad({8, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
+    const Truths labelled = getTruths(config, snapshot);
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar alone;
     renderer.render(snapshot, alone);
@@ -178,7 +180,8 @@ TEST(PatternedTruthTest, EchoesInSidelobesHaveNoTruth) {
     config.beam_pattern.emplace().receive.azimuth = law;
     const double bearing = types::radians(2.5);  // the middle of beam 8
     const glm::dvec3 place(10 * std::cos(bearing), 10 * std::sin(bearing), 0);
-    const Truths labelled = truthsOf(config, test::snapshotOf(test::sceneOf({test::sphere(0.2f, 32)}, 0, {place})));
+    const Truths labelled =
+        getTruths(config, test::makeSnapshot(test::makeScene({test::sphere(0.2f, 32)}, 0, {place})));
     for (size_t beam = 0; beam < 16; ++beam) {
         const size_t at = labelled.at(9.85, beam);
         EXPECT_GT(labelled.ping.bins[at], 0) << beam;
@@ -199,7 +202,7 @@ struct Bench {
         task.ping.connectTo(pings.port, framework::ConnPolicy::data());
         task.config.set(config);
     }
-    types::SonarPtr pingOf(const types::Snapshot& snapshot) {
+    types::SonarPtr makePing(const types::Snapshot& snapshot) {
         if (!task.isRunning() && !(task.configure() && task.start())) return nullptr;
         in.port.write(std::make_shared<types::Snapshot>(snapshot));
         task.update();
@@ -218,7 +221,7 @@ TEST(SonarTaskTruthTest, WritesNoTruthWithoutAConnectionAndChoosesTheSameQuality
     for (int i = 0; i < 12; ++i) {
         snapshot.time = snapshot.time + types::Time{100'000};
         snapshot.sonar.position.x = 0.05 * i;
-        const auto ping = alone.pingOf(snapshot), same = labelled.pingOf(snapshot);
+        const auto ping = alone.makePing(snapshot), same = labelled.makePing(snapshot);
         ASSERT_TRUE(ping && same);
         EXPECT_EQ(ping->bins, same->bins) << i;
         types::SonarTruthPtr truth;
@@ -240,7 +243,7 @@ TEST(SonarTaskTruthTest, ThePlanOmitsTheTruthWithoutAConnection) {
         to_truth.task.truth.connectTo(to_truth.truths.port, framework::ConnPolicy::data());
         to_returns.task.returns.connectTo(to_returns.returns.port, framework::ConnPolicy::data());
         for (Bench* bench : {&alone, &to_truth, &to_returns}) {
-            ASSERT_TRUE(bench->pingOf(scatteredBalls()));
+            ASSERT_TRUE(bench->makePing(scatteredBalls()));
             std::vector<std::string> omitted;
             for (const types::Omission& omission : bench->task.plan()->omitted)
                 if (omission.name == "truth") omitted.push_back(omission.reason);
@@ -256,8 +259,8 @@ TEST(SonarTaskTruthTest, ThePlanOmitsTheTruthWithoutAConnection) {
 TEST(SonarTaskTruthTest, ReturnsAreTheFirstAndTheStrongestOfEachBeam) {
     Bench bench(ways[0].of(truthFan()));
     bench.task.returns.connectTo(bench.returns.port, framework::ConnPolicy::data());
-    const auto scene = test::sceneOf({test::ground(-3), test::quad({9, -10, -0.5}, {0, 20, 0}, {0, 0, 1})});
-    const auto ping = bench.pingOf(test::snapshotOf(scene));
+    const auto scene = test::makeScene({test::ground(-3), test::quad({9, -10, -0.5}, {0, 20, 0}, {0, 0, 1})});
+    const auto ping = bench.makePing(test::makeSnapshot(scene));
     types::SonarReturnsPtr returns;
     ASSERT_TRUE(ping && bench.returns.port.readNew(returns));
     EXPECT_EQ(returns->diagnostic(), nullptr);
@@ -269,7 +272,7 @@ TEST(SonarTaskTruthTest, ReturnsAreTheFirstAndTheStrongestOfEachBeam) {
     EXPECT_NEAR(returns->strongest_elevation[beam], 0, 0.03);
     const size_t at = beam * 200 + static_cast<size_t>(returns->strongest_range[beam] / 0.1f);
     EXPECT_FLOAT_EQ(returns->strongest_level[beam], 10 * std::log10(ping->bins[at]));
-    const auto silent = bench.pingOf(test::snapshotOf(scene, {0, 0, 500}));
+    const auto silent = bench.makePing(test::makeSnapshot(scene, {0, 0, 500}));
     ASSERT_TRUE(silent && bench.returns.port.readNew(returns));
     EXPECT_TRUE(std::isnan(returns->first_range[beam]) && std::isnan(returns->strongest_level[beam]));
 }
@@ -279,11 +282,11 @@ TEST(SonarTaskTruthTest, ReturnsAreTheFirstAndTheStrongestOfEachBeam) {
 TEST(ObjectTruthTest, LabelsAreWithinTheRangesOfTheirObjects) {
     std::mt19937 random(21);
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
-    SonarConfig config = test::sonarOf(
+    SonarConfig config = test::getSonar(
         {.beams = 12, .width_deg = 60, .height_deg = 40, .bins = 400, .bin = 0.05, .rows = 64, .columns = 4});
     config.visibility = Visibility::Cpu;
     for (int trial = 0; trial < 12; ++trial) {
-        const auto scene = std::make_shared<types::Geometry>(*test::sceneOf(
+        const auto scene = std::make_shared<types::Geometry>(*test::makeScene(
             {test::ground(-4), trial % 2 ? test::sphere(static_cast<float>(between(0.3, 1.5)), trial % 4 == 1 ? 6 : 12)
                                          : test::quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0})},
             0, {{}, {between(6, 14), between(-3, 3), between(-3, 2)}}));
@@ -295,7 +298,7 @@ TEST(ObjectTruthTest, LabelsAreWithinTheRangesOfTheirObjects) {
             const double range = glm::length(glm::dvec3(scene->objects[1].world_from_object * glm::dvec4(corner, 1)));
             near = std::min(near, range), far = std::max(far, range);
         }
-        const Truths all = truthsOf(config, test::snapshotOf(scene));
+        const Truths all = getTruths(config, test::makeSnapshot(scene));
         size_t labelled = 0;
         for (size_t i = 0; i < all.ping.bins.size(); ++i) {
             if (all.truth.object[i] != 1) continue;

@@ -20,12 +20,12 @@ using ::testing::Ge;
 using ::testing::HasSubstr;
 
 SonarConfig stiffFan(double field_of_view_deg = 60, int beams = 16, int bins = 200) {
-    return test::sonarOf({.beams = beams, .width_deg = field_of_view_deg, .height_deg = 40, .bins = bins});
+    return test::getSonar({.beams = beams, .width_deg = field_of_view_deg, .height_deg = 40, .bins = bins});
 }
 
 std::vector<float> stiffBins(const SonarConfig& config, const types::GeometryPtr& geometry,
                              const RenderOptions& options = {}) {
-    return test::pingOf(config, test::snapshotOf(geometry), options).bins;
+    return test::makePing(config, test::makeSnapshot(geometry), options).bins;
 }
 
 std::vector<types::Mesh> wallAndBall() { return {test::wall(12), test::sphere(1.5, 48)}; }
@@ -34,7 +34,7 @@ std::vector<types::Mesh> wallAndBall() { return {test::wall(12), test::sphere(1.
 std::vector<float> receivedWith(const auto& change) {
     std::vector<types::Mesh> meshes = wallAndBall();
     for (types::Mesh& mesh : meshes) change(mesh);
-    return stiffBins(stiffFan(), test::sceneOf(std::move(meshes), 0, {{0, 0, 0}, {9, 1, -0.5}}));
+    return stiffBins(stiffFan(), test::makeScene(std::move(meshes), 0, {{0, 0, 0}, {9, 1, -0.5}}));
 }
 
 }  // namespace
@@ -68,11 +68,11 @@ TEST(StiffCasesTest, ASurfaceOnTheEdgeOfABinIsInTheBinThatBeginsThere) {
     config.beam_height_deg = 10;
     config.quality.rows = 16;
     config.quality.columns_per_beam = 2;
-    const auto geometry = test::sceneOf({test::wall(0)});
+    const auto geometry = test::makeScene({test::wall(0)});
     SonarRenderer renderer(config, geometry);
     for (int bin = 1; bin < 400; ++bin) {
         types::Sonar ping;
-        renderer.render(test::snapshotOf(geometry, {-0.125 * bin, 0, 0}), ping);
+        renderer.render(test::makeSnapshot(geometry, {-0.125 * bin, 0, 0}), ping);
         const auto first = std::ranges::find_if(ping.bins, [](float echo) { return echo > 0; });
         EXPECT_EQ(first - ping.bins.begin(), bin);
     }
@@ -86,7 +86,7 @@ TEST(StiffCasesTest, ReportsFrequenciesOutsideTheLawsAndKeepsEchoesFinite) {
             config.absorption.emplace().frequency_khz = khz;
             config.absorption->law = law;
             EXPECT_THAT(configNotices(config), Contains(HasSubstr("outside its law's validity"))) << khz;
-            const std::vector<float> bins = stiffBins(config, test::sceneOf({test::ground(-1)}));
+            const std::vector<float> bins = stiffBins(config, test::makeScene({test::ground(-1)}));
             EXPECT_THAT(bins, Each(testing::AllOf(Ge(0), testing::Lt(INFINITY)))) << khz;
             EXPECT_GT(bins[35], 0) << khz;
         }
@@ -111,12 +111,12 @@ TEST(StiffCasesTest, AReusedSampleKeepsNothingOfItsOldPing) {
     const SonarConfig small = stiffFan(40, 5, 120), large = stiffFan(130, 61, 300);
     types::Sonar ping;
     for (const SonarConfig& config : {large, small, large, small}) {
-        SonarRenderer(config, scene).render(test::snapshotOf(scene), ping);
+        SonarRenderer(config, scene).render(test::makeSnapshot(scene), ping);
         EXPECT_EQ(ping.bins, stiffBins(config, scene));
     }
     SonarRenderer renderer(large, scene);
-    renderer.render(test::snapshotOf(scene), ping);
-    renderer.render(test::snapshotOf(scene, {0, 0, 1000}), ping);
+    renderer.render(test::makeSnapshot(scene), ping);
+    renderer.render(test::makeSnapshot(scene, {0, 0, 1000}), ping);
     EXPECT_THAT(ping.bins, Each(0)) << "far above all";
 }
 
@@ -133,7 +133,7 @@ TEST(StiffCasesTest, APlateBeyondTheRangeHasNoEchoWhereItsPlanePassesTheSonar) {
         const double bearing = uniform(-1, 1), distance = uniform(3, 6), length = 3 * distance, height = uniform(1, 2);
         const glm::dvec3 along(std::cos(bearing), std::sin(bearing), 0), aside(-along.y, along.x, 0);
         const glm::dvec3 corner = distance * along + uniform(0.05, 0.3) * aside - glm::dvec3(0, 0, height / 2);
-        const auto scene = test::sceneOf({test::quad(corner, length * along, {0, 0, height})});
+        const auto scene = test::makeScene({test::quad(corner, length * along, {0, 0, height})});
         for (const double range : {0.5, 0.7, 0.9}) {
             config.range = range * distance;
             EXPECT_THAT(stiffBins(config, scene), Each(0)) << i << ", range " << config.range;
@@ -149,7 +149,7 @@ TEST(StiffCasesTest, RejectsATooLargePictureWithAMessage) {
     config.quality.rows = 16384;
     config.quality.columns_per_beam = 256;
     config.visibility = Visibility::Gl;
-    EXPECT_THAT(test::errorOf<std::exception>([&] { stiffBins(config, test::sceneOf({test::wall(10)})); }),
+    EXPECT_THAT(test::computeError<std::exception>([&] { stiffBins(config, test::makeScene({test::wall(10)})); }),
                 HasSubstr("cannot render"));
 }
 

@@ -22,7 +22,7 @@ using types::SurfaceMap;
 float linear(double decibels) { return static_cast<float>(std::pow(10, decibels / 10)); }
 
 /** Returns a map with or without strengths; other members are set later. */
-SurfaceMap mapOf(int width, int height, std::vector<float> strengths = {}, bool repeats = true) {
+SurfaceMap makeMap(int width, int height, std::vector<float> strengths = {}, bool repeats = true) {
     return {width, height, std::move(strengths), {}, {}, repeats, repeats};
 }
 
@@ -40,13 +40,13 @@ types::Mesh mappedGround(double size) {
 }
 
 std::shared_ptr<types::Geometry> groundWith(const SurfaceMap& map, double size = 80) {
-    auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({mappedGround(size)}, -15));
+    auto geometry = std::make_shared<types::Geometry>(*test::makeScene({mappedGround(size)}, -15));
     geometry->meshes[0].maps = {{0, std::make_shared<const SurfaceMap>(map)}};
     geometry->materials[0].max_map_strength = map.strengths.empty() ? 1 : *std::ranges::max_element(map.strengths);
     return geometry;
 }
 
-types::GeometryPtr plainGround(float lambert_db = -15) { return test::sceneOf({mappedGround(80)}, lambert_db); }
+types::GeometryPtr plainGround(float lambert_db = -15) { return test::makeScene({mappedGround(80)}, lambert_db); }
 
 /** Adds a material for the classes of the map. */
 int addMaterial(types::Geometry& geometry, float lambert_db) {
@@ -57,13 +57,13 @@ int addMaterial(types::Geometry& geometry, float lambert_db) {
 }
 
 SonarConfig fanOver(int beams = 16) {
-    SonarConfig config = test::sonarOf({.beams = beams, .width_deg = 90, .height_deg = 60, .rows = 128, .columns = 4});
+    SonarConfig config = test::getSonar({.beams = beams, .width_deg = 90, .height_deg = 60, .rows = 128, .columns = 4});
     config.visibility = Visibility::Cpu;
     return config;
 }
 
-std::vector<float> binsOf(const types::GeometryPtr& geometry, const SonarConfig& config = fanOver()) {
-    return test::pingOf(config, test::snapshotOf(geometry, {0, 0, 0}, 0, types::radians(25))).bins;
+std::vector<float> getBins(const types::GeometryPtr& geometry, const SonarConfig& config = fanOver()) {
+    return test::makePing(config, test::makeSnapshot(geometry, {0, 0, 0}, 0, types::radians(25))).bins;
 }
 
 double sum(const std::vector<float>& bins) { return std::accumulate(bins.begin(), bins.end(), 0.0); }
@@ -76,20 +76,20 @@ TEST(SurfaceMapTest, ANeutralMapChangesNoBin) {
     configs[1].speckle = coherent();
     configs[2].motion_in_ping = true;
     for (size_t i = 0; i < configs.size(); ++i)
-        EXPECT_EQ(binsOf(groundWith(mapOf(3, 5, std::vector<float>(15, 1))), configs[i]),
-                  binsOf(plainGround(), configs[i]))
+        EXPECT_EQ(getBins(groundWith(makeMap(3, 5, std::vector<float>(15, 1))), configs[i]),
+                  getBins(plainGround(), configs[i]))
             << i;
 }
 
 TEST(SurfaceMapTest, EachPaintedRegionHasTheLevelOfItsValue) {
     // A map of 64 x 64 with eight stripes along y, at x from -40 to 40 m.
     const double decibels[8] = {0, 0, 0, 0, -3, -20, 6, -40};
-    SurfaceMap map = mapOf(64, 64, {}, false);
+    SurfaceMap map = makeMap(64, 64, {}, false);
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x) map.strengths.push_back(linear(decibels[x / 8]));
     SonarConfig config = fanOver(1);
     config.field_of_view_deg = 2;
-    const std::vector<float> painted = binsOf(groundWith(map), config), plain = binsOf(plainGround(), config);
+    const std::vector<float> painted = getBins(groundWith(map), config), plain = getBins(plainGround(), config);
     int compared = 0;
     double worst = 0;
     for (size_t k = 0; k < plain.size(); ++k) {
@@ -106,7 +106,7 @@ TEST(SurfaceMapTest, EachPaintedRegionHasTheLevelOfItsValue) {
 }
 
 TEST(SurfaceMapTest, ClassesHaveTheLevelsOfTheirMaterials) {
-    SurfaceMap map = mapOf(2, 64, {}, false);
+    SurfaceMap map = makeMap(2, 64, {}, false);
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 2; ++x) map.classes.push_back(y < 32 ? 0 : SurfaceMap::no_class);
     auto geometry = groundWith(map);
@@ -117,8 +117,8 @@ TEST(SurfaceMapTest, ClassesHaveTheLevelsOfTheirMaterials) {
     auto other = std::make_shared<types::Geometry>(*plainGround());
     other->materials[0] = geometry->materials.back();
     const SonarConfig config = fanOver(18);
-    const std::vector<float> mapped = binsOf(geometry, config), of_class = binsOf(other, config),
-                             own = binsOf(plainGround(), config);
+    const std::vector<float> mapped = getBins(geometry, config), of_class = getBins(other, config),
+                             own = getBins(plainGround(), config);
     double worst = 0, border = 0, border_expected = 0;
     for (size_t beam = 0; beam < 18; ++beam)
         for (size_t k = 0; k < 300; ++k) {
@@ -137,7 +137,7 @@ TEST(SurfaceMapTest, ClassesHaveTheLevelsOfTheirMaterials) {
 }
 
 TEST(SurfaceMapTest, DetailFinerThanASampleCountsByItsMean) {
-    SurfaceMap strengths = mapOf(1024, 1024), classes = mapOf(1024, 1024);
+    SurfaceMap strengths = makeMap(1024, 1024), classes = makeMap(1024, 1024);
     for (int y = 0; y < 1024; ++y)
         for (int x = 0; x < 1024; ++x) {
             strengths.strengths.push_back((x + y) % 2 == 0 ? 1.6f : 0);
@@ -149,10 +149,10 @@ TEST(SurfaceMapTest, DetailFinerThanASampleCountsByItsMean) {
     auto of_classes = groundWith(classes);
     classes.materials = {addMaterial(*of_classes, -12), addMaterial(*of_classes, -30)};
     of_classes->meshes[0].maps[0].map = std::make_shared<const SurfaceMap>(classes);
-    const double plain = sum(binsOf(plainGround(), config));
-    EXPECT_NEAR(sum(binsOf(groundWith(strengths), config)) / plain, 0.8, 0.008);
-    const double mean = (sum(binsOf(plainGround(-12), config)) + sum(binsOf(plainGround(-30), config))) / 2;
-    EXPECT_NEAR(sum(binsOf(of_classes, config)) / mean, 1, 0.01);
+    const double plain = sum(getBins(plainGround(), config));
+    EXPECT_NEAR(sum(getBins(groundWith(strengths), config)) / plain, 0.8, 0.008);
+    const double mean = (sum(getBins(plainGround(-12), config)) + sum(getBins(plainGround(-30), config))) / 2;
+    EXPECT_NEAR(sum(getBins(of_classes, config)) / mean, 1, 0.01);
 }
 
 /** A board of random place, size, rotation and mirroring, painted in blocks, compared with a board per block. */
@@ -161,7 +161,7 @@ TEST(SurfaceMapTest, APaintedBoardEchoesAsBoardsOfItsBlocks) {
     const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     for (int trial = 0; trial < 20; ++trial) {
         constexpr int blocks = 4, texels = 256;
-        SurfaceMap map = mapOf(texels, texels, {}, false);
+        SurfaceMap map = makeMap(texels, texels, {}, false);
         std::array<double, blocks * blocks> db{};
         for (double& each : db) each = uniform(-25, 10);
         for (int y = 0; y < texels; ++y)
@@ -174,7 +174,7 @@ TEST(SurfaceMapTest, APaintedBoardEchoesAsBoardsOfItsBlocks) {
                                     uniform(-1, 1), glm::dvec3(0, 0, 1)),
                         uniform(-0.8, 0.8), glm::dvec3(0, 1, 0)),
             size);
-        const auto whole = std::make_shared<types::Geometry>(*test::sceneOf({test::mappedWall()}, -10));
+        const auto whole = std::make_shared<types::Geometry>(*test::makeScene({test::mappedWall()}, -10));
         types::Mesh board = test::mappedWall();
         board.map_uvs = board.uvs;
         board.maps = {{0, std::make_shared<const SurfaceMap>(map)}};
@@ -193,10 +193,10 @@ TEST(SurfaceMapTest, APaintedBoardEchoesAsBoardsOfItsBlocks) {
             apart->materials.emplace_back().lambert_db = static_cast<float>(-10 + db[i]);
         }
         SonarConfig config =
-            test::sonarOf({.beams = 24, .width_deg = 100, .height_deg = 90, .rows = 1024, .columns = 32});
+            test::getSonar({.beams = 24, .width_deg = 100, .height_deg = 90, .rows = 1024, .columns = 32});
         config.visibility = Visibility::Cpu;
         const auto echo = [&](const types::GeometryPtr& geometry) {
-            return test::pingOf(config, test::snapshotOf(geometry)).bins;
+            return test::makePing(config, test::makeSnapshot(geometry)).bins;
         };
         const std::vector<float> painted = echo(whole), expected = echo(apart);
         ASSERT_GT(sum(expected), 0) << trial;
@@ -213,47 +213,47 @@ TEST(SurfaceMapTest, FieldsOfScatterersAreWeakerByTheSameFactor) {
     SonarConfig config = fanOver(8);
     config.frequency_khz = 400;
     config.speckle = coherent();
-    const std::vector<float> plain = binsOf(plainGround(), config),
-                             weak = binsOf(groundWith(mapOf(1, 1, {0.01f})), config);
+    const std::vector<float> plain = getBins(plainGround(), config),
+                             weak = getBins(groundWith(makeMap(1, 1, {0.01f})), config);
     for (size_t k = 0; k < plain.size(); ++k) EXPECT_NEAR(weak[k], 0.01 * plain[k], 1e-4 * plain[k] + 1e-12) << k;
-    SurfaceMap classes = mapOf(512, 512);
+    SurfaceMap classes = makeMap(512, 512);
     for (int i = 0; i < 512 * 512; ++i) classes.classes.push_back((i + i / 512) % 2 == 0 ? 0 : 1);
     auto geometry = groundWith(classes);
     classes.materials = {addMaterial(*geometry, -12), addMaterial(*geometry, -30)};
     geometry->meshes[0].maps[0].map = std::make_shared<const SurfaceMap>(classes);
-    const double mean = (sum(binsOf(plainGround(-12), config)) + sum(binsOf(plainGround(-30), config))) / 2;
-    EXPECT_NEAR(sum(binsOf(geometry, config)) / mean, 1, 0.1);
+    const double mean = (sum(getBins(plainGround(-12), config)) + sum(getBins(plainGround(-30), config))) / 2;
+    EXPECT_NEAR(sum(getBins(geometry, config)) / mean, 1, 0.1);
 }
 
 TEST(SurfaceMapTest, ASilentFloorDoesNotChangeTheWaterBeforeIt) {
     SonarConfig config = fanOver(8);
     config.volume = {{{}, {}, -50}};
-    SurfaceMap half = mapOf(2, 1, {}, false);
+    SurfaceMap half = makeMap(2, 1, {}, false);
     half.classes = {0, 1};
     auto geometry = groundWith(half);
     half.materials = {addMaterial(*geometry, -200), addMaterial(*geometry, -200)};
     geometry->materials[0].lambert_db = -200;
     geometry->meshes[0].maps[0].map = std::make_shared<const SurfaceMap>(half);
-    const std::vector<float> mapped = binsOf(geometry, config), plain = binsOf(plainGround(-200), config);
+    const std::vector<float> mapped = getBins(geometry, config), plain = getBins(plainGround(-200), config);
     ASSERT_GT(sum(plain), 0);
     for (size_t k = 0; k < plain.size(); ++k) EXPECT_NEAR(mapped[k], plain[k], 1e-5 * plain[k]) << k;
 }
 
 TEST(SurfaceMapTest, LabelsAreThoseOfTheObject) {
-    SurfaceMap map = mapOf(8, 8);
+    SurfaceMap map = makeMap(8, 8);
     for (int i = 0; i < 64; ++i) map.classes.push_back(static_cast<uint8_t>(i % 3));
     auto geometry = groundWith(map);
     map.materials = {addMaterial(*geometry, -12), addMaterial(*geometry, -20), addMaterial(*geometry, -16)};
     geometry->meshes[0].maps[0].map = std::make_shared<const SurfaceMap>(map);
     types::Sonar ping;
-    const auto truthOf = [&](const types::GeometryPtr& of) {
+    const auto getTruth = [&](const types::GeometryPtr& of) {
         SonarRenderer renderer(fanOver(), of);
         types::SonarTruth truth;
         renderer.setTruth(ping, &truth);
-        renderer.render(test::snapshotOf(of, {0, 0, 0}, 0, types::radians(25)), ping);
+        renderer.render(test::makeSnapshot(of, {0, 0, 0}, 0, types::radians(25)), ping);
         return truth;
     };
-    const types::SonarTruth plain = truthOf(plainGround()), mapped = truthOf(geometry);
+    const types::SonarTruth plain = getTruth(plainGround()), mapped = getTruth(geometry);
     for (size_t k = 0; k < ping.bins.size(); ++k) EXPECT_EQ(ping.bins[k] > 0, mapped.object[k] == 0) << k;
     EXPECT_EQ(mapped.object, plain.object);
     EXPECT_EQ(mapped.path, plain.path);
@@ -266,16 +266,16 @@ TEST(SurfaceMapTest, MapsApplyToPathsByMirrorsToo) {
     SonarConfig config = fanOver(8);
     config.multipath.emplace().surface.emplace();
     const auto ghosts = [&](const types::GeometryPtr& geometry) {
-        types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 0});
+        types::Snapshot snapshot = test::makeSnapshot(geometry, {0, 0, 0});
         snapshot.water_surface = 3;
         SonarConfig direct = config;
         direct.multipath.reset();
-        return sum(test::pingOf(config, snapshot).bins) - sum(test::pingOf(direct, snapshot).bins);
+        return sum(test::makePing(config, snapshot).bins) - sum(test::makePing(direct, snapshot).bins);
     };
     const double plain = ghosts(plainGround());
     ASSERT_GT(plain, 0);
-    EXPECT_NEAR(ghosts(groundWith(mapOf(1, 1, {0.1f}))) / plain, 0.1, 1e-4);
-    SurfaceMap map = mapOf(1, 1);
+    EXPECT_NEAR(ghosts(groundWith(makeMap(1, 1, {0.1f}))) / plain, 0.1, 1e-4);
+    SurfaceMap map = makeMap(1, 1);
     map.classes = {0};
     auto geometry = groundWith(map);
     map.materials = {addMaterial(*geometry, -25)};
@@ -286,9 +286,9 @@ TEST(SurfaceMapTest, MapsApplyToPathsByMirrorsToo) {
 TEST(SurfaceMapTest, ExtremeCoordinatesAndValuesHaveFiniteEchoes) {
     for (const float uv : {NAN, INFINITY, 1e30f, -1e30f, 1e7f})
         for (const float strength : {0.0f, 1e-20f, 1e4f}) {
-            auto geometry = groundWith(mapOf(2, 2, std::vector<float>(4, strength)));
+            auto geometry = groundWith(makeMap(2, 2, std::vector<float>(4, strength)));
             geometry->meshes[0].map_uvs[1] = {uv, uv};
-            for (const float bin : binsOf(geometry)) {
+            for (const float bin : getBins(geometry)) {
                 ASSERT_TRUE(std::isfinite(bin)) << uv << " " << strength;
                 ASSERT_GE(bin, 0);
             }
@@ -299,12 +299,12 @@ TEST(SurfaceMapTest, TheRasterisedPathOmitsMapsWithANotice) {
     SonarConfig config = fanOver();
     config.visibility = Visibility::Gl;
     config.device = "software";
-    const auto geometry = groundWith(mapOf(1, 1, {0.1f}));
+    const auto geometry = groundWith(makeMap(1, 1, {0.1f}));
     const RenderPlan plan = makeRenderPlan(config, *geometry);
     const Omitted* const omitted = plan.findOmitted("surface maps");
     ASSERT_NE(omitted, nullptr);
     EXPECT_EQ(omitted->reason, Reason::Lacking);
-    EXPECT_EQ(binsOf(geometry, config), binsOf(plainGround(), config));
+    EXPECT_EQ(getBins(geometry, config), getBins(plainGround(), config));
     const RenderPlan without = makeRenderPlan(fanOver(), *plainGround());
     ASSERT_NE(without.findOmitted("surface maps"), nullptr);
     EXPECT_EQ(without.findOmitted("surface maps")->reason, Reason::NoneInScene);
@@ -313,7 +313,7 @@ TEST(SurfaceMapTest, TheRasterisedPathOmitsMapsWithANotice) {
 TEST(SurfaceMapTest, LevelsOfAMapKeepItsMeanAtAnySize) {
     std::mt19937 random(3);
     for (const auto& [width, height] : {std::pair(1, 1), {2, 1}, {3, 7}, {64, 64}, {100, 1}, {37, 53}}) {
-        SurfaceMap map = mapOf(width, height);
+        SurfaceMap map = makeMap(width, height);
         double mean = 0;
         for (int i = 0; i < width * height; ++i) {
             map.strengths.push_back(std::uniform_real_distribution(0.0f, 2.0f)(random));

@@ -27,7 +27,7 @@ namespace {
 
 using acoustics::Weighting;
 using std::numbers::pi;
-using test::lawOf;
+using test::getLaw;
 
 double decibels(double ratio) { return 10 * std::log10(ratio); }
 
@@ -80,7 +80,7 @@ TEST(TablesTest, TheTransmissionOfWalls) {
         types::Material material;
         material.shell = matters[trial % 5];
         material.shell->thickness = std::exp(random.between(std::log(2e-4), std::log(0.02)));
-        SonarConfig config = test::sonarOf({.beams = 1, .width_deg = 1});
+        SonarConfig config = test::getSonar({.beams = 1, .width_deg = 1});
         config.speed_of_sound = 1500;
         config.frequency_khz = std::exp(random.between(std::log(50), std::log(1200)));
         const WallLaw law = makeWallLaw(material, config);
@@ -149,21 +149,22 @@ TEST(TablesTest, PatternsOfMirroredPathsAndOfPictures) {
     Random random;
     Worst way{"patterns of paths, in 0.05 dB or 1e-5"}, picture{"patterns of pictures, of the axis"};
     for (int trial = 0; trial < 12; ++trial) {
-        SonarConfig config = test::sonarOf({.beams = 8, .width_deg = 60, .height_deg = 40});
+        SonarConfig config = test::getSonar({.beams = 8, .width_deg = 60, .height_deg = 40});
         const Weighting weighting = trial % 2 == 0 ? Weighting::Uniform : Weighting::Taylor;
-        config.beam_pattern.emplace().transmit.elevation = lawOf(weighting, random.between(0.25, 30));
-        config.beam_pattern->transmit.azimuth = lawOf(Weighting::Uniform, random.between(0.5, 90));
-        config.beam_pattern->receive.azimuth = lawOf(Weighting::Hann, 5);
+        config.beam_pattern.emplace().transmit.elevation = getLaw(weighting, random.between(0.25, 30));
+        config.beam_pattern->transmit.azimuth = getLaw(Weighting::Uniform, random.between(0.5, 90));
+        config.beam_pattern->receive.azimuth = getLaw(Weighting::Hann, 5);
         config.visibility = Visibility::Cpu;
         const auto scene = test::openWater();
         const RenderPlan plan = makeRenderPlan(config, *scene);
         const PathPatterns patterns(plan);
-        const PathPatterns::Way ahead = patterns.wayOf({1, 0, 0});
+        const PathPatterns::Direction ahead = patterns.toDirection({1, 0, 0});
         const double reach = std::sin(types::radians(plan.sampled.beam_height_deg) / 2);
         for (int i = 0; i < 3000; ++i) {
             const double sine = random.between(-reach, reach), azimuth = random.between(-pi, pi),
                          level = std::sqrt(1 - sine * sine);
-            const PathPatterns::Way sent = patterns.wayOf({level * std::cos(azimuth), level * std::sin(azimuth), sine});
+            const PathPatterns::Direction sent =
+                patterns.toDirection({level * std::cos(azimuth), level * std::sin(azimuth), sine});
             const double exact =
                 plan.directivity->sentElevation(std::asin(sine)) * plan.directivity->sentAzimuth(azimuth);
             way.take((patterns.power(sent, ahead) - exact) / (2 * 0.0116 * exact + 2e-5));

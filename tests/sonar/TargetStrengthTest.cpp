@@ -11,7 +11,7 @@
 #include "components/sonar/surfaces/MeshFacts.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/TargetShapes.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "types/geometry/Angle.hpp"
 
 namespace insonify::sonar {
@@ -90,7 +90,7 @@ TEST(TargetStrengthTest, APipeBroadsideIsTheSameRayTracedAndRasterised) {
     const Encounter met{300, 1000, 64, 0.3};
     const Target target = study::cylinderTarget(met, 0.1, 1, 0);
     EXPECT_NEAR(target.strength_db, 10, 0.1);
-    for (const SonarConfig& way : test::everyWay(study::targetSonar(met, target, 512)))
+    for (const SonarConfig& way : test::everyRenderer(study::targetSonar(met, target, 512)))
         EXPECT_NEAR(study::targetError(met, target, way), 0, tolerance);
 }
 
@@ -116,7 +116,7 @@ TEST(TargetStrengthTest, ACubesFacesStayFlatAndAPlatesLobeFollowsItsScale) {
             EXPECT_NEAR(std::sqrt(facet.first.y * facet.second.y) * 4 * std::numbers::pi * area / 1e-4, 1, 1e-5);
             EXPECT_EQ(facet.first.x + facet.second.x + facet.first.z + facet.second.z, 0);
         }
-    const types::Mesh box = study::meshOf(
+    const types::Mesh box = study::getMesh(
         {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
         {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7});
     for (const FacetRecord& facet : facetLobes(box, glm::dmat3(1), 0.01)) {

@@ -14,10 +14,10 @@ TEST(TileDirectionsTest, EachSampleOfEachTileLooksAtItsCell) {
     std::mt19937 random(3);
     const auto upTo = [&](int max) { return std::uniform_int_distribution<int>(1, max)(random); };
     for (int run = 0; run < 40; ++run) {
-        SonarConfig config = test::sonarOf(
+        SonarConfig config = test::getSonar(
             {.beams = upTo(9), .width_deg = 5.0 * upTo(20), .bins = 50, .rows = 63 + upTo(20), .columns = upTo(9)});
         config.beam_geometry = run % 2 == 0 ? BeamGeometry::Planar : BeamGeometry::Conical;
-        const RenderPlan plan = makeRenderPlan(config, *test::sceneOf({test::ground(-4, 200)}));
+        const RenderPlan plan = makeRenderPlan(config, *test::makeScene({test::ground(-4, 200)}));
         TracedView view{makeAngularView(plan), {}};
         const int together = upTo(view.cells.beams), strip = together * view.cells.beam_columns;
         view.shape = TileShape(view.cells, plan.grid, together);

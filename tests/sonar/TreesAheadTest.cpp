@@ -19,7 +19,7 @@ namespace insonify::sonar {
 namespace {
 
 types::GeometryPtr hilly(int cells) {
-    return test::sceneOf({test::hills(cells), test::sphere(1, 12)}, 0, {{}, {30, 0, -5}});
+    return test::makeScene({test::hills(cells), test::sphere(1, 12)}, 0, {{}, {30, 0, -5}});
 }
 
 size_t threads() {
@@ -47,17 +47,17 @@ std::vector<glm::dvec3> line(const glm::dvec3& from, const glm::dvec3& to, doubl
  *  the time that it needs between pings. */
 size_t builtByPings(const types::GeometryPtr& geometry, const std::vector<glm::dvec3>& way) {
     RayVisibility visibility(*geometry);
-    visibility.place(test::snapshotOf(geometry, way.front()));
+    visibility.place(test::makeSnapshot(geometry, way.front()));
     const size_t before = StillTree::builtByThisThread();
     for (const glm::dvec3& place : way) {
-        visibility.place(test::snapshotOf(geometry, place));
+        visibility.place(test::makeSnapshot(geometry, place));
         EXPECT_TRUE(test::becomesTrue([&] { return visibility.hasTreesAhead(); }));
     }
     return StillTree::builtByThisThread() - before;
 }
 
 SonarConfig fan() {
-    SonarConfig config = test::sonarOf(
+    SonarConfig config = test::getSonar(
         {.beams = 16, .width_deg = 90, .height_deg = 40, .bins = 100, .bin = 0.5, .rows = 32, .columns = 2});
     config.visibility = Visibility::Cpu;
     return config;
@@ -78,12 +78,12 @@ TEST(TreesAheadTest, PingsAreThoseOfNewRenderers) {
     std::vector<glm::dvec3> way = circle({256, 256, -5}, 12, 1), on = line({200, 240, -5}, {330, 262, -5}, 1.3);
     way.insert(way.end(), on.begin(), on.end());
     for (size_t i = 0; i < way.size(); ++i) {
-        const types::Snapshot snapshot = test::snapshotOf(geometry, way[i], 0.1 * static_cast<double>(i), 0.4);
+        const types::Snapshot snapshot = test::makeSnapshot(geometry, way[i], 0.1 * static_cast<double>(i), 0.4);
         types::Sonar ping;
         renderer.render(snapshot, ping);
         if (i % 7 != 0) continue;
         EXPECT_GT(*std::ranges::max_element(ping.bins), 0);
-        ASSERT_EQ(ping.bins, test::pingOf(fan(), snapshot).bins) << i;
+        ASSERT_EQ(ping.bins, test::makePing(fan(), snapshot).bins) << i;
     }
 }
 
@@ -92,14 +92,14 @@ TEST(TreesAheadTest, NoPingTakesTheTimeOfATree) {
     const types::GeometryPtr geometry = hilly(400);
     SonarRenderer renderer(fan(), geometry, {.threads = 1});
     const double tree = test::processorSeconds([&] {
-        RayVisibility(*geometry).place(test::snapshotOf(geometry, {200, 10, -5}));
+        RayVisibility(*geometry).place(test::makeSnapshot(geometry, {200, 10, -5}));
     });
     std::vector<double> times;
     double slowest = 0;
     for (const glm::dvec3& place : line({200, 10, -5}, {300, 10, -5}, 0.5)) {
         types::Sonar ping;
         times.push_back(
-            test::processorSeconds([&] { renderer.render(test::snapshotOf(geometry, place, 0, 0.4), ping); }));
+            test::processorSeconds([&] { renderer.render(test::makeSnapshot(geometry, place, 0, 0.4), ping); }));
         if (std::abs(place.x - 256) < 2) slowest = std::max(slowest, times.back());
         if (place.x > 225 && place.x < 256) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -112,12 +112,12 @@ TEST(TreesAheadTest, ASonarAtRestOrThatJumpsStartsNoThread) {
     const types::GeometryPtr geometry = hilly(10);
     RayVisibility visibility(*geometry);
     const size_t before = threads();
-    for (int i = 0; i < 5; ++i) visibility.place(test::snapshotOf(geometry, {255, 255, -5}));
-    for (const double x : {-300, 400, 255, 700, 300}) visibility.place(test::snapshotOf(geometry, {x, 250, -5}));
-    for (int i = 0; i < 50; ++i) visibility.place(test::snapshotOf(geometry, {300 + i, 0.0 + i, -5}));
+    for (int i = 0; i < 5; ++i) visibility.place(test::makeSnapshot(geometry, {255, 255, -5}));
+    for (const double x : {-300, 400, 255, 700, 300}) visibility.place(test::makeSnapshot(geometry, {x, 250, -5}));
+    for (int i = 0; i < 50; ++i) visibility.place(test::makeSnapshot(geometry, {300 + i, 0.0 + i, -5}));
     EXPECT_EQ(threads(), before) << "nothing to build in the middle of a cell either";
-    visibility.place(test::snapshotOf(geometry, {350, 225, -5}));
-    visibility.place(test::snapshotOf(geometry, {350, 226, -5}));
+    visibility.place(test::makeSnapshot(geometry, {350, 225, -5}));
+    visibility.place(test::makeSnapshot(geometry, {350, 226, -5}));
     EXPECT_EQ(threads(), before + 1);
 }
 
@@ -191,7 +191,7 @@ TEST(TreesAheadTest, ATreeThatNobodyWaitsForIsGivenUp) {
 TEST(TreesAheadTest, TheFirstMotionOfAMovableObjectBuildsNoTree) {
     const types::GeometryPtr geometry = hilly(40);
     for (const bool is_known : {true, false}) {
-        types::Snapshot rest = test::snapshotOf(geometry, {20, 0, -5});
+        types::Snapshot rest = test::makeSnapshot(geometry, {20, 0, -5});
         if (is_known) rest.movable = std::make_shared<const std::vector<uint32_t>>(1, 1u);
         types::Snapshot moved = rest;
         moved.moved = {{1, glm::translate(glm::dmat4(1), {28, 1, -5})}};
@@ -202,7 +202,7 @@ TEST(TreesAheadTest, TheFirstMotionOfAMovableObjectBuildsNoTree) {
         renderer.render(moved, ping);
         EXPECT_EQ(StillTree::builtByThisThread() - before, is_known ? 0u : 1u);
         EXPECT_GT(*std::ranges::max_element(ping.bins), 0);
-        EXPECT_EQ(ping.bins, test::pingOf(fan(), moved).bins);
+        EXPECT_EQ(ping.bins, test::makePing(fan(), moved).bins);
     }
 }
 

@@ -20,12 +20,12 @@
 namespace insonify::sonar {
 namespace {
 
-using test::pingOf;
+using test::makePing;
 using types::radians;
 
 SonarConfig seenFan(Visibility visibility) {
     SonarConfig config =
-        test::sonarOf({.beams = 50, .width_deg = 100, .height_deg = 50, .bins = 400, .rows = 256, .columns = 8});
+        test::getSonar({.beams = 50, .width_deg = 100, .height_deg = 50, .bins = 400, .rows = 256, .columns = 8});
     config.visibility = visibility;
     if (visibility == Visibility::Gl) config.device = "software";
     return config;
@@ -94,7 +94,7 @@ std::shared_ptr<types::Geometry> plainSurfaces() {
 }
 
 types::Snapshot movedScene() {
-    types::Snapshot snapshot = test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05);
+    types::Snapshot snapshot = test::makeSnapshot(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05);
     snapshot.moved = {{1, glm::translate(glm::dmat4(1), {8, -2, -1})},
                       {2, glm::scale(glm::rotate(glm::translate(glm::dmat4(1), {10, 4, 0}), 1.0, glm::dvec3(1, 1, 0)),
                                      {1.0, -2.0, 0.5})}};
@@ -106,7 +106,7 @@ types::Snapshot farScene() {
     const glm::dvec3 away(463'000, 5'937'000, 0);
     auto geometry = plainSurfaces();
     for (types::Object& object : geometry->objects) object.world_from_object[3] += glm::dvec4(away, 0);
-    return test::snapshotOf(geometry, away, 0.1, 0.15, 0.05);
+    return test::makeSnapshot(geometry, away, 0.1, 0.15, 0.05);
 }
 
 struct Scene {
@@ -115,8 +115,8 @@ struct Scene {
 };
 std::vector<Scene> seenScenes() {
     return {{"open, closed, mirrored, scaled, several of one mesh",
-             test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05)},
-            {"behind", test::snapshotOf(plainSurfaces(), {0, 0, 0}, 2.3, 0.05, 0)},
+             test::makeSnapshot(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05)},
+            {"behind", test::makeSnapshot(plainSurfaces(), {0, 0, 0}, 2.3, 0.05, 0)},
             {"moved", movedScene()},
             {"far", farScene()}};
 }
@@ -148,23 +148,23 @@ TEST(VisibilityTest, RayTracedPingsMatchRasterisedPingsUpToTheSampling) {
                 gl.model = cpu.model = model;
                 gl.beam_geometry = cpu.beam_geometry = beams;
                 // In a mean, bins with few samples count like other bins.
-                EXPECT_LT(test::relativeL2(pingOf(cpu, scene.snapshot), pingOf(gl, scene.snapshot)),
+                EXPECT_LT(test::relativeL2(makePing(cpu, scene.snapshot), makePing(gl, scene.snapshot)),
                           model == Model::Physical ? 0.03 : 0.16)
                     << scene.name << (model == Model::Physical ? ", physical" : ", cerqueira2017")
                     << (beams == BeamGeometry::Planar ? ", planar" : ", conical");
             }
     SonarConfig other = seenFan(Visibility::Cpu);
     other.beam_height_deg = 40;
-    EXPECT_GT(test::relativeL2(pingOf(other, seenScenes()[0].snapshot),
-                               pingOf(seenFan(Visibility::Gl), seenScenes()[0].snapshot)),
+    EXPECT_GT(test::relativeL2(makePing(other, seenScenes()[0].snapshot),
+                               makePing(seenFan(Visibility::Gl), seenScenes()[0].snapshot)),
               0.03);
 }
 
 TEST(VisibilityTest, NormalMapsHaveTheSameEffectInBoth) {
-    const auto snapshot = test::snapshotOf(test::surfaces(), {10, 0, -2});
+    const auto snapshot = test::makeSnapshot(test::surfaces(), {10, 0, -2});
     SonarConfig gl = seenFan(Visibility::Gl), cpu = seenFan(Visibility::Cpu);
-    const types::Sonar raster_ping = pingOf(gl, snapshot), traced_ping = pingOf(cpu, snapshot);
-    const types::Sonar flat = pingOf(cpu, test::snapshotOf(plainSurfaces(), {10, 0, -2}));
+    const types::Sonar raster_ping = makePing(gl, snapshot), traced_ping = makePing(cpu, snapshot);
+    const types::Sonar flat = makePing(cpu, test::makeSnapshot(plainSurfaces(), {10, 0, -2}));
     EXPECT_LT(test::relativeL2(traced_ping, raster_ping), 0.03);
     EXPECT_GT(test::relativeL2(flat, raster_ping), 0.06);
 }
@@ -174,28 +174,28 @@ TEST(VisibilityTest, PingsHaveTheSameBytesForAnyNumberOfThreads) {
         SonarConfig config = seenFan(Visibility::Cpu);
         config.quality.columns_per_beam = columns;
         config.beam_count = columns == 512 ? 2 : 50;
-        const std::vector<float> alone = pingOf(config, movedScene(), {.threads = 1}).bins;
+        const std::vector<float> alone = makePing(config, movedScene(), {.threads = 1}).bins;
         EXPECT_GT(std::accumulate(alone.begin(), alone.end(), 0.0), 0);
         for (int threads : {2, 5})
-            EXPECT_EQ(pingOf(config, movedScene(), {.threads = threads}).bins, alone)
+            EXPECT_EQ(makePing(config, movedScene(), {.threads = threads}).bins, alone)
                 << threads << " threads, " << columns << " columns";
     }
 }
 
 TEST(VisibilityTest, APingDoesNotDependOnEarlierPlacesOfTheSonar) {
     const types::GeometryPtr geometry = plainSurfaces();
-    const types::Snapshot last = test::snapshotOf(geometry, {0.3, 0.2, 0.1}, 0.1, 0.15, 0.05);
+    const types::Snapshot last = test::makeSnapshot(geometry, {0.3, 0.2, 0.1}, 0.1, 0.15, 0.05);
     SonarRenderer renderer(seenFan(Visibility::Cpu), geometry);
     types::Sonar ping;
     for (const glm::dvec3& place : {glm::dvec3(-7.123, 3.21, 0.4), glm::dvec3(400, 1, 0)})
-        renderer.render(test::snapshotOf(geometry, place, 0.1, 0.15, 0.05), ping);
+        renderer.render(test::makeSnapshot(geometry, place, 0.1, 0.15, 0.05), ping);
     renderer.render(last, ping);
     EXPECT_GT(std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0), 0);
-    EXPECT_EQ(ping.bins, pingOf(seenFan(Visibility::Cpu), last).bins);
+    EXPECT_EQ(ping.bins, makePing(seenFan(Visibility::Cpu), last).bins);
 }
 
 TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
-    const types::Snapshot still = test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05), moved = movedScene();
+    const types::Snapshot still = test::makeSnapshot(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05), moved = movedScene();
     SonarRenderer renderer(seenFan(Visibility::Cpu), still.geometry);
     types::Snapshot later = moved;
     later.geometry = still.geometry;
@@ -203,7 +203,7 @@ TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
     renderer.render(still, before);
     renderer.render(later, after);
     renderer.render(still, again);
-    EXPECT_EQ(after.bins, pingOf(seenFan(Visibility::Cpu), moved).bins);
+    EXPECT_EQ(after.bins, makePing(seenFan(Visibility::Cpu), moved).bins);
     EXPECT_LT(test::relativeL2(again, before), 1e-6) << "at its place again, by a tree of its own";
     EXPECT_GT(test::relativeL2(after, before), 0.05);
 }
@@ -218,11 +218,11 @@ TEST(VisibilityTest, APingDoesNotDependOnEarlierPings) {
     SonarRenderer renderer(config, geometry);
     // Places on both sides of a change of the tree's origin, back and forth.
     for (const double x : {0.3, 255.9, 256.1, 255.95, 256.2, 700.0, 0.3}) {
-        const types::Snapshot snapshot = test::snapshotOf(geometry, {x, 0, 0}, 0.1, 0.15);
+        const types::Snapshot snapshot = test::makeSnapshot(geometry, {x, 0, 0}, 0.1, 0.15);
         types::Sonar ping;
         renderer.render(snapshot, ping);
         EXPECT_GT(*std::ranges::max_element(ping.bins), 0) << x;
-        EXPECT_EQ(ping.bins, pingOf(config, snapshot).bins) << x;
+        EXPECT_EQ(ping.bins, makePing(config, snapshot).bins) << x;
     }
 }
 
@@ -236,9 +236,10 @@ TEST(VisibilityTest, InstancesOfLargeMeshesEchoTheSame) {
                                      glm::translate(glm::dmat4(1), {6 + 2.0 * (i % 7), 1.5 * (i / 7) - 7, -1})});
     geometry->objects.push_back({"ground", 1, glm::dmat4(1)});
     ASSERT_GT(geometry->triangleCount(), 4'000'000u);
-    const auto snapshot = test::snapshotOf(geometry, {0, 0, 0}, 0, 0.15);
-    EXPECT_LT(test::relativeL2(pingOf(seenFan(Visibility::Cpu), snapshot), pingOf(seenFan(Visibility::Gl), snapshot)),
-              0.03);
+    const auto snapshot = test::makeSnapshot(geometry, {0, 0, 0}, 0, 0.15);
+    EXPECT_LT(
+        test::relativeL2(makePing(seenFan(Visibility::Cpu), snapshot), makePing(seenFan(Visibility::Gl), snapshot)),
+        0.03);
 }
 
 TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
@@ -252,9 +253,9 @@ TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
         config.quality.columns_per_beam = 8;
         config.range = 30;
         config.bin_count = 300;
-        const auto down = test::snapshotOf(test::sceneOf({test::ground(-5)}), {}, 0, radians(90));
+        const auto down = test::makeSnapshot(test::makeScene({test::ground(-5)}), {}, 0, radians(90));
         const double half = radians(height_deg / 2), delta = radians(1);
-        test::expectForm(pingOf(config, down), test::thinBeamOnWall(5, half, delta),
+        test::expectForm(makePing(config, down), test::thinBeamOnWall(5, half, delta),
                          test::thinBeamOnFadingWall(5, half, delta));
     }
 }
@@ -262,10 +263,10 @@ TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
 TEST(VisibilityTest, RejectsATallImageThatRaysAccept) {
     SonarConfig config = seenFan(Visibility::Gl);
     config.beam_height_deg = 170;
-    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("rays (visibility: cpu) 180")));
+    EXPECT_THAT(test::countRefusals(config), testing::ElementsAre(testing::HasSubstr("rays (visibility: cpu) 180")));
     config.visibility = Visibility::Cpu;
     config.device.clear();
-    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(config), testing::IsEmpty());
 }
 
 }  // namespace insonify::sonar

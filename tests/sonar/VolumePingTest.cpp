@@ -5,7 +5,7 @@
 #include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "tests/support/ClosedForms.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/geometry/Angle.hpp"
@@ -13,9 +13,9 @@
 namespace insonify::sonar {
 namespace {
 
-using test::everyWay;
+using test::everyRenderer;
 using test::expectForm;
-using test::pingOf;
+using test::makePing;
 using types::radians;
 
 constexpr double half = radians(20), strength = 1e-7;
@@ -26,7 +26,7 @@ VolumeLayer layer(double strength_db, std::optional<double> top = {}, std::optio
 
 SonarConfig clearSonar() {
     SonarConfig config =
-        test::sonarOf({.beams = 8, .width_deg = 80, .height_deg = 40, .bins = 300, .rows = 512, .columns = 4});
+        test::getSonar({.beams = 8, .width_deg = 80, .height_deg = 40, .bins = 300, .rows = 512, .columns = 4});
     config.range_min = 1;
     return config;
 }
@@ -38,7 +38,7 @@ SonarConfig sonarIn(std::vector<VolumeLayer> volume) {
 }
 
 /** Intensity of a beam: the water's strength times the solid angle of the beam at a range, over the range squared. */
-test::Form waterOf(const std::function<double(double)>& solid_angle) {
+test::Form getWater(const std::function<double(double)>& solid_angle) {
     return test::between(1, 1e9, [=](double near, double far) {
         return test::integral(near, far, [=](double r) { return strength * solid_angle(r) / (r * r); });
     });
@@ -46,16 +46,16 @@ test::Form waterOf(const std::function<double(double)>& solid_angle) {
 
 /** Ground without an echo that hides the water. */
 types::Snapshot overSilentGround(double height) {
-    return test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-height))}, -200));
+    return test::makeSnapshot(test::makeScene({test::ground(static_cast<float>(-height))}, -200));
 }
 
 TEST(VolumePingTest, ABottomHidesTheWaterBelowIt) {
     const double height = 3, delta = radians(10);
     const auto right =
-        waterOf([=](double r) { return delta * (std::sin(half) + std::min(std::sin(half), height / r)); });
-    const auto open = waterOf([=](double) { return 2 * delta * std::sin(half); });
-    for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
-        expectForm(pingOf(way, overSilentGround(height)), right, open);
+        getWater([=](double r) { return delta * (std::sin(half) + std::min(std::sin(half), height / r)); });
+    const auto open = getWater([=](double) { return 2 * delta * std::sin(half); });
+    for (const SonarConfig& way : everyRenderer(sonarIn({layer(-70)})))
+        expectForm(makePing(way, overSilentGround(height)), right, open);
 }
 
 TEST(VolumePingTest, OpenWaterEchoesByThePatternInElevation) {
@@ -67,10 +67,10 @@ TEST(VolumePingTest, OpenWaterEchoesByThePatternInElevation) {
     const acoustics::BeamPattern pattern(law);
     const double received =
         test::integral(-1.5, 1.5, [&](double angle) { return pattern.power(angle) * std::cos(angle); });
-    const auto right = waterOf([=](double) { return radians(10) * received; });
-    const auto box = waterOf([=](double) { return 2 * radians(10) * std::sin(half); });
-    const auto far = test::snapshotOf(test::sceneOf({test::wall(90)}));
-    for (const SonarConfig& way : everyWay(config)) expectForm(pingOf(way, far), right, box);
+    const auto right = getWater([=](double) { return radians(10) * received; });
+    const auto box = getWater([=](double) { return 2 * radians(10) * std::sin(half); });
+    const auto far = test::makeSnapshot(test::makeScene({test::wall(90)}));
+    for (const SonarConfig& way : everyRenderer(config)) expectForm(makePing(way, far), right, box);
 }
 
 TEST(VolumePingTest, ALayerEchoesAtItsRanges) {
@@ -79,48 +79,48 @@ TEST(VolumePingTest, ALayerEchoesAtItsRanges) {
     auto snapshot = overSilentGround(3);
     snapshot.water_surface = 4;
     const auto right =
-        waterOf([=](double r) { return delta * std::max(0.0, std::min(bottom / r, std::sin(half)) - top / r); });
+        getWater([=](double r) { return delta * std::max(0.0, std::min(bottom / r, std::sin(half)) - top / r); });
     const auto deeper =
-        waterOf([=](double r) { return delta * std::max(0.0, std::min(bottom / r, std::sin(half)) - 1.2 * top / r); });
+        getWater([=](double r) { return delta * std::max(0.0, std::min(bottom / r, std::sin(half)) - 1.2 * top / r); });
     SonarConfig config = sonarIn({layer(-70, 5, 6), layer(-200, 6, 7)});
     config.quality.rows = 1024;
-    for (const SonarConfig& way : everyWay(config)) expectForm(pingOf(way, snapshot), right, deeper);
+    for (const SonarConfig& way : everyRenderer(config)) expectForm(makePing(way, snapshot), right, deeper);
 }
 
 TEST(VolumePingTest, LayersThatTogetherCoverAllDepthsEqualOneLayer) {
     const auto snapshot = overSilentGround(3);
-    for (const SonarConfig& way : everyWay(sonarIn({layer(-70)}))) {
+    for (const SonarConfig& way : everyRenderer(sonarIn({layer(-70)}))) {
         SonarConfig split = way;
         split.volume = {layer(-70, {}, 1), layer(-70, 1, {})};
-        const types::Sonar whole = pingOf(way, snapshot), both = pingOf(split, snapshot);
-        const test::Deviation off = test::deviation(both, test::formOf(whole));
+        const types::Sonar whole = makePing(way, snapshot), both = makePing(split, snapshot);
+        const test::Deviation off = test::deviation(both, test::getForm(whole));
         EXPECT_LT(off.worst_db, 0.1) << off;
     }
 }
 
 TEST(VolumePingTest, ObjectsNearerThanTheBlankingHideTheWaterBehind) {
-    const auto plate = test::snapshotOf(test::sceneOf({test::wall(0.5)}));
-    for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
-        EXPECT_THAT(pingOf(way, plate).bins, testing::Each(testing::Lt(1e-14f)));
+    const auto plate = test::makeSnapshot(test::makeScene({test::wall(0.5)}));
+    for (const SonarConfig& way : everyRenderer(sonarIn({layer(-70)})))
+        EXPECT_THAT(makePing(way, plate).bins, testing::Each(testing::Lt(1e-14f)));
 }
 
 TEST(VolumePingTest, WaterFarBeyondTheSceneEchoesWithNothingInView) {
-    const auto behind = test::snapshotOf(test::sceneOf({test::wall(-5)}));
-    const auto right = waterOf([=](double) { return 2 * radians(10) * std::sin(half); });
-    for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
-        expectForm(pingOf(way, behind), right, test::times(1.02, right));
-    for (const SonarConfig& way : everyWay(sonarIn({layer(-70, -1000, 1000)})))
-        expectForm(pingOf(way, behind), right, test::times(1.02, right));
+    const auto behind = test::makeSnapshot(test::makeScene({test::wall(-5)}));
+    const auto right = getWater([=](double) { return 2 * radians(10) * std::sin(half); });
+    for (const SonarConfig& way : everyRenderer(sonarIn({layer(-70)})))
+        expectForm(makePing(way, behind), right, test::times(1.02, right));
+    for (const SonarConfig& way : everyRenderer(sonarIn({layer(-70, -1000, 1000)})))
+        expectForm(makePing(way, behind), right, test::times(1.02, right));
 }
 
 TEST(VolumePingTest, WaterWithoutScatteringChangesNoBin) {
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-3)}));
-    for (const SonarConfig& way : everyWay(clearSonar())) {
+    const auto snapshot = test::makeSnapshot(test::makeScene({test::ground(-3)}));
+    for (const SonarConfig& way : everyRenderer(clearSonar())) {
         SonarConfig silent = way, layered = way;
         silent.volume = {layer(-200)};
         layered.volume = {layer(-200, 0, 10)};
-        EXPECT_EQ(pingOf(silent, snapshot).bins, pingOf(way, snapshot).bins);
-        EXPECT_EQ(pingOf(layered, snapshot).bins, pingOf(way, snapshot).bins);
+        EXPECT_EQ(makePing(silent, snapshot).bins, makePing(way, snapshot).bins);
+        EXPECT_EQ(makePing(layered, snapshot).bins, makePing(way, snapshot).bins);
     }
 }
 

@@ -14,8 +14,8 @@
 namespace insonify::sonar {
 namespace {
 
-using test::pingOf;
-using test::snapshotOf;
+using test::makePing;
+using test::makeSnapshot;
 using types::radians;
 
 constexpr types::Shell clear_sheet{0.0005, 1190, 2700, 1340, 5e-3, false};  // without narrow resonances
@@ -27,19 +27,19 @@ double inDecibels(double power) { return 10 * std::log10(power); }
 /** Walls without an echo of their own. */
 types::GeometryPtr silentWalls(const std::vector<types::Mesh>& walls, const types::Shell& shell = clear_sheet,
                                std::vector<glm::dvec3> positions = {}) {
-    const auto scene = std::make_shared<types::Geometry>(*shellsOf(walls, walls.size(), shell, std::move(positions)));
+    const auto scene = std::make_shared<types::Geometry>(*makeShells(walls, walls.size(), shell, std::move(positions)));
     for (types::Material& material : scene->materials) material.lambert_db = -200;
     return scene;
 }
 types::Snapshot pingedTarget(const types::GeometryPtr& scene, const glm::dvec3& at) {
-    types::Snapshot snapshot = snapshotOf(scene);
+    types::Snapshot snapshot = makeSnapshot(scene);
     snapshot.targets = {{at, 0}};
     return snapshot;
 }
 /** Returns the energy of a target behind walls relative to that in open water. */
 double shareBehind(const SonarConfig& config, const types::GeometryPtr& scene, const glm::dvec3& at) {
-    return test::sumOf(pingOf(config, pingedTarget(scene, at))) /
-           test::sumOf(pingOf(config, pingedTarget(test::openWater(), at)));
+    return test::computeSum(makePing(config, pingedTarget(scene, at))) /
+           test::computeSum(makePing(config, pingedTarget(test::openWater(), at)));
 }
 
 TEST(WallTargetsTest, ATargetBehindAPlateIsWeakenedBothWaysAtItsAngle) {
@@ -79,13 +79,13 @@ TEST(WallTargetsTest, AnOpaqueWallHidesATargetBitForBit) {
     oil.fill_speed = 1200;
     for (const types::Shell& shell : {air, rubber, oil}) {
         const SonarConfig config = wallSonar(60, 20, 16);
-        const auto scene = shellsOf({test::wall(8)}, 1, shell);
-        EXPECT_EQ(pingOf(config, pingedTarget(scene, {13, 1, 0})).bins, pingOf(config, snapshotOf(scene)).bins);
+        const auto scene = makeShells({test::wall(8)}, 1, shell);
+        EXPECT_EQ(makePing(config, pingedTarget(scene, {13, 1, 0})).bins, makePing(config, makeSnapshot(scene)).bins);
     }
     SonarConfig none = wallSonar(60, 20, 16);
     none.max_walls = 0;
-    const auto scene = shellsOf({test::wall(8)}, 1, clear_sheet);
-    EXPECT_EQ(pingOf(none, pingedTarget(scene, {13, 1, 0})).bins, pingOf(none, snapshotOf(scene)).bins);
+    const auto scene = makeShells({test::wall(8)}, 1, clear_sheet);
+    EXPECT_EQ(makePing(none, pingedTarget(scene, {13, 1, 0})).bins, makePing(none, makeSnapshot(scene)).bins);
 }
 
 TEST(WallTargetsTest, TargetsAreReceivedThroughUpToTheMaxNumberOfWalls) {
@@ -116,14 +116,14 @@ TEST(WallTargetsTest, FieldsPatternsAndPulsesPassAsEnergyDoes) {
 TEST(WallTargetsTest, ATargetBehindARingingPlateIsLateAndRingsToo) {
     constexpr types::Shell plate{1, 2500, 2000, 0, 0, false};  // returns 0.5 m apart
     const SonarConfig config = wallSonar(2, 2, 1, 600);
-    const auto ping = pingOf(config, pingedTarget(silentWalls({test::wall(10)}, plate), {40.03, 0, 0}));
+    const auto ping = makePing(config, pingedTarget(silentWalls({test::wall(10)}, plate), {40.03, 0, 0}));
     const auto returns = acoustics::plateReturns({1, 2500, 2000, 0, 0}, {1025, water_speed}, {1025, water_speed},
                                                  1000 * shell_khz, WallLaw::max_returns);
     const double there =
-        test::sumOf(pingOf(config, pingedTarget(test::openWater(), {40.03, 0, 0}))) * std::pow(40.03, 4);
+        test::computeSum(makePing(config, pingedTarget(test::openWater(), {40.03, 0, 0}))) * std::pow(40.03, 4);
     for (size_t k = 0; k < 4; ++k) {
         const double at = 40.03 - 1 + 0.5 * static_cast<double>(k + 1);
-        const double level = energyOf(ping, 0, at - 0.2, at + 0.2) * std::pow(at, 4) / there;
+        const double level = sumEnergy(ping, 0, at - 0.2, at + 0.2) * std::pow(at, 4) / there;
         EXPECT_NEAR(inDecibels(level / returns.passed[k]), 0, 0.05) << k;
     }
 }
@@ -133,11 +133,11 @@ TEST(WallTargetsTest, WaysByTheWaterSurfaceAreWeakenedByTheirOwnAngles) {
     SonarConfig config = wallSonar(2, 100, 1);
     config.multipath.emplace().surface.emplace();
     const auto energies = [&](const types::GeometryPtr& scene) {
-        types::Snapshot snapshot = snapshotOf(scene, {0, 0, -4});
+        types::Snapshot snapshot = makeSnapshot(scene, {0, 0, -4});
         snapshot.targets = {{{12.03, 0, -4}, 0}};
         snapshot.water_surface = 0.0;
-        const auto ping = pingOf(config, snapshot);
-        return std::array{energyOf(ping, 0, 11.8, 12.2), energyOf(ping, 0, 13, 13.5), energyOf(ping, 0, 14.3, 14.7)};
+        const auto ping = makePing(config, snapshot);
+        return std::array{sumEnergy(ping, 0, 11.8, 12.2), sumEnergy(ping, 0, 13, 13.5), sumEnergy(ping, 0, 14.3, 14.7)};
     };
     const auto open = energies(silentWalls({test::wall(20)})), through = energies(silentWalls({test::wall(6)}));
     const double level = sheetPassed(1), up = sheetPassed(12.03 / std::hypot(12.03, 8));
@@ -151,10 +151,10 @@ TEST(WallTargetsTest, WaysByTheWaterSurfaceRingAtTheirOwnAngles) {
     SonarConfig config = wallSonar(2, 100, 1, 600);
     config.multipath.emplace().surface.emplace();
     const auto pingOfTarget = [&](const types::GeometryPtr& scene) {
-        types::Snapshot snapshot = snapshotOf(scene, {0, 0, -2});
+        types::Snapshot snapshot = makeSnapshot(scene, {0, 0, -2});
         snapshot.targets = {{{12.03, 0, -2}, 0}};
         snapshot.water_surface = 0.0;
-        return pingOf(config, snapshot);
+        return makePing(config, snapshot);
     };
     const auto open = pingOfTarget(silentWalls({test::wall(40)})),
                through = pingOfTarget(silentWalls({test::wall(6)}, plate));
@@ -176,8 +176,8 @@ TEST(WallTargetsTest, WaysByTheWaterSurfaceRingAtTheirOwnAngles) {
     const double first = mixed + 0.5 * (spacing(1) - 1 + spacing(cosine) - cosine);
     const double share =
         returns.passed_once[0] / std::accumulate(returns.passed_once.begin(), returns.passed_once.end(), 0.0);
-    const double level = energyOf(through, 0, first - 0.1, first + 0.1) / energyOf(open, 0, mixed - 0.1, mixed + 0.1) *
-                         std::pow(first / mixed, 4);
+    const double level = sumEnergy(through, 0, first - 0.1, first + 0.1) /
+                         sumEnergy(open, 0, mixed - 0.1, mixed + 0.1) * std::pow(first / mixed, 4);
     const double expected = meanOnce(1) * meanOnce(cosine) * share * share;
     std::cout << "a target out directly and back by the surface: " << inDecibels(level) << " dB, by the formula "
               << inDecibels(expected) << " dB\n";
@@ -186,7 +186,7 @@ TEST(WallTargetsTest, WaysByTheWaterSurfaceRingAtTheirOwnAngles) {
 
 TEST(WallTargetsTest, TheTruthOfABinWithATargetBehindAWallIsItsWay) {
     const SonarConfig config = wallSonar(8, 8, 1);
-    const auto scene = shellsOf({test::wall(8)}, 1, clear_sheet);
+    const auto scene = makeShells({test::wall(8)}, 1, clear_sheet);
     types::Snapshot snapshot = pingedTarget(scene, {13.03, 0, 0});
     snapshot.targets.push_back({{4.03, 0, 0}, 0});
     SonarRenderer renderer(config, scene);
@@ -194,7 +194,7 @@ TEST(WallTargetsTest, TheTruthOfABinWithATargetBehindAWallIsItsWay) {
     types::SonarTruth truth;
     renderer.setTruth(ping, &truth);
     renderer.render(snapshot, ping);
-    EXPECT_EQ(ping.bins, pingOf(config, snapshot).bins) << "the truth changes no bin";
+    EXPECT_EQ(ping.bins, makePing(config, snapshot).bins) << "the truth changes no bin";
     EXPECT_EQ(truth.path[130], types::SonarTruth::through_wall);
     EXPECT_EQ(truth.object[130], types::SonarTruth::no_object);
     EXPECT_EQ(truth.path[40], 0);
@@ -212,11 +212,11 @@ TEST(WallTargetsTest, AnEdgeBehindAPlateIsWeakenedBothWaysAtItsAngle) {
             test::quad({10.01f, -0.05f, 0}, {1, 0, 0}, {0, 0.1f, 0})};
         if (!with_wall) meshes[0] = test::disc(1, 0.1f);
         const auto scene = std::make_shared<types::Geometry>(
-            *shellsOf(meshes, 1, shell, {glm::dvec3(with_wall ? 0 : -500, 0, 0), glm::dvec3(0)}));
+            *makeShells(meshes, 1, shell, {glm::dvec3(with_wall ? 0 : -500, 0, 0), glm::dvec3(0)}));
         for (types::Material& material : scene->materials) material.lambert_db = -300;
         scene->materials[0].reflection = -1;
         scene->materials[0].roughness_slope = 0;
-        return energyOf(pingOf(config, snapshotOf(scene)), 0, 9.9, 10.2);
+        return sumEnergy(makePing(config, makeSnapshot(scene)), 0, 9.9, 10.2);
     };
     const double open = energy(0, false);
     ASSERT_GT(open, 0);

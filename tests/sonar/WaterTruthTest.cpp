@@ -11,7 +11,7 @@
 #include "components/sonar/tasks/Sonar3dTask.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 #include "tests/support/ClosedForms.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -33,7 +33,7 @@ struct WaterLabels {
     double labelled(size_t at) const { return energy(at) * double{truth.share[at]}; }
 };
 
-WaterLabels labelsOf(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 0) {
+WaterLabels getLabels(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 0) {
     SonarRenderer renderer(config, snapshot.geometry, {.threads = threads});
     WaterLabels labels;
     renderer.setTruth(labels.ping, &labels.truth);
@@ -44,7 +44,7 @@ WaterLabels labelsOf(const SonarConfig& config, const types::Snapshot& snapshot,
 /** 8 beams of 10 deg, 40 deg high, 300 bins of 0.1 m from 1 m on. */
 SonarConfig inWater(std::optional<double> strength_db, int rows = 512) {
     SonarConfig config =
-        test::sonarOf({.beams = 8, .width_deg = 80, .height_deg = 40, .bins = 300, .rows = rows, .columns = 4});
+        test::getSonar({.beams = 8, .width_deg = 80, .height_deg = 40, .bins = 300, .rows = rows, .columns = 4});
     config.range_min = 1;
     if (strength_db) config.volume = {{{}, {}, *strength_db}};
     return config;
@@ -89,8 +89,8 @@ TEST(WaterTruthTest, OpenWaterIsTheLabelOfEveryBinWithAnEcho) {
     all[3].pulse.emplace().bandwidth_khz = 2;
     all[4].range_min = 0;
     for (const SonarConfig& config : all)
-        for (const SonarConfig& way : test::everyWay(config)) {
-            const WaterLabels labels = labelsOf(way, test::snapshotOf(test::openWater()));
+        for (const SonarConfig& way : test::everyRenderer(config)) {
+            const WaterLabels labels = getLabels(way, test::makeSnapshot(test::openWater()));
             for (size_t at = 0; at < labels.ping.bins.size(); ++at) {
                 const bool blanked = at % 300 < 10 && way.range_min > 0;
                 ASSERT_EQ(labels.isWater(at), !blanked) << at;
@@ -104,8 +104,8 @@ TEST(WaterTruthTest, OpenWaterIsTheLabelOfEveryBinWithAnEcho) {
 }
 
 TEST(WaterTruthTest, WaterWithoutScatteringIsNoLabel) {
-    for (const SonarConfig& way : test::everyWay(inWater(-200))) {
-        const WaterLabels labels = labelsOf(way, test::snapshotOf(test::openWater()));
+    for (const SonarConfig& way : test::everyRenderer(inWater(-200))) {
+        const WaterLabels labels = getLabels(way, test::makeSnapshot(test::openWater()));
         EXPECT_THAT(labels.truth.path, testing::Each(0));
         EXPECT_THAT(labels.truth.share, testing::Each(0));
     }
@@ -120,7 +120,7 @@ TEST(WaterTruthTest, APlateAndTheWaterShareTheBinsOfThePlate) {
         const double distance = between(6, 14), strength_db = between(-55, -35), mu_db = strength_db + between(-2, 8);
         const auto plate = test::quad({static_cast<float>(distance), -100, -100}, {0, 200, 0}, {0, 0, 100});
         const auto far_wall = test::quad({25, -100, 0}, {0, 200, 0}, {0, 0, 100});
-        const auto snapshot = test::snapshotOf(test::sceneOf({plate, far_wall}, static_cast<float>(mu_db)));
+        const auto snapshot = test::makeSnapshot(test::makeScene({plate, far_wall}, static_cast<float>(mu_db)));
         const auto lower = [&](double r) {
             return distance < r ? std::max(0.0, std::sin(up) - std::sin(std::acos(distance / r))) : std::sin(up);
         };
@@ -133,8 +133,8 @@ TEST(WaterTruthTest, APlateAndTheWaterShareTheBinsOfThePlate) {
             law.width_deg = 1;
             config.beam_pattern.emplace().receive.azimuth = law;
         }
-        for (const SonarConfig& way : test::everyWay(config)) {
-            const WaterLabels labels = labelsOf(way, snapshot);
+        for (const SonarConfig& way : test::everyRenderer(config)) {
+            const WaterLabels labels = getLabels(way, snapshot);
             const auto first = static_cast<size_t>(distance / 0.1),
                        last = static_cast<size_t>(distance / std::cos(up) / 0.1);
             expectShares(labels, test::times(water, waterEnergy([&](double r) { return std::sin(up) + lower(r); })),
@@ -153,8 +153,8 @@ TEST(WaterTruthTest, APlateAndTheWaterShareTheBinsOfThePlate) {
 }
 
 TEST(WaterTruthTest, WaterBehindAWallThatFillsTheBeamIsNoLabelWhereItHasNoEcho) {
-    for (const SonarConfig& way : test::everyWay(inWater(-70))) {
-        const WaterLabels labels = labelsOf(way, test::snapshotOf(test::sceneOf({test::wall(0.5)})));
+    for (const SonarConfig& way : test::everyRenderer(inWater(-70))) {
+        const WaterLabels labels = getLabels(way, test::makeSnapshot(test::makeScene({test::wall(0.5)})));
         size_t silent = 0;
         for (size_t at = 0; at < labels.ping.bins.size(); ++at) {
             EXPECT_EQ(labels.isWater(at), labels.ping.bins[at] > 0) << at;
@@ -168,7 +168,7 @@ TEST(WaterTruthTest, WaterBehindAWallThatFillsTheBeamIsNoLabelWhereItHasNoEcho) 
 
 /** Two layers over a bottom 3 m below a level sonar, which is 4 m below the surface: the layers share one label. */
 TEST(WaterTruthTest, LayersTogetherAreOneLabel) {
-    auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-3)}, -45));
+    auto snapshot = test::makeSnapshot(test::makeScene({test::ground(-3)}, -45));
     snapshot.water_surface = 4;
     const auto inLayer = [](double top, double bottom, double r) {
         return std::max(0.0, std::min(bottom / r, std::sin(up)) - std::min(top / r, std::sin(up)));
@@ -178,8 +178,8 @@ TEST(WaterTruthTest, LayersTogetherAreOneLabel) {
     const auto bottom = test::times(std::pow(10, -4.5), test::flatBottom(3, up, of_beam));
     SonarConfig config = inWater({}, 1024);
     config.volume = {{4.5, 5.0, -40}, {5.0, 6.0, -46}};
-    for (const SonarConfig& way : test::everyWay(config)) {
-        const WaterLabels labels = labelsOf(way, snapshot);
+    for (const SonarConfig& way : test::everyRenderer(config)) {
+        const WaterLabels labels = getLabels(way, snapshot);
         expectShares(labels, water, bottom, 92, 300);
         EXPECT_TRUE(labels.isWater(labels.at(3, 60))) << "before the bottom";
         EXPECT_EQ(labels.truth.shadow[labels.at(3, 60)], 1) << "and before the first echo of a surface";
@@ -188,10 +188,10 @@ TEST(WaterTruthTest, LayersTogetherAreOneLabel) {
 }
 
 TEST(WaterTruthTest, ATargetThatIsLouderThanTheWaterEndsItsLabel) {
-    auto snapshot = test::snapshotOf(test::openWater());
+    auto snapshot = test::makeSnapshot(test::openWater());
     for (const double target_db : {-30.0, -90.0}) {
         snapshot.targets = {{{10.05 * std::cos(of_beam / 2), 10.05 * std::sin(of_beam / 2), 0}, target_db}};
-        const WaterLabels labels = labelsOf(inWater(-70), snapshot);
+        const WaterLabels labels = getLabels(inWater(-70), snapshot);
         EXPECT_EQ(labels.isWater(labels.at(4, 100)), target_db < -60);
         EXPECT_EQ(labels.truth.share[labels.at(4, 100)], target_db < -60 ? 1 : 0);
         EXPECT_TRUE(labels.isWater(labels.at(4, 99)));
@@ -207,8 +207,8 @@ types::Snapshot ballsOverGround(std::mt19937& random) {
         meshes.push_back(test::sphere(static_cast<float>(between(0.3, 1)), 16));
         places.emplace_back(between(3, 20), between(-8, 8), between(-2, 1));
     }
-    auto snapshot = test::snapshotOf(test::sceneOf(std::move(meshes), -25, places), {0, 0, between(-1, 1)},
-                                     between(-0.3, 0.3), between(-0.2, 0.2), between(-0.2, 0.2));
+    auto snapshot = test::makeSnapshot(test::makeScene(std::move(meshes), -25, places), {0, 0, between(-1, 1)},
+                                       between(-0.3, 0.3), between(-0.2, 0.2), between(-0.2, 0.2));
     snapshot.water_surface = 8;
     return snapshot;
 }
@@ -252,12 +252,12 @@ TEST(WaterTruthTest, SharesAreThoseOfPingsWithAndWithoutWater) {
         SonarConfig clear = inWater({}, 256), filled = clear;
         clear.beam_geometry = filled.beam_geometry = i % 3 ? BeamGeometry::Planar : BeamGeometry::Conical;
         filled.volume = randomWater(random);
-        const auto with = test::everyWay(filled), without = test::everyWay(clear);
+        const auto with = test::everyRenderer(filled), without = test::everyRenderer(clear);
         for (size_t way = 0; way < with.size(); ++way) {
             SCOPED_TRACE(std::to_string(i) + " " + std::to_string(way));
-            const WaterLabels labels = labelsOf(with[way], snapshot);
-            EXPECT_EQ(test::pingOf(with[way], snapshot).bins, labels.ping.bins) << "truth changes no bin";
-            expectDifference(labels, labelsOf(without[way], snapshot), counts);
+            const WaterLabels labels = getLabels(with[way], snapshot);
+            EXPECT_EQ(test::makePing(with[way], snapshot).bins, labels.ping.bins) << "truth changes no bin";
+            expectDifference(labels, getLabels(without[way], snapshot), counts);
         }
     }
     EXPECT_GT(counts.waters, 1000u);
@@ -281,7 +281,7 @@ TEST(WaterTruthTest, WaterBeforeThinWallsSharesBinsWithWhatIsBehindThem) {
         clear.frequency_khz = shell_khz;
         SonarConfig filled = clear;
         filled.volume = randomWater(random);
-        expectDifference(labelsOf(filled, snapshot), labelsOf(clear, snapshot), counts);
+        expectDifference(getLabels(filled, snapshot), getLabels(clear, snapshot), counts);
     }
     EXPECT_GT(counts.waters, 500u);
     EXPECT_GT(counts.mixed, 500u);
@@ -289,7 +289,7 @@ TEST(WaterTruthTest, WaterBeforeThinWallsSharesBinsWithWhatIsBehindThem) {
 }
 
 /** Returns the numbers of the water's labels; NaN equals NaN. */
-std::vector<double> numbersOf(const types::SonarTruth& truth) {
+std::vector<double> getNumbers(const types::SonarTruth& truth) {
     std::vector<double> all;
     types::SonarTruth::forEachArray(truth, [&](const char*, const auto& numbers, auto) {
         for (const auto number : numbers) all.push_back(std::isnan(double(number)) ? -9 : double(number));
@@ -310,10 +310,10 @@ TEST(WaterTruthTest, LabelsAreTheSameOnAnyNumberOfThreads) {
     all[3].multipath.emplace().surface.emplace();
     for (const SonarConfig& config : all) {
         const types::Snapshot snapshot = ballsOverGround(random);
-        for (SonarConfig& way : test::everyWay(config)) {
+        for (SonarConfig& way : test::everyRenderer(config)) {
             if (config.multipath && way.visibility != Visibility::Cpu) continue;
-            const auto one = numbersOf(labelsOf(way, snapshot, 1).truth);
-            for (const int threads : {2, 5}) EXPECT_EQ(one, numbersOf(labelsOf(way, snapshot, threads).truth));
+            const auto one = getNumbers(getLabels(way, snapshot, 1).truth);
+            for (const int threads : {2, 5}) EXPECT_EQ(one, getNumbers(getLabels(way, snapshot, threads).truth));
         }
     }
 }
@@ -327,10 +327,10 @@ TEST(WaterTruthTest, RaysAndPicturesHaveTheSameLabels) {
     law.width_deg = 12;
     config.beam_pattern.emplace().receive.azimuth = law;
     const types::Snapshot snapshot = ballsOverGround(random);
-    const auto ways = test::everyWay(config);
-    const WaterLabels rays = labelsOf(ways[0], snapshot);
+    const auto ways = test::everyRenderer(config);
+    const WaterLabels rays = getLabels(ways[0], snapshot);
     for (const size_t way : {1, 2}) {
-        const WaterLabels pictures = labelsOf(ways[way], snapshot);
+        const WaterLabels pictures = getLabels(ways[way], snapshot);
         double same = 0, waters = 0, all = 0;
         for (size_t at = 0; at < rays.ping.bins.size(); ++at) {
             all += rays.energy(at);
@@ -362,10 +362,10 @@ TEST(WaterTruthTest, WaterMirrorsAndDirectEchoesShareABin) {
         direct.volume.clear();
         direct.multipath->surface.reset();
         direct.multipath->bounces = 0;
-        const WaterLabels labels = labelsOf(config, snapshot), alone = labelsOf(clear, snapshot),
-                          plain = labelsOf(direct, snapshot);
+        const WaterLabels labels = getLabels(config, snapshot), alone = getLabels(clear, snapshot),
+                          plain = getLabels(direct, snapshot);
         EXPECT_EQ(labels.truth.shadow, alone.truth.shadow);
-        EXPECT_EQ(test::pingOf(config, snapshot).bins, labels.ping.bins);
+        EXPECT_EQ(test::makePing(config, snapshot).bins, labels.ping.bins);
         for (size_t at = 0; at < labels.ping.bins.size(); ++at) {
             const double all = labels.energy(at), water = all - alone.energy(at);
             if (!(all > 0)) continue;
@@ -400,8 +400,8 @@ TEST(WaterTruthTest, CoherentSpeckleHasTheLabelsOfEnergies) {
         if (mirrors) energies.multipath.emplace().surface.emplace();
         SonarConfig fields = energies;
         fields.speckle.emplace().coherent = true;
-        const WaterLabels sums = labelsOf(energies, snapshot), coherent = labelsOf(fields, snapshot);
-        EXPECT_EQ(test::pingOf(fields, snapshot).bins, coherent.ping.bins);
+        const WaterLabels sums = getLabels(energies, snapshot), coherent = getLabels(fields, snapshot);
+        EXPECT_EQ(test::makePing(fields, snapshot).bins, coherent.ping.bins);
         size_t same = 0, count = 0, waters = 0;
         for (size_t at = 0; at < sums.ping.bins.size(); ++at) {
             if (sums.truth.path[at] % by_water != 0) continue;  // whether a mirror is stronger is unknown with fields
@@ -439,7 +439,7 @@ TEST(WaterTruthTest, AGridOfBeamsHasTheWaterToo) {
     task.update();
     types::SonarTruthPtr truth, returns;
     ASSERT_TRUE(truths.port.readNew(truth) && of_returns.port.readNew(returns)) << task.lastError();
-    const WaterLabels fan = labelsOf(inWater(-45), snapshot);
+    const WaterLabels fan = getLabels(inWater(-45), snapshot);
     ASSERT_EQ(truth->path.size(), fan.truth.path.size());
     size_t strong = 0, same = 0, waters = 0;
     for (size_t at = 0; at < truth->path.size(); ++at) {

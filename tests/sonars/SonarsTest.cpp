@@ -42,7 +42,7 @@ TEST(SonarsTest, AllAreReadAndHaveADocumentOfEachFigure) {
 
 TEST(SonarsTest, WrongEntriesAreReportedTogetherWithTheirPlaces) {
     const auto refusal = [](const std::string& yaml) {
-        return test::errorOf<types::ConfigError>([&] { readSonars(yaml, "x.yml"); });
+        return test::computeError<types::ConfigError>([&] { readSonars(yaml, "x.yml"); });
     };
     const std::string mode = "{frequency_khz: 700, range_min: 1, range_max: 9}";
     const std::string source = "{document: a sheet, read: 2026-01-02, gives: [frequency_khz, range_min, range_max]}";

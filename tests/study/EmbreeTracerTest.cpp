@@ -37,7 +37,7 @@ Received trace(StudyScene scene, int rows, int columns) {
     return received;
 }
 
-double errorOf(const StudyScene& scene, int rows, int columns) {
+double computeError(const StudyScene& scene, int rows, int columns) {
     const sonar::BinGrid grid = sonar::makeBinGrid(scene.config);
     return compare(trace(scene, rows, columns).energies, trueEnergies(scene),
                    {scene.config.beam_count, grid.bin_count, grid.bin_width, scene.range_from})
@@ -46,16 +46,17 @@ double errorOf(const StudyScene& scene, int rows, int columns) {
 
 TEST(EmbreeTracerTest, PlanesConvergeLikeFootprints) {
     for (const char* name : {"flat_bottom_pitched", "tilted_plane", "wall"}) {
-        const double coarse = errorOf(sceneNamed(name), 64, 1), fine = errorOf(sceneNamed(name), 256, 4);
+        const double coarse = computeError(sceneNamed(name), 64, 1), fine = computeError(sceneNamed(name), 256, 4);
         EXPECT_LT(coarse, 0.02) << name;
         EXPECT_LT(fine, coarse / 10) << name << ": second order in the cell's size would be 16";
     }
-    EXPECT_LT(errorOf(sceneNamed("flat_bottom_edge"), 64, 1), 1e-5) << "cells between equal elevations are exact here";
+    EXPECT_LT(computeError(sceneNamed("flat_bottom_edge"), 64, 1), 1e-5)
+        << "cells between equal elevations are exact here";
 }
 
 TEST(EmbreeTracerTest, SilhouettesAreCorrectToTheirPixels) {
-    EXPECT_LT(errorOf(sceneNamed("sphere"), 256, 256), 0.005);
-    EXPECT_LT(errorOf(sceneNamed("shadow_screen"), 256, 4), 0.02);
+    EXPECT_LT(computeError(sceneNamed("sphere"), 256, 256), 0.005);
+    EXPECT_LT(computeError(sceneNamed("shadow_screen"), 256, 4), 0.02);
 }
 
 TEST(EmbreeTracerTest, AMovedObjectIsAtItsNewPlace) {
@@ -71,7 +72,7 @@ TEST(EmbreeTracerTest, AMovedObjectIsAtItsNewPlace) {
 }
 
 TEST(EmbreeTracerTest, BlankedSurfacesStillHide) {
-    StudyScene scene{"", "", fan(60, 20, 7, 15), lookingAt(sceneOf({facingWall(10), facingWall(0.5f)})), {}};
+    StudyScene scene{"", "", fan(60, 20, 7, 15), lookingAt(makeScene({facingWall(10), facingWall(0.5f)})), {}};
     scene.config.range_min = 0.6;
     const std::vector<float> received = trace(scene, 64, 2).energies;
     for (int bin = 7; bin < scene.config.bin_count; ++bin) EXPECT_EQ(received[static_cast<size_t>(bin)], 0) << bin;

@@ -88,7 +88,7 @@ TEST(ErrorAnalysisTest, NoPointBeatsTheParetoFront) {
     const ErrorResult result = made();
     for (const Measurement& m : result.measurements)
         EXPECT_EQ(onParetoFront(m, result), m.method == Method::Footprint || m.rows == 64)
-            << nameOf(m.method) << m.rows;
+            << getName(m.method) << m.rows;
 }
 
 TEST(ErrorAnalysisTest, AClaimThatDoesNotHoldFails) {

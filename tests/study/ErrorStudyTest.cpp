@@ -33,7 +33,7 @@ const Reference& onlyReference(const ErrorResult& result) {
 }
 
 /** Returns the claims that fail, except those on run times, which a busy machine may change. */
-std::vector<std::string> failuresOf(const ErrorResult& result) {
+std::vector<std::string> findFailures(const ErrorResult& result) {
     std::vector<std::string> failures;
     for (const Claim& claim : claims(result))
         if (claim.fails() && !claim.timed) failures.push_back(claim.text + ": " + std::to_string(claim.measured));
@@ -49,7 +49,7 @@ TEST_P(ClosedFormStudyTest, EveryClaimHolds) {
     ErrorOptions options = quick(1);
     options.levels = plane ? 4 : 2;
     const ErrorResult result = studyError({GetParam().make()}, options);
-    EXPECT_THAT(failuresOf(result), testing::IsEmpty());
+    EXPECT_THAT(findFailures(result), testing::IsEmpty());
     const auto all = claims(result);
     EXPECT_EQ(std::ranges::count_if(all, [](const Claim& c) { return c.text.find("slope of") < c.text.size(); }),
               plane ? 3 : 0);
@@ -76,7 +76,7 @@ TEST_P(EffectTest, PingsEqualBruteForceOnFlatAndRoughFloors) {
         EXPECT_LT(reference.error, 0.1) << reference.scene << " is too coarse to show anything";
         EXPECT_LT(points.back().metrics.rel_l2, std::hypot(4 * reference.error, effect_bound)) << reference.scene;
         EXPECT_LT(std::abs(points.back().metrics.energy_bias), std::hypot(0.01, reference.error)) << reference.scene;
-        EXPECT_THAT(failuresOf(result), testing::IsEmpty());
+        EXPECT_THAT(findFailures(result), testing::IsEmpty());
     }
 }
 
@@ -98,7 +98,7 @@ TEST(ErrorStudyTest, RefinesAReferenceUntilItIsTenTimesFinerThanEveryPoint) {
     EXPECT_THAT(onlyReference(result).source, testing::HasSubstr("brute force"));
     EXPECT_GT(onlyReference(result).error, 0);
     for (const Measurement& m : result.measurements)
-        EXPECT_GE(m.metrics.rel_l2, reference_margin * onlyReference(result).error) << nameOf(m.method) << m.rows;
+        EXPECT_GE(m.metrics.rel_l2, reference_margin * onlyReference(result).error) << getName(m.method) << m.rows;
 }
 
 TEST(ErrorStudyTest, AReferenceThatRunsOutOfRaysIsOpenAndDoesNotFail) {
@@ -110,7 +110,7 @@ TEST(ErrorStudyTest, AReferenceThatRunsOutOfRaysIsOpenAndDoesNotFail) {
     const auto open = std::ranges::find(all, std::string("open"), &Claim::verdict);
     ASSERT_NE(open, all.end());
     EXPECT_THAT(open->text, testing::HasSubstr("plane: smallest error over that of the reference"));
-    EXPECT_THAT(sheetOf(result), testing::HasSubstr("| open |"));
+    EXPECT_THAT(makeSheet(result), testing::HasSubstr("| open |"));
 }
 
 TEST(ErrorStudyTest, RaysAndImagesAgreeOnFloors) {
@@ -121,8 +121,8 @@ TEST(ErrorStudyTest, RaysAndImagesAgreeOnFloors) {
         for (const Method method : {Method::Footprint, Method::Embree}) {
             const auto points = ladder(result, scene.name, method);
             ASSERT_EQ(points.size(), 2u);
-            EXPECT_LT(points[1].metrics.rel_l2, 0.15) << scene.name << " " << nameOf(method);
-            EXPECT_LT(points[1].metrics.rel_l2, points[0].metrics.rel_l2) << scene.name << " " << nameOf(method);
+            EXPECT_LT(points[1].metrics.rel_l2, 0.15) << scene.name << " " << getName(method);
+            EXPECT_LT(points[1].metrics.rel_l2, points[0].metrics.rel_l2) << scene.name << " " << getName(method);
         }
     }
 }
@@ -136,7 +136,7 @@ TEST(ErrorStudyTest, EveryMethodAgreesWithTheClosedFormOfAPatternInElevation) {
     scene.config.bin_count = 250;
     const ErrorResult result = studyError({scene}, quick(1));
     for (const Method method : {Method::Footprint, Method::Embree})
-        EXPECT_LT(ladder(result, scene.name, method).back().metrics.rel_l2, 0.01) << nameOf(method);
+        EXPECT_LT(ladder(result, scene.name, method).back().metrics.rel_l2, 0.01) << getName(method);
     scene.config.beam_pattern->receive.elevation.reset();
     const ErrorResult one_way = studyError({scene}, quick(1));
     EXPECT_GT(ladder(one_way, scene.name, Method::Footprint).back().metrics.rel_l2, 0.1) << "a wrong form passes";

@@ -40,7 +40,7 @@ inline double loudestLevelDb(FitChain chain) {
     chain.receiver.code->gamma = 1;
     chain.receiver.code->bits = 16;
     chain.receiver.code->dynamic_range_db = 250;
-    const LevelBlocks blocks = blocksOf(simulatedPings(chain, 1).front());
+    const LevelBlocks blocks = makeBlocks(simulatedPings(chain, 1).front());
     return 60 + *std::ranges::max_element(blocks.level);
 }
 

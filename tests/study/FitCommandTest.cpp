@@ -19,7 +19,7 @@ namespace {
 
 /** A flat floor 0.6 m below the sonar, noise, and a receiver that outputs codes. */
 std::string floorGltf() {
-    return gltfOf({-50, -0.6f, 50, 50, -0.6f, 50, 50, -0.6f, -50, -50, -0.6f, -50}, {0, 1, 2, 0, 2, 3});
+    return makeGltf({-50, -0.6f, 50, 50, -0.6f, 50, 50, -0.6f, -50, -50, -0.6f, -50}, {0, 1, 2, 0, 2, 3});
 }
 
 const std::string fit_deployment = R"(schedule: lockstep

@@ -101,15 +101,15 @@ TEST(FitReportTest, ThePageHasBothPicturesAndEveryFindingAndTheDeploymentEverySe
     RecordingFit fit = fitRecording({recorded}, guess(), false, [](const std::string&) {});
     fit.levels.pitch_deg.emplace(), fit.levels.height_m.emplace(), fit.levels.elevation_deg.emplace();
     fit.chain.sonar.beam_pattern->transmit.elevation.emplace();
-    const types::Image both = fansOf({recorded, fit.simulated_pings.front()});
+    const types::Image both = drawFans({recorded, fit.simulated_pings.front()});
     EXPECT_GT(deviation(both, 0, both.size.width / 2), 10);
     EXPECT_GT(deviation(both, both.size.width / 2, both.size.width), 10);
-    const std::string page = pageOf(fit, {recorded}, "picture.png");
+    const std::string page = makePage(fit, {recorded}, "picture.png");
     for (const Finding& finding : fit.findings) EXPECT_NE(page.find("<td>" + finding.name), std::string::npos);
     EXPECT_NE(page.find("src=\"picture.png\""), std::string::npos);
     std::set<std::string> paths;
     for (const FitSetting& setting :
-         settingsOf(fit, {.vehicle = "v", .scene = "a", .sonar = "b", .noise = "c", .receiver = "d"}))
+         getSettings(fit, {.vehicle = "v", .scene = "a", .sonar = "b", .noise = "c", .receiver = "d"}))
         EXPECT_TRUE(paths.insert(setting.path).second) << setting.path << " is set twice";
     for (const char* path : {"a.mount.pitch_deg", "b.pulse", "b.speckle", "c.ambient", "d.code", "d.tvg.db_per_m"})
         EXPECT_TRUE(paths.contains(path)) << path;
@@ -138,7 +138,7 @@ TEST(FitSpeckleTest, MeasuresSidelobesOfIsolatedTargetsButNotOfSpeckle) {
 
 TEST(RecordingFitTest, RefusesUnusableRecordingsWithAReason) {
     const auto refusal = [](const std::vector<CodedPing>& recorded, FitChain chain) -> std::string {
-        return test::errorOf<types::ConfigError>(
+        return test::computeError<types::ConfigError>(
             [&] { fitRecording(recorded, std::move(chain), false, [](const std::string&) {}); });
     };
     CodedPing ping = simulatedPings(guess(), 1).front();

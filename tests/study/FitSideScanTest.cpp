@@ -17,7 +17,7 @@ constexpr size_t line_count = 96, line_bins = 512;
 constexpr double line_range = 30, sound = 1500, floor_depth = 20;
 
 /** Returns lines of a vehicle that descends from 8 to 7 m above the floor, one every 0.3 m. */
-CodedPing linesOf(size_t count = line_count) {
+CodedPing getLines(size_t count = line_count) {
     CodedPing lines{.name = "lines", .beam_count = count, .bin_count = line_bins};
     for (size_t i = 0; i < count; ++i) {
         lines.bearings.push_back(-1.0 - static_cast<double>(i));
@@ -81,13 +81,13 @@ struct TrueSideScan {
         chain.noise.ambient.emplace().level_db = noise_db;
         chain.receiver.tvg->log_coefficient = log_coefficient;
         chain.receiver.tvg->db_per_m = db_per_m;
-        layLines(linesOf(), chain);
+        layLines(getLines(), chain);
         chain.receiver.code->full_scale_db = loudestLevelDb(chain) + between(4, 9);
     }
     std::vector<CodedPing> recorded() const {
         std::vector<CodedPing> pings = simulatedPings(chain, 1);
         for (CodedPing& ping : pings) {
-            ping.places = linesOf().places;
+            ping.places = getLines().places;
             ping.frequency_khz = *chain.sonar.frequency_khz;
         }
         return pings;
@@ -120,7 +120,7 @@ TEST(FitLooksTest, DrawsAveragedSpeckleThatVariesAsRecorded) {
     EXPECT_FALSE(fit.finding("pulse length")->is_determined);
     std::string settings;
     for (const FitSetting& setting :
-         settingsOf(fit, {.vehicle = "v", .scene = "a", .sonar = "b", .noise = "c", .receiver = "d"}))
+         getSettings(fit, {.vehicle = "v", .scene = "a", .sonar = "b", .noise = "c", .receiver = "d"}))
         settings += setting.path + ": " + setting.value + "\n";
     EXPECT_THAT(settings, HasSubstr("b.speckle: null\n"));
     EXPECT_THAT(settings, HasSubstr("c.speckle: {law: "));
@@ -155,7 +155,7 @@ types::Pose at(double x, double pitch_deg = 0) {
 TEST(LinePlaceTest, InterpolatesRepeatedValuesOverLines) {
     types::Pose unknown = at(0);
     unknown.position.x = NAN;
-    const std::vector<LinePlace> places = placesOf(
+    const std::vector<LinePlace> places = getPlaces(
         {unknown, at(0, 10), at(0, 10), at(0.4, 10), at(0.4, 20), at(0.8, 20), at(0.8, 20)}, {0, 8, 8, 8, 6, 6, 6});
     ASSERT_EQ(places.size(), 7u);
     for (size_t i = 0; i < 7; ++i) EXPECT_NEAR(places[i].along, 0.2 * (static_cast<double>(i) - 1), 1e-9) << i;
@@ -163,14 +163,14 @@ TEST(LinePlaceTest, InterpolatesRepeatedValuesOverLines) {
     for (size_t i = 0; i < 7; ++i) EXPECT_NEAR(places[i].altitude, altitudes[i], 1e-9) << i;
     EXPECT_NEAR(types::degrees(places[0].pitch), 10, 1e-9);
     EXPECT_NEAR(types::degrees(places[3].pitch), 10 + 20.0 / 3, 1e-9);
-    EXPECT_TRUE(placesOf({unknown, unknown}, {0, 0}).empty());
+    EXPECT_TRUE(getPlaces({unknown, unknown}, {0, 0}).empty());
 }
 
 TEST(LinePlaceTest, RefusesLinesBeyondTheFloorWithAReason) {
     FitChain chain = guessedSideScan();
-    CodedPing lines = linesOf();
+    CodedPing lines = getLines();
     lines.places.back().along = 1e5;
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { layLines(lines, chain); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { layLines(lines, chain); }),
                 HasSubstr("no floor below the last of 96 lines"));
 }
 
@@ -180,7 +180,7 @@ TEST(FitSideScanTest, CoherentSpeckleIsSimulatedForAtMost128Lines) {
     FitChain chain = guessedSideScan();
     chain.sonar.quality.rows = 1;
     chain.sonar.quality.columns_per_beam = 32;
-    layLines(linesOf(200), chain);
+    layLines(getLines(200), chain);
     EXPECT_EQ(simulatedPings(chain, 1).front().beam_count, 200u);
     chain.sonar.speckle.emplace();
     EXPECT_EQ(simulatedPings(chain, 1).front().beam_count, 128u);

@@ -37,7 +37,7 @@ TEST(FractalFloorTest, TheSpectrumOfAProfileHasTheGivenSlope) {
         for (uint64_t seed = 1; seed <= 8; ++seed) {
             FractalFloor floor = smallFloor(seed);
             floor.slope = slope;
-            const std::vector<double> heights = heightsOf(floor);
+            const std::vector<double> heights = computeHeights(floor);
             for (const size_t k : {4, 5}) low += profilePower(heights, 128, k);
             for (const size_t k : {16, 20}) high += profilePower(heights, 128, k);
         }
@@ -46,7 +46,7 @@ TEST(FractalFloorTest, TheSpectrumOfAProfileHasTheGivenSlope) {
 }
 
 TEST(FractalFloorTest, HeightsHaveTheGivenRmsAboutTheirMean) {
-    const std::vector<double> heights = heightsOf(smallFloor());
+    const std::vector<double> heights = computeHeights(smallFloor());
     double sum = 0, squares = 0;
     for (const double height : heights) sum += height, squares += height * height;
     EXPECT_NEAR(sum / static_cast<double>(heights.size()), 0, 1e-12);
@@ -54,8 +54,8 @@ TEST(FractalFloorTest, HeightsHaveTheGivenRmsAboutTheirMean) {
 }
 
 TEST(FractalFloorTest, ASeedDeterminesTheFloor) {
-    EXPECT_EQ(heightsOf(smallFloor(5)), heightsOf(smallFloor(5)));
-    EXPECT_NE(heightsOf(smallFloor(5)), heightsOf(smallFloor(6)));
+    EXPECT_EQ(computeHeights(smallFloor(5)), computeHeights(smallFloor(5)));
+    EXPECT_NE(computeHeights(smallFloor(5)), computeHeights(smallFloor(6)));
 }
 
 TEST(FractalFloorTest, TilesHaveTheSameTriangles) {
@@ -69,8 +69,8 @@ TEST(FractalFloorTest, TilesHaveTheSameTriangles) {
         }
     };
     std::vector<Corners> whole, parts;
-    collect(meshOf(smallFloor()), whole);
-    const std::vector<types::Mesh> tiles = tilesOf(smallFloor(), 8);
+    collect(getMesh(smallFloor()), whole);
+    const std::vector<types::Mesh> tiles = makeTiles(smallFloor(), 8);
     EXPECT_EQ(tiles.size(), 64u);
     for (const types::Mesh& tile : tiles) collect(tile, parts);
     std::ranges::sort(whole);

@@ -31,13 +31,13 @@ types::Snapshot tenObjects() {
         places.push_back(ball);
     }
     types::Snapshot snapshot;
-    snapshot.geometry = sceneOf(std::move(meshes), places);
+    snapshot.geometry = makeScene(std::move(meshes), places);
     snapshot.sonar.orientation = glm::angleAxis(radians(8), glm::dvec3(0, 1, 0));
     return snapshot;
 }
 
 sonar::SonarConfig fan() {
-    return test::sonarOf({.beams = 64, .width_deg = 90, .height_deg = 40, .bins = 250, .rows = 512, .columns = 4});
+    return test::getSonar({.beams = 64, .width_deg = 90, .height_deg = 40, .bins = 250, .rows = 512, .columns = 4});
 }
 
 /** Computes the energy of each object in each bin, [beam][bin][object], by the sonar equation along each of many
@@ -55,18 +55,18 @@ public:
 private:
     static constexpr int up = 2048, across = 16;
 
-    double elevationOf(int row) const { return radians(config_.beam_height_deg) * ((row + 0.5) / up - 0.5); }
-    glm::dvec3 directionOf(int column, int row) const {
+    double computeElevation(int row) const { return radians(config_.beam_height_deg) * ((row + 0.5) / up - 0.5); }
+    glm::dvec3 computeDirection(int column, int row) const {
         const double azimuth =
             radians(*config_.field_of_view_deg) * ((column + 0.5) / across / config_.beam_count - 0.5);
-        const double elevation = elevationOf(row);
+        const double elevation = computeElevation(row);
         return scene_.sonar.orientation * glm::dvec3(std::cos(elevation) * std::cos(azimuth),
                                                      std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
     }
     void trace(int column, int first_row) {
         RayTree::Rays rays;
         RayTree::Found found;
-        for (int i = 0; i < RayTree::packet; ++i) rays.set(i, directionOf(column, first_row + i));
+        for (int i = 0; i < RayTree::packet; ++i) rays.set(i, computeDirection(column, first_row + i));
         tree_.trace(glm::dvec3(0), {&rays, 1}, {&found, 1});
         for (int i = 0; i < RayTree::packet; ++i)
             if (const uint32_t hit = found[static_cast<size_t>(i)]; hit != RayTree::none)
@@ -74,12 +74,13 @@ private:
     }
     void add(int column, int row, uint32_t hit) {
         const RayTree::Triangle& triangle = tree_[hit];
-        const double facing = glm::dot(triangle.normal, directionOf(column, row)), range = triangle.distance / facing;
+        const double facing = glm::dot(triangle.normal, computeDirection(column, row)),
+                     range = triangle.distance / facing;
         const auto bin = static_cast<size_t>(range / config_.range * config_.bin_count);
         if (bin >= bins_) return;
         const size_t at = static_cast<size_t>(column / across) * bins_ + bin;
-        energies_[at * scene_.geometry->objects.size() + tree_.objectOf(hit)] +=
-            triangle.mu * std::abs(facing) / (range * range) * std::cos(elevationOf(row));
+        energies_[at * scene_.geometry->objects.size() + tree_.getObject(hit)] +=
+            triangle.mu * std::abs(facing) / (range * range) * std::cos(computeElevation(row));
     }
 
     RayTree tree_;

@@ -76,7 +76,8 @@ TEST(LikenessCommandTest, ASideScanIsAPictureOfItsLines) {
     const std::string recording = insonify::test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
     if (!fs::exists(recording))
         GTEST_SKIP() << "NOT TESTED: the recording of a side-scan is not next to the repository";
-    const std::string floor = gltfOf({-200, -8, 200, 200, -8, 200, 200, -8, -200, -200, -8, -200}, {0, 1, 2, 0, 2, 3});
+    const std::string floor =
+        makeGltf({-200, -8, 200, 200, -8, 200, 200, -8, -200, -200, -8, -200}, {0, 1, 2, 0, 2, 3});
     std::string text = replaced(replaced(codedWall(), ", gamma: 0.5", ""), "sonar::SonarTask", "sonar::SideScanTask");
     text = replaced(replaced(text, "beam_count: 64\n", "frequency_khz: 600\n"), "      field_of_view_deg: 60\n", "");
     text = replaced(replaced(text, "beam_height_deg: 10\n", "beam_height_deg: 60\n"), "range: 20", "range: 30");

@@ -25,7 +25,7 @@ Histogram only(std::initializer_list<std::pair<size_t, double>> shares) {
 }
 
 /** Returns a picture of 64 beams x 256 bins whose codes are amplitudes. */
-CodedPing pictureOf(const auto& amplitude) {
+CodedPing makePicture(const auto& amplitude) {
     CodedPing ping{.name = "made", .beam_count = 64, .bin_count = 256, .law = {.law = receiver::CodeLaw::Sqrt}};
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
         ping.bearings.push_back(0.5 - static_cast<double>(beam) / 63);
@@ -57,7 +57,7 @@ TEST(LikenessTest, DivergenceIsZeroForEqualAndOneBitForDisjointHistograms) {
 }
 
 TEST(LikenessTest, LevelsFollowTheLawOfTheCodes) {
-    CodedPing ping = pictureOf([](size_t, size_t) { return 0.1; });
+    CodedPing ping = makePicture([](size_t, size_t) { return 0.1; });
     EXPECT_NEAR(ping.levelDb(0.1f), -20, 1e-5);
     ping.law.gamma = 0.5;
     EXPECT_NEAR(ping.levelDb(0.1f), -40, 1e-5);
@@ -69,7 +69,9 @@ TEST(LikenessTest, LevelsFollowTheLawOfTheCodes) {
 }
 
 TEST(LikenessTest, FractionsAndDynamicRangeAreThoseOfTheCodes) {
-    const Looks looks = looksOf(pictureOf([](size_t beam, size_t) { return beam < 16 ? 0.0 : beam < 48 ? 0.1 : 1.0; }));
+    const Looks looks = computeLooks(makePicture([](size_t beam, size_t) {
+        return beam < 16 ? 0.0 : beam < 48 ? 0.1 : 1.0;
+    }));
     EXPECT_NEAR(looks.zeros, 0.25, 1e-9);
     EXPECT_NEAR(looks.saturated, 0.25, 1e-9);
     EXPECT_NEAR(looks.histogram[26], 0.5, 1e-9) << "25.5";
@@ -80,14 +82,14 @@ TEST(LikenessTest, FractionsAndDynamicRangeAreThoseOfTheCodes) {
 TEST(LikenessTest, FallOffIsTheMeanLevelOverRange) {
     const auto falling = [](size_t, size_t bin) { return std::pow(10, -static_cast<double>(bin / 8) / 20); };
     const auto flat = [](size_t, size_t) { return 0.5; };
-    const Looks one = looksOf(pictureOf(falling)), other = looksOf(pictureOf(flat));
+    const Looks one = computeLooks(makePicture(falling)), other = computeLooks(makePicture(flat));
     for (size_t slice = 0; slice < range_slices; ++slice)
         EXPECT_NEAR(one.level_db[slice], -static_cast<double>(slice), 1e-4);
     EXPECT_NEAR(apart(one, other).fall_off_db, std::sqrt((32 * 32 - 1) / 12.0), 1e-4) << "the deviation of 0 to 31";
 }
 
 TEST(LikenessTest, ContrastOfManyScatterersIsThatOfRayleigh) {
-    const Looks looks = looksOf(pictureOf([](size_t beam, size_t bin) { return 0.2 * rayleigh(1, beam, bin); }));
+    const Looks looks = computeLooks(makePicture([](size_t beam, size_t bin) { return 0.2 * rayleigh(1, beam, bin); }));
     EXPECT_GT(looks.patches, 50);
     EXPECT_NEAR(looks.contrast, 0.5227, 0.02);
     EXPECT_NEAR(looks.range_correlation, 0, 0.02);
@@ -98,7 +100,7 @@ TEST(LikenessTest, NeighboursThatShareHalfTheirSpeckleCorrelateByAHalf) {
     const auto shared = [](size_t beam, size_t bin) {
         return 0.2 + 0.02 * (rayleigh(1, beam, bin) + rayleigh(1, beam + 1, bin));
     };
-    const Looks looks = looksOf(pictureOf(shared));
+    const Looks looks = computeLooks(makePicture(shared));
     EXPECT_NEAR(looks.beam_correlation, 0.5, 0.03);
     EXPECT_NEAR(looks.range_correlation, 0, 0.03);
 }
@@ -108,7 +110,7 @@ TEST(LikenessTest, AnArcNextToATargetHasItsLevel) {
         const bool is_target = beam >= 31 && beam <= 33 && bin >= 99 && bin <= 101;
         return is_target ? 1.0 : bin >= 99 && bin <= 101 ? 0.1 : 0.01;
     };
-    const Looks one = looksOf(pictureOf([&](size_t beam, size_t bin) {  // five targets, at separate ranges
+    const Looks one = computeLooks(makePicture([&](size_t beam, size_t bin) {  // five targets, at separate ranges
         return bin < 250 && bin % 50 >= 20 ? arc(beam, 99 + bin % 50 - 24) : 0.01;
     }));
     EXPECT_NEAR(one.arc_db, -20, 0.1);
@@ -117,7 +119,7 @@ TEST(LikenessTest, AnArcNextToATargetHasItsLevel) {
 
 TEST(LikenessTest, PicturesOfOneCodeAndOfTheCosineDifferFromASpeckledPicture) {
     const auto recorded = [](uint64_t seed) {
-        return pictureOf([&](size_t beam, size_t bin) {
+        return makePicture([&](size_t beam, size_t bin) {
             return std::min(1.0, 0.25 * rayleigh(seed, beam, bin) * (bin > 100 && bin < 150 ? 2 : 1));
         });
     };
@@ -134,15 +136,15 @@ TEST(LikenessTest, PicturesOfOneCodeAndOfTheCosineDifferFromASpeckledPicture) {
 }
 
 TEST(LikenessTest, RefusesAPictureThatIsTooSmall) {
-    CodedPing ping = pictureOf([](size_t, size_t) { return 0.1; });
+    CodedPing ping = makePicture([](size_t, size_t) { return 0.1; });
     ping.beam_count = 16;
-    EXPECT_THROW(looksOf(ping), std::invalid_argument);
+    EXPECT_THROW(computeLooks(ping), std::invalid_argument);
     EXPECT_THROW(studyLikeness({}, nullptr), std::invalid_argument);
 }
 
 TEST(LikenessTest, DrawsFansSideBySide) {
-    const CodedPing ping = pictureOf([](size_t beam, size_t) { return beam < 32 ? 1.0 : 0.5; });
-    const types::Image one = fansOf({ping}), two = fansOf({ping, ping});
+    const CodedPing ping = makePicture([](size_t beam, size_t) { return beam < 32 ? 1.0 : 0.5; });
+    const types::Image one = drawFans({ping}), two = drawFans({ping, ping});
     EXPECT_EQ(two.size.width, 2 * one.size.width + 12);
     const size_t row = size_t{300} * one.row_size;
     EXPECT_EQ(one.image[row + one.size.width / 2 - 40], 255) << "port is to the left";

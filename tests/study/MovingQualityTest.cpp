@@ -31,7 +31,7 @@ struct RecordedPings {
 };
 
 template <class Task, class Config>
-RecordedPings runOf(const Config& config, const std::vector<types::Snapshot>& snapshots) {
+RecordedPings getRun(const Config& config, const std::vector<types::Snapshot>& snapshots) {
     Task task("sonar");
     test::Writer<types::SnapshotPtr> in;
     test::Reader<types::SonarPtr> out;
@@ -97,11 +97,11 @@ sonar::SonarConfig movingFan() {
     return config;
 }
 
-std::vector<types::Snapshot> snapshotsOf(const types::GeometryPtr& scene, int count, auto poseAt) {
+std::vector<types::Snapshot> makeSnapshots(const types::GeometryPtr& scene, int count, auto poseAt) {
     std::vector<types::Snapshot> snapshots;
     for (int i = 0; i < count; ++i) {
         const auto [position, yaw] = poseAt(i);
-        snapshots.push_back(test::snapshotOf(scene, position, yaw, radians(8)));
+        snapshots.push_back(test::makeSnapshot(scene, position, yaw, radians(8)));
         snapshots.back().time = types::Time::fromSeconds(1 + 0.1 * i);
     }
     return snapshots;
@@ -114,38 +114,38 @@ struct Place {
 
 /** Returns a floor of small stones, 3 m below (0, 0, 0). */
 types::Mesh stones(double side, double rms, uint64_t seed) {
-    return meshOf(
+    return getMesh(
         FractalFloor{.points = 256, .side = side, .slope = -1.7, .rms = rms, .centre_x = 0, .depth = 3, .seed = seed});
 }
 
 /** Returns snapshots that face a wall 4 m away, and then turn to the open floor by 4 deg per ping. */
 std::vector<types::Snapshot> turnFromAWall(unsigned seed) {
-    const auto scene = test::sceneOf({stones(80, 0.3, seed), test::wall(-4)});
-    return snapshotsOf(scene, 100, [](int i) {
+    const auto scene = test::makeScene({stones(80, 0.3, seed), test::wall(-4)});
+    return makeSnapshots(scene, 100, [](int i) {
         return Place{glm::dvec3(0), radians(180 - 4 * std::clamp(i - 20, 0, 45))};
     });
 }
 
 TEST(MovingQualityTest, AFanThatTurnsFromAWallToARoughFloorMeetsItsTarget) {
     const auto snapshots = turnFromAWall(3);
-    const RecordedPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
+    const RecordedPings run = getRun<sonar::SonarTask>(movingFan(), snapshots);
     const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
     EXPECT_LE(nearlyAll(errors), 2 * target) << summary(run, errors);
 }
 
 TEST(MovingQualityTest, APassOverARoughFloorMeetsItsTarget) {
-    const auto scene = test::sceneOf({stones(100, 0.4, 8)});
-    const auto snapshots = snapshotsOf(scene, 100, [](int i) {
+    const auto scene = test::makeScene({stones(100, 0.4, 8)});
+    const auto snapshots = makeSnapshots(scene, 100, [](int i) {
         return Place{glm::dvec3(-35 + 0.4 * i, 2, 0.5 * std::sin(0.1 * i)), 0.2 * std::sin(0.05 * i)};
     });
-    const RecordedPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
+    const RecordedPings run = getRun<sonar::SonarTask>(movingFan(), snapshots);
     const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
     EXPECT_LE(nearlyAll(errors), 2 * target) << summary(run, errors);
 }
 
 /** Returns a basin of 10 x 8 x 3 m with a ball of a tyre's size on its floor. */
 types::GeometryPtr pool() {
-    return test::sceneOf(
+    return test::makeScene(
         {test::quad({-5, -4, -2}, {10, 0, 0}, {0, 8, 0}), test::quad({-5, -4, -2}, {10, 0, 0}, {0, 0, 3}),
          test::quad({-5, 4, -2}, {10, 0, 0}, {0, 0, 3}), test::quad({-5, -4, -2}, {0, 8, 0}, {0, 0, 3}),
          test::quad({5, -4, -2}, {0, 8, 0}, {0, 0, 3}), test::sphere(0.3, 32)},
@@ -160,10 +160,10 @@ TEST(MovingQualityTest, AScanningHeadInAPoolMeetsItsTarget) {
     config.sonar.beam_height_deg = 25;
     config.sonar.range_rounding = sonar::RangeRounding::Exact;
     config.sonar.device = "software";
-    const auto snapshots = snapshotsOf(pool(), 400, [](int i) {
+    const auto snapshots = makeSnapshots(pool(), 400, [](int i) {
         return Place{glm::dvec3(-1 + 0.002 * i, 0.5, -0.8), 0.3};
     });
-    const RecordedPings run = runOf<sonar::ScanningSonarTask>(config, snapshots);
+    const RecordedPings run = getRun<sonar::ScanningSonarTask>(config, snapshots);
     const std::vector<double> errors = movingErrors(config.beam(), snapshots, run, 64);
     EXPECT_LE(nearlyAll(errors), 2 * target) << summary(run, errors);
 }

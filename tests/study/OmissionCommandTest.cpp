@@ -7,7 +7,7 @@ using testing::HasSubstr;
 
 namespace {
 
-json rowOf(const json& rows, const std::string& name) {
+json getRow(const json& rows, const std::string& name) {
     for (const json& row : rows)
         if (row["name"] == name) return row;
     return {};
@@ -22,14 +22,14 @@ TEST(OmissionCommandTest, OmissionsChangeNoBinByMoreThanTheirBound) {
     const json rows = json::parse(readFile(folder / "report/omission.json"));
     for (const char* neutral :
          {"absorption", "normal maps", "range point-spread", "transmit ring-down", "point targets", "multipath"}) {
-        const json row = rowOf(rows, neutral);
+        const json row = getRow(rows, neutral);
         ASSERT_EQ(row["verdict"], "pass") << neutral;
         EXPECT_LE(row["change"], row["bound"]) << neutral;
         EXPECT_GT(row["without_ms"], 0) << neutral;
         EXPECT_GT(row["with_ms"], 0) << neutral;
     }
-    EXPECT_EQ(rowOf(rows, "seabeds by TR 9407")["verdict"], "not measured");
-    EXPECT_GT(rowOf(rows, "twice the rows and columns")["change"], 0);
+    EXPECT_EQ(getRow(rows, "seabeds by TR 9407")["verdict"], "not measured");
+    EXPECT_GT(getRow(rows, "twice the rows and columns")["change"], 0);
     EXPECT_EQ(readFile(folder / "report/omission.md"), outcome.out);
     EXPECT_THAT(outcome.out, HasSubstr("| normal maps | no material has one |"));
 }
@@ -40,9 +40,9 @@ TEST(OmissionCommandTest, ShowsConfiguredEffectsWithTheirCost) {
               replaced(wall_deployment, "      range: 20\n", "      range: 20\n      absorption: {db_per_m: 0.2}\n"));
     ASSERT_THAT(callInsonify(folder, {"study", "omission", "loud.yml", "--pings", "3", "--out", "report"}), succeeds());
     const json rows = json::parse(readFile(folder / "report/omission.json"));
-    EXPECT_EQ(rowOf(rows, "absorption")["verdict"], "kept");
-    EXPECT_GT(rowOf(rows, "absorption")["change"], 0.01);
-    const json inside = rowOf(rows, "absorption inside a bin");
+    EXPECT_EQ(getRow(rows, "absorption")["verdict"], "kept");
+    EXPECT_GT(getRow(rows, "absorption")["change"], 0.01);
+    const json inside = getRow(rows, "absorption inside a bin");
     EXPECT_EQ(inside["verdict"], "pass");
     EXPECT_GT(inside["change"], 0);
     EXPECT_LE(inside["change"], inside["bound"]);
@@ -60,10 +60,10 @@ TEST(OmissionCommandTest, ShowsPointTargetsAndARingDownWithTheirCost) {
     ASSERT_THAT(callInsonify(folder, {"study", "omission", "loud.yml", "--pings", "3", "--out", "report"}), succeeds());
     const json rows = json::parse(readFile(folder / "report/omission.json"));
     for (const char* kept : {"transmit ring-down", "point targets"}) {
-        EXPECT_EQ(rowOf(rows, kept)["verdict"], "kept") << kept;
-        EXPECT_GT(rowOf(rows, kept)["change"], 1e-4) << kept;
+        EXPECT_EQ(getRow(rows, kept)["verdict"], "kept") << kept;
+        EXPECT_GT(getRow(rows, kept)["change"], 1e-4) << kept;
     }
-    EXPECT_EQ(rowOf(rows, "1 of 2 point targets")["verdict"], "not measured");
+    EXPECT_EQ(getRow(rows, "1 of 2 point targets")["verdict"], "not measured");
 }
 
 TEST(OmissionCommandTest, RefusesUnsuitableDeployments) {

@@ -74,7 +74,7 @@ TEST(PointTracerTest, EqualSeedsGiveEqualSumsAndOtherSeedsOthers) {
 
 /** Returns a wall 10 m ahead whose map tilts its normal everywhere. */
 types::GeometryPtr leaningWall(glm::ivec3 rgb) {
-    const auto geometry = copyOf(sceneOf({facingWall(10, 20)}));
+    const auto geometry = makeCopy(makeScene({facingWall(10, 20)}));
     types::Mesh& mesh = geometry->meshes[0];
     mesh.normals.assign(4, {-1, 0, 0});
     mesh.tangents.assign(4, {0, -1, 0, 1});  // so that the bitangent is up

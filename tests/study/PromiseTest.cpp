@@ -45,28 +45,28 @@ public:
         const double pitch = uniform(0.05, 0.3);
         const glm::dvec3 around(10 - 12 * std::cos(yaw), -12 * std::sin(yaw), -1);
         const glm::dvec3 within(uniform(-8, 8), uniform(-6, 6), uniform(-0.8, 0.8));
-        if (number_ % 3 == 0) return {config, test::snapshotOf(floor(), {}, yaw, pitch)};
-        if (number_ % 3 == 1) return {config, test::snapshotOf(test::surfaces(), around, yaw, 0.1)};
-        return {config, test::snapshotOf(tank(), within, yaw, pitch - 0.2)};
+        if (number_ % 3 == 0) return {config, test::makeSnapshot(floor(), {}, yaw, pitch)};
+        if (number_ % 3 == 1) return {config, test::makeSnapshot(test::surfaces(), around, yaw, 0.1)};
+        return {config, test::makeSnapshot(tank(), within, yaw, pitch - 0.2)};
     }
 
 private:
     double uniform(double from, double to) { return from + (to - from) * random_() / std::mt19937::max(); }
 
     types::GeometryPtr floor() {
-        return test::sceneOf({meshOf(FractalFloor{.points = 64 << number_ % 2,
-                                                  .side = 60,
-                                                  .slope = -1.7,
-                                                  .rms = uniform(0.05, 0.3),
-                                                  .centre_x = 0,
-                                                  .depth = 3,
-                                                  .seed = number_})});
+        return test::makeScene({getMesh(FractalFloor{.points = 64 << number_ % 2,
+                                                     .side = 60,
+                                                     .slope = -1.7,
+                                                     .rms = uniform(0.05, 0.3),
+                                                     .centre_x = 0,
+                                                     .depth = 3,
+                                                     .seed = number_})});
     }
 
     /** Returns a floor between four walls, with a ball on it. */
     static types::GeometryPtr tank() {
         const glm::vec3 along(26, 0, 0), across(0, 18, 0), up(0, 0, 2.4), corner(-13, -9, -1.2);
-        return test::sceneOf(
+        return test::makeScene(
             {test::quad(corner, along, across), test::quad(corner, along, up), test::quad(corner + across, along, up),
              test::quad(corner, across, up), test::quad(corner + along, across, up), test::sphere(0.3, 16)},
             0, {{}, {}, {}, {}, {}, {3, -1, -0.9}});

@@ -89,11 +89,11 @@ std::vector<StudyScene> unseenScenes() {
                                     .centre_x = 0,
                                     .depth = 3,
                                     .seed = seed};
-        const auto floor = test::sceneOf({meshOf(shape)});
+        const auto floor = test::makeScene({getMesh(shape)});
         scenes.push_back({"floor " + std::to_string(seed),
                           "",
                           config,
-                          test::snapshotOf(floor, {0, 0, 0.2 * (seed % 5)}, seed, 0.05 + 0.05 * (seed % 4)),
+                          test::makeSnapshot(floor, {0, 0, 0.2 * (seed % 5)}, seed, 0.05 + 0.05 * (seed % 4)),
                           {},
                           0});
     }
@@ -102,7 +102,7 @@ std::vector<StudyScene> unseenScenes() {
         scenes.push_back({"clutter " + std::to_string(i),
                           "",
                           config,
-                          test::snapshotOf(test::surfaces(), {10 - 12 * std::cos(i), -12 * std::sin(i), -1}, i, 0.1),
+                          test::makeSnapshot(test::surfaces(), {10 - 12 * std::cos(i), -12 * std::sin(i), -1}, i, 0.1),
                           {},
                           0});
     return scenes;
@@ -137,7 +137,7 @@ TEST(UnseenQualityTest, ABallAloneInAWideBeamIsFound) {
     for (int i = 0; i < 12; ++i) {
         const double radius = uniform(0.1, 1), distance = uniform(5, 10);
         StudyScene scene{"", "", fan(40, 40, 1, 12), {}, sphereTruth(radius, distance)};
-        scene.snapshot = test::snapshotOf(sceneOf({sphere(radius, 128)}, {{distance, 0, 0}}));
+        scene.snapshot = test::makeSnapshot(makeScene({sphere(radius, 128)}, {{distance, 0, 0}}));
         scene.config.quality.target_error = 0.05;
         const sonar::Quality chosen = sonar::chooseQuality(scene.config, scene.snapshot);
         const double error = achieved(scene, chosen);
@@ -155,7 +155,7 @@ TEST(UnseenQualityTest, ErrorsAreAtMostTwiceTheTargetForFacingDiscs) {
         test::Draw draw(seed);
         const double distance = draw.between(5, 11), radius = distance * std::tan(types::radians(draw.between(2, 19)));
         StudyScene scene{"", "", fan(40, 40, 1, 12), {}, discTruth(distance, radius)};
-        scene.snapshot = test::snapshotOf(sceneOf({disc(distance, radius, 2048)}));
+        scene.snapshot = test::makeSnapshot(makeScene({disc(distance, radius, 2048)}));
         const double target = draw.once(2) ? 0.02 : 0.05;
         scene.config.quality.target_error = target;
         const sonar::Quality chosen = sonar::chooseQuality(scene.config, scene.snapshot);

@@ -10,7 +10,7 @@ using testing::Not;
 
 namespace {
 
-json verdictOf(const json& report, const std::string& claim) {
+json getVerdict(const json& report, const std::string& claim) {
     for (const json& verdict : report["verdicts"])
         if (verdict["claim"].get<std::string>().find(claim) != std::string::npos) return verdict;
     return {};
@@ -31,10 +31,10 @@ TEST(SpeckleCommandTest, WritesTablesJsonDiagramAndVerdictsThatRecordingsCannotF
         EXPECT_EQ(report["pings"][0]["name"], "recorded_5");
         EXPECT_EQ(report["pings"][0]["slices"].size(), 8u);
         EXPECT_NEAR(report["pings"][0]["slices"][0]["contrast"], 0.52, 0.05);
-        const json verdict = verdictOf(report, "recorded_5, where it is loudest: frozen part");
+        const json verdict = getVerdict(report, "recorded_5, where it is loudest: frozen part");
         EXPECT_EQ(verdict["verdict"], frozen ? "pass" : "open");
         EXPECT_NEAR(verdict["measured"], frozen ? 1 : 0, 0.1);
-        EXPECT_EQ(verdictOf(report, "law rayleigh: distance")["verdict"], "pass");
+        EXPECT_EQ(getVerdict(report, "law rayleigh: distance")["verdict"], "pass");
         EXPECT_THAT(outcome.out, Not(HasSubstr("FAIL")));
     }
     EXPECT_THAT(readFile(folder / "report/speckle.csv"), HasSubstr("\nlaw_rayleigh,"));

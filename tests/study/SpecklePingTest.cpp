@@ -10,7 +10,7 @@
 
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "components/study/SpeckleStatistics.hpp"
-#include "tests/support/EveryWay.hpp"
+#include "tests/support/EveryRenderer.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -19,7 +19,7 @@
 namespace insonify::study {
 namespace {
 
-using test::pingOf;
+using test::makePing;
 using namespace sonar;
 using ::testing::ElementsAreArray;
 using types::radians;
@@ -48,17 +48,17 @@ SonarConfig coherent(SonarConfig config, int scatterers_per_cell = 10, std::opti
 }
 
 types::Snapshot overBottom(glm::dvec3 place = {}, double yaw = 0) {
-    return test::snapshotOf(test::sceneOf({test::ground(-3)}), place, yaw);
+    return test::makeSnapshot(test::makeScene({test::ground(-3)}), place, yaw);
 }
 
 /** Returns the intensity of each bin over its mean. */
-SpeckleField fieldOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+SpeckleField getField(const SonarConfig& config, const types::Snapshot& snapshot) {
     SonarConfig energies = config;
     energies.speckle.reset();
-    return overMeans(pingOf(config, snapshot), pingOf(energies, snapshot));
+    return overMeans(makePing(config, snapshot), makePing(energies, snapshot));
 }
 
-double meanOf(const SpeckleField& field) {
+double computeMean(const SpeckleField& field) {
     double sum = 0, count = 0;
     for (const double value : field.relative)
         if (std::isfinite(value)) sum += value, ++count;
@@ -67,28 +67,28 @@ double meanOf(const SpeckleField& field) {
 
 /** Returns the correlation of the intensities of two pings from different places. */
 double alike(const SonarConfig& config, const types::Snapshot& a, const types::Snapshot& b) {
-    return likewise(fieldOf(config, a), fieldOf(config, b)).intensities;
+    return likewise(getField(config, a), getField(config, b)).intensities;
 }
 
 TEST(SpecklePingTest, WithoutCoherenceNothingChanges) {
     SonarConfig config = boxes();
-    const types::Sonar absent = pingOf(config, overBottom());
+    const types::Sonar absent = makePing(config, overBottom());
     config.speckle = SpeckleConfig{};
-    EXPECT_THAT(pingOf(config, overBottom()).bins, ElementsAreArray(absent.bins));
-    EXPECT_NE(pingOf(coherent(boxes()), overBottom()).bins, absent.bins);
+    EXPECT_THAT(makePing(config, overBottom()).bins, ElementsAreArray(absent.bins));
+    EXPECT_NE(makePing(coherent(boxes()), overBottom()).bins, absent.bins);
 }
 
 TEST(SpecklePingTest, ManyScatterersAreRayleighAndKeepTheMean) {
-    const SpeckleField field = fieldOf(coherent(boxes()), overBottom());
-    const SpeckleFigures figures = figuresOf(field);
-    std::cout << "mean " << meanOf(field) << ", scintillation " << figures.scintillation.value
+    const SpeckleField field = getField(coherent(boxes()), overBottom());
+    const SpeckleFigures figures = computeFigures(field);
+    std::cout << "mean " << computeMean(field) << ", scintillation " << figures.scintillation.value
               << ", distance from Rayleigh " << figures.rayleigh_distance << "\n";
-    EXPECT_NEAR(meanOf(field), 1, 0.03);
+    EXPECT_NEAR(computeMean(field), 1, 0.03);
     EXPECT_NEAR(figures.scintillation.value, 1, 4 * figures.scintillation.error);
     EXPECT_LT(figures.rayleigh_distance, rayleigh_distance_limit);
     EXPECT_NEAR(figures.along[1], 0, 0.03);
     EXPECT_NEAR(figures.across[1], 0, 0.03);
-    const SpeckleFigures few = figuresOf(fieldOf(coherent(boxes(), 20, 100.0), overBottom()));
+    const SpeckleFigures few = computeFigures(getField(coherent(boxes(), 20, 100.0), overBottom()));
     EXPECT_GT(few.rayleigh_distance, rayleigh_distance_limit);
 }
 
@@ -109,10 +109,10 @@ SonarConfig acrossTheTrack() {
 TEST(SpecklePingTest, LinesOfASideScanAreRayleighThoughTheirFanIsWide) {
     double sum = 0, squares = 0, count = 0;
     for (int line = 0; line < 24; ++line) {
-        types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-7)}), {0.5 * line, 0, 0}, 0);
+        types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::ground(-7)}), {0.5 * line, 0, 0}, 0);
         snapshot.sonar.orientation *= glm::angleAxis(radians(90), glm::dvec3(0, 1, 0));
-        const types::Sonar field = pingOf(coherent(acrossTheTrack()), snapshot),
-                           mean = pingOf(acrossTheTrack(), snapshot);
+        const types::Sonar field = makePing(coherent(acrossTheTrack()), snapshot),
+                           mean = makePing(acrossTheTrack(), snapshot);
         for (size_t i = 0; i < field.bins.size(); ++i) {
             if (mean.bins[i] <= 0) continue;
             const double relative = static_cast<double>(field.bins[i]) / static_cast<double>(mean.bins[i]);
@@ -127,29 +127,29 @@ TEST(SpecklePingTest, LinesOfASideScanAreRayleighThoughTheirFanIsWide) {
 TEST(SpecklePingTest, EveryFanAndPatternKeepsTheMean) {
     SonarConfig conical = coherent(boxes());
     conical.beam_geometry = BeamGeometry::Conical;
-    EXPECT_NEAR(meanOf(fieldOf(conical, overBottom())), 1, 0.03);
+    EXPECT_NEAR(computeMean(getField(conical, overBottom())), 1, 0.03);
     SonarConfig patterned = coherent(boxes());
     patterned.beam_pattern.emplace();
     patterned.beam_pattern->receive.azimuth.emplace().width_deg = 1.5;
     patterned.beam_pattern->transmit.elevation.emplace().width_deg = 30;
-    EXPECT_NEAR(meanOf(fieldOf(patterned, overBottom())), 1, 0.03);
+    EXPECT_NEAR(computeMean(getField(patterned, overBottom())), 1, 0.03);
     for (const double bandwidth : {5.0, 12.0, 20.0}) {
         SonarConfig chirp = patterned;
         chirp.pulse.emplace().bandwidth_khz = bandwidth;
         chirp.pulse->window = acoustics::PulseWindow::Hann;
-        EXPECT_NEAR(meanOf(fieldOf(chirp, overBottom())), 1, 0.04) << bandwidth;
+        EXPECT_NEAR(computeMean(getField(chirp, overBottom())), 1, 0.04) << bandwidth;
     }
     SonarConfig tone = coherent(boxes());
     tone.pulse.emplace().duration_us = 173;
-    EXPECT_NEAR(meanOf(fieldOf(tone, overBottom())), 1, 0.04);
+    EXPECT_NEAR(computeMean(getField(tone, overBottom())), 1, 0.04);
 }
 
 TEST(SpecklePingTest, AStillSceneGivesTheSamePingAndAnotherBottomDoesNot) {
     const SonarConfig config = coherent(boxes());
     const types::Snapshot here = overBottom();
-    EXPECT_EQ(pingOf(config, here).bins, pingOf(config, here).bins);
+    EXPECT_EQ(makePing(config, here).bins, makePing(config, here).bins);
     types::Snapshot far = overBottom({5e5, 4.5e6, 0});
-    auto moved = test::sceneOf({test::ground(-3)}, 0, {{5e5, 4.5e6, 0}});
+    auto moved = test::makeScene({test::ground(-3)}, 0, {{5e5, 4.5e6, 0}});
     far.geometry = moved;
     EXPECT_GT(alike(config, here, far), 0.999) << "a scene that is elsewhere in the world";
     EXPECT_LT(std::abs(alike(config, here, overBottom({30, 20, 0}))), 0.04);
@@ -160,11 +160,12 @@ TEST(SpecklePingTest, SpeckleDoesNotDependOnQualityOrTriangles) {
     SonarConfig finer = config;
     finer.quality.rows = 512;
     finer.quality.columns_per_beam = 4;
-    const SpeckleField coarse = fieldOf(config, overBottom()), fine = fieldOf(finer, overBottom());
+    const SpeckleField coarse = getField(config, overBottom()), fine = getField(finer, overBottom());
     std::cout << "quality: " << likewise(coarse, fine).intensities << ", scintillation "
-              << figuresOf(coarse).scintillation.value << " and " << figuresOf(fine).scintillation.value << "\n";
+              << computeFigures(coarse).scintillation.value << " and " << computeFigures(fine).scintillation.value
+              << "\n";
     EXPECT_GT(likewise(coarse, fine).intensities, 0.98);
-    EXPECT_NEAR(figuresOf(coarse).scintillation.value, figuresOf(fine).scintillation.value, 0.02);
+    EXPECT_NEAR(computeFigures(coarse).scintillation.value, computeFigures(fine).scintillation.value, 0.02);
     types::Snapshot pieces = overBottom();
     std::vector<glm::vec3> corners;
     std::vector<uint32_t> indices;
@@ -175,7 +176,7 @@ TEST(SpecklePingTest, SpeckleDoesNotDependOnQualityOrTriangles) {
             const auto at = static_cast<uint32_t>(101 * x + y);
             for (const uint32_t corner : {at - 102, at - 1, at - 101, at - 101, at - 1, at}) indices.push_back(corner);
         }
-    pieces.geometry = test::sceneOf({test::meshOf(corners, indices)});
+    pieces.geometry = test::makeScene({test::getMesh(corners, indices)});
     EXPECT_GT(alike(config, overBottom(), pieces), 0.98);
 }
 
@@ -217,8 +218,8 @@ TEST(SpecklePingTest, MovesWithAPureShiftInRange) {
     config.beam_count = 4;
     config.beam_height_deg = 1;
     const auto wall = [&](double shift) {
-        types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-3)}), {shift, 0, 0}, 0, 0);
-        return fieldOf(config, snapshot);
+        types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::ground(-3)}), {shift, 0, 0}, 0, 0);
+        return getField(config, snapshot);
     };
     config.beam_height_deg = 40;
     const SpeckleField here = wall(0);
@@ -244,14 +245,14 @@ TEST(SpecklePingTest, NeighboursCorrelateAccordingToPulseAndPattern) {
     // difference of sines over wavelength / L.
     SonarConfig chirp = coherent(boxes());
     chirp.pulse.emplace().bandwidth_khz = 1500.0 / (2 * 0.2) / 1e3;  // resolves 0.2 m: bins are a quarter of it
-    const SpeckleFigures along = figuresOf(beyond(fieldOf(chirp, overBottom()), 10, chirp));
+    const SpeckleFigures along = computeFigures(beyond(getField(chirp, overBottom()), 10, chirp));
     std::cout << "a quarter and a half of the range resolution: " << along.along[1] << ", " << along.along[2] << "\n";
     EXPECT_NEAR(along.along[1], 0.81, 0.04);
     EXPECT_NEAR(along.along[2], 0.41, 0.05);
     SonarConfig array = lineArray(0.003 / radians(1));  // resolves 1 deg ahead: beams are a quarter of it
     array.field_of_view_deg = 30;
     array.beam_count = 120;
-    const SpeckleFigures across = figuresOf(fieldOf(array, overBottom()));
+    const SpeckleFigures across = computeFigures(getField(array, overBottom()));
     std::cout << "of the beam's: " << across.across[1] << ", " << across.across[2] << "\n";
     EXPECT_NEAR(across.across[1], 0.81, 0.04);
     EXPECT_NEAR(across.across[2], 0.41, 0.05);
@@ -270,7 +271,7 @@ TEST(SpecklePingTest, DoesNotDependOnThreads) {
             renderer.render(snapshot, ping);
             return ping.bins;
         };
-        EXPECT_GT(meanOf(fieldOf(config, snapshot)), 0.5);
+        EXPECT_GT(computeMean(getField(config, snapshot)), 0.5);
         EXPECT_EQ(bins(1), bins(2));
         EXPECT_EQ(bins(1), bins(5));
     }
@@ -284,7 +285,7 @@ TEST(SpecklePingTest, EqualScatterersHaveAScintillationIndexOfTwoMinusTheirFract
     config.range = 12;
     config.range_min = 8;
     config.bin_count = 12;
-    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-500)}));
+    types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::ground(-500)}));
     SonarRenderer renderer(config, snapshot.geometry);
     uint32_t state = 1;
     const auto random = [&] { return static_cast<double>((state = state * 1664525u + 1013904223u) >> 8) / (1 << 24); };
@@ -314,7 +315,7 @@ TEST(SpecklePingTest, FewScatterersAreKDistributedByTheirNumberInACell) {
     // range.
     const double density = 400;
     const auto shapeBetween = [&](const SonarConfig& config, double near, double far) {
-        const SpeckleField field = fieldOf(config, overBottom());
+        const SpeckleField field = getField(config, overBottom());
         double squares = 0, sum = 0, count = 0;
         for (size_t beam = 0; beam < field.beam_count; ++beam)
             for (size_t bin = 0; bin < field.bin_count; ++bin) {
@@ -343,18 +344,18 @@ TEST(SpecklePingTest, FewScatterersAreKDistributedByTheirNumberInACell) {
 TEST(SpecklePingTest, ScatteringWaterHasSpeckleToo) {
     SonarConfig config = coherent(boxes());
     config.volume = {VolumeLayer{{}, {}, -50}};
-    const types::Snapshot open = test::snapshotOf(test::sceneOf({test::ground(-500)}));
-    const SpeckleField field = fieldOf(config, open);
-    EXPECT_NEAR(meanOf(field), 1, 0.03);
-    EXPECT_NEAR(figuresOf(field).scintillation.value, 1, 0.05);
-    EXPECT_EQ(pingOf(config, open).bins, pingOf(config, open).bins);
+    const types::Snapshot open = test::makeSnapshot(test::makeScene({test::ground(-500)}));
+    const SpeckleField field = getField(config, open);
+    EXPECT_NEAR(computeMean(field), 1, 0.03);
+    EXPECT_NEAR(computeFigures(field).scintillation.value, 1, 0.05);
+    EXPECT_EQ(makePing(config, open).bins, makePing(config, open).bins);
 }
 
 TEST(SpecklePingTest, WaterInFrontOfABottomIsInTheReceivingBeam) {
     // Most samples of two beams side by side see the same triangle.
     SonarConfig config = coherent(boxes());
     config.volume = {VolumeLayer{{}, {}, -10}};
-    const SpeckleField field = fieldOf(config, overBottom());
+    const SpeckleField field = getField(config, overBottom());
     const auto bins = static_cast<size_t>(config.bin_count);
     double sums[2] = {}, counts[2] = {};
     for (size_t i = 0; i < field.relative.size(); ++i)
@@ -372,9 +373,9 @@ TEST(SpecklePingTest, WaterAndMirrorsAddEnergiesBecauseTheirFieldsAreIndependent
     SonarConfig straight = config;
     straight.multipath.reset();
     straight.speckle.reset();
-    const SpeckleField by_mirrors = overMeans(pingOf(config, snapshot), pingOf(straight, snapshot));
-    EXPECT_GT(meanOf(by_mirrors), 1.05) << "mirrors add nothing that could be seen";
-    EXPECT_NEAR(meanOf(fieldOf(config, snapshot)), 1, 0.03);
+    const SpeckleField by_mirrors = overMeans(makePing(config, snapshot), makePing(straight, snapshot));
+    EXPECT_GT(computeMean(by_mirrors), 1.05) << "mirrors add nothing that could be seen";
+    EXPECT_NEAR(computeMean(getField(config, snapshot)), 1, 0.03);
 }
 
 TEST(SpecklePingTest, ATargetUnderAFlatSurfaceHasTheFringesOfLloydsMirror) {
@@ -386,7 +387,7 @@ TEST(SpecklePingTest, ATargetUnderAFlatSurfaceHasTheFringesOfLloydsMirror) {
     config.beam_count = 1;
     config.field_of_view_deg = 10;
     config.multipath.emplace().surface.emplace();
-    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-500)}));
+    types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::ground(-500)}));
     snapshot.water_surface = 2;
     snapshot.targets = {{{40, 0, 0}, 0}};
     SonarRenderer renderer(config, snapshot.geometry);
@@ -423,52 +424,52 @@ TEST(SpecklePingTest, StiffCasesAreFinite) {
     grazing.range = 2000;
     grazing.range_min = 0.1;
     grazing.beam_height_deg = 170;
-    EXPECT_TRUE(isFinite(pingOf(grazing, overBottom())));
-    EXPECT_TRUE(isFinite(pingOf(coherent(boxes(), 1, 1e-6), overBottom())));
-    EXPECT_TRUE(isFinite(pingOf(coherent(boxes(), 200, 1e9), overBottom())));
+    EXPECT_TRUE(isFinite(makePing(grazing, overBottom())));
+    EXPECT_TRUE(isFinite(makePing(coherent(boxes(), 1, 1e-6), overBottom())));
+    EXPECT_TRUE(isFinite(makePing(coherent(boxes(), 200, 1e9), overBottom())));
     SonarConfig around = coherent(boxes());
     around.range_min = 0;
     around.field_of_view_deg = 360;
     around.beam_height_deg = 180;
     around.bin_count = 1;
-    EXPECT_TRUE(isFinite(pingOf(around, test::snapshotOf(test::sceneOf({test::sphere(5, 30)})))));
-    EXPECT_TRUE(isFinite(pingOf(around, test::snapshotOf(test::sceneOf({test::ground(0)})))));
+    EXPECT_TRUE(isFinite(makePing(around, test::makeSnapshot(test::makeScene({test::sphere(5, 30)})))));
+    EXPECT_TRUE(isFinite(makePing(around, test::makeSnapshot(test::makeScene({test::ground(0)})))));
 }
 
 TEST(SpecklePingTest, ReportsMissingRequirements) {
     using testing::Contains, testing::HasSubstr;
-    EXPECT_THAT(test::refusalsOf(coherent(boxes())), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(coherent(boxes())), testing::IsEmpty());
     SonarConfig silent = coherent(boxes());
     silent.frequency_khz.reset();
-    EXPECT_THAT(test::refusalsOf(silent), Contains(HasSubstr("without frequency_khz")));
+    EXPECT_THAT(test::countRefusals(silent), Contains(HasSubstr("without frequency_khz")));
     SonarConfig rasterised = coherent(boxes());
     rasterised.visibility = Visibility::Gl;
-    EXPECT_THAT(test::refusalsOf(rasterised), Contains(HasSubstr("needs rays")));
+    EXPECT_THAT(test::countRefusals(rasterised), Contains(HasSubstr("needs rays")));
     SonarConfig mean = coherent(boxes());
     mean.model = Model::Cerqueira2017;
-    EXPECT_THAT(test::refusalsOf(mean), Contains(HasSubstr("cerqueira2017")));
+    EXPECT_THAT(test::countRefusals(mean), Contains(HasSubstr("cerqueira2017")));
 }
 
 /** The speckle of an object is its own: other objects may come, go and change places in the list. */
 TEST(SpecklePingTest, AnObjectKeepsItsSpeckleWhenOthersAreAddedAndChangeTheirOrder) {
     SonarConfig config = coherent(boxes());
     config.range_min = 1;
-    auto alone = std::make_shared<types::Geometry>(*test::sceneOf({test::ground(-3)}));
+    auto alone = std::make_shared<types::Geometry>(*test::makeScene({test::ground(-3)}));
     alone->objects[0].name = "floor";
-    const types::Sonar first = pingOf(config, test::snapshotOf(alone));
+    const types::Sonar first = makePing(config, test::makeSnapshot(alone));
     const auto both = [&](bool floor_last, const char* other) {
         auto scene = std::make_shared<types::Geometry>(
-            *test::sceneOf({test::ground(-3), test::disc(1, 0.1f)}, 0, {{}, {-50, 0, 0}}));
+            *test::makeScene({test::ground(-3), test::disc(1, 0.1f)}, 0, {{}, {-50, 0, 0}}));
         scene->objects[0].name = "floor";
         scene->objects[1].name = other;
         if (floor_last) std::swap(scene->objects[0], scene->objects[1]);
-        return pingOf(config, test::snapshotOf(scene));
+        return makePing(config, test::makeSnapshot(scene));
     };
     EXPECT_EQ(both(false, "thing").bins, first.bins);
     EXPECT_EQ(both(true, "thing").bins, first.bins);
     EXPECT_EQ(both(true, "another").bins, first.bins);
     alone->objects[0].name = "bottom";
-    EXPECT_NE(pingOf(config, test::snapshotOf(std::make_shared<types::Geometry>(*alone))).bins, first.bins);
+    EXPECT_NE(makePing(config, test::makeSnapshot(std::make_shared<types::Geometry>(*alone))).bins, first.bins);
 }
 
 /** Two places of one mesh, and two objects of one name, have their own speckle. */
@@ -476,12 +477,12 @@ TEST(SpecklePingTest, EqualObjectsOfOneNameHaveTheirOwnSpeckle) {
     SonarConfig config = coherent(boxes());
     config.range_min = 1;
     const auto withNames = [&](const char* one, const char* other) {
-        auto scene = std::make_shared<types::Geometry>(*test::sceneOf({test::ground(-3), test::ground(-3)}));
+        auto scene = std::make_shared<types::Geometry>(*test::makeScene({test::ground(-3), test::ground(-3)}));
         scene->objects[0].name = one;
         scene->objects[1].name = other;
-        types::Snapshot snapshot = test::snapshotOf(scene);
+        types::Snapshot snapshot = test::makeSnapshot(scene);
         snapshot.moved = {{0, glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -1000))}};  // only the second is near
-        return pingOf(config, snapshot);
+        return makePing(config, snapshot);
     };
     EXPECT_NE(withNames("floor", "floor").bins, withNames("other", "floor").bins) << "the second of its name";
     EXPECT_EQ(withNames("a", "floor").bins, withNames("b", "floor").bins);

@@ -22,12 +22,12 @@ types::Sonar speckled(const noise::SpeckleConfig& law, int64_t time = 1) {
     noise::NoiseConfig config;
     config.speckle = law;
     types::Sonar noisy;
-    noise::Noise(config).add(test::pingOf(beams, bins, 1, time), noisy);
+    noise::Noise(config).add(test::makePing(beams, bins, 1, time), noisy);
     return noisy;
 }
 
 SpeckleFigures figuresOfLaw(const noise::SpeckleConfig& law) {
-    return figuresOf(overMeans(speckled(law), test::pingOf(beams, bins)));
+    return computeFigures(overMeans(speckled(law), test::makePing(beams, bins)));
 }
 
 /** Returns a complex Gaussian of unit mean square, the same for the same place. */
@@ -38,8 +38,8 @@ std::complex<double> gaussian(uint64_t seed, size_t a, size_t b) {
 }
 
 /** Returns intensities of a complex field. */
-types::Sonar fieldOf(const auto& field) {
-    types::Sonar ping = test::pingOf(beams, bins);
+types::Sonar getField(const auto& field) {
+    types::Sonar ping = test::makePing(beams, bins);
     for (size_t beam = 0; beam < beams; ++beam)
         for (size_t bin = 0; bin < bins; ++bin)
             ping.bins[beam * bins + bin] = static_cast<float>(std::norm(field(beam, bin)));
@@ -83,8 +83,8 @@ TEST(SpeckleStatisticsTest, CorrelationIsThatOfTheIntensitiesOfNeighbours) {
     const auto shared = [](size_t beam, size_t bin) {  // neighbouring fields share a half, their intensities a quarter
         return (gaussian(1, beam, bin) + gaussian(1, beam + 1, bin)) / std::numbers::sqrt2;
     };
-    const types::Sonar ping = fieldOf(shared);
-    const SpeckleFigures figures = figuresOf(overMeans(ping, test::pingOf(beams, bins)));
+    const types::Sonar ping = getField(shared);
+    const SpeckleFigures figures = computeFigures(overMeans(ping, test::makePing(beams, bins)));
     EXPECT_NEAR(figures.across[1], 0.25, 0.02);
     EXPECT_NEAR(figures.across[2], 0, 0.02);
     EXPECT_NEAR(figures.along[1], 0, 0.02);
@@ -95,11 +95,11 @@ TEST(SpeckleStatisticsTest, CorrelationIsThatOfTheIntensitiesOfNeighbours) {
 TEST(SpeckleStatisticsTest, TheNewPartOfEachPingIsTheNoiseShare) {
     for (const double share : {0.0, 0.1, 0.5, 1.0}) {
         const auto ping = [&](uint64_t seed) {
-            return overMeans(fieldOf([&](size_t beam, size_t bin) {
+            return overMeans(getField([&](size_t beam, size_t bin) {
                                  return std::sqrt(1 - share) * gaussian(1, beam, bin) +
                                         std::sqrt(share) * gaussian(seed, beam, bin);
                              }),
-                             test::pingOf(beams, bins));
+                             test::makePing(beams, bins));
         };
         const Likewise both = likewise(ping(2), ping(3));
         EXPECT_NEAR(both.intensities, (1 - share) * (1 - share), 0.02) << share;
@@ -123,8 +123,8 @@ TEST(SpeckleStatisticsTest, CodesOfEightBitsGiveNearlyTheSame) {
     for (const noise::SpeckleConfig& law :
          {noise::SpeckleConfig{}, noise::SpeckleConfig{.law = noise::SpeckleLaw::K, .shape = 3}}) {
         const types::Sonar ping = speckled(law);
-        const SpeckleFigures from_codes = figuresOf(overPatches(coded(ping)));
-        const SpeckleFigures from_bins = figuresOf(overPatches(ping));
+        const SpeckleFigures from_codes = computeFigures(overPatches(coded(ping)));
+        const SpeckleFigures from_bins = computeFigures(overPatches(ping));
         EXPECT_NEAR(from_codes.scintillation.value, from_bins.scintillation.value, 0.02);
         EXPECT_NEAR(from_codes.texture.value, from_bins.texture.value, 0.02);
         EXPECT_NEAR(from_codes.rayleigh_distance, from_bins.rayleigh_distance, 0.5);
@@ -148,20 +148,21 @@ TEST(SpeckleStatisticsTest, OmitPatchesOfTwoKindsOfBottomOrOfClippedCodes) {
 }
 
 TEST(SpeckleStatisticsTest, RefuseFieldsThatAreTooSmallOrOfAnotherShape) {
-    EXPECT_THROW(figuresOf(overPatches(test::pingOf(32, 31))), std::invalid_argument);
-    EXPECT_THROW(overMeans(test::pingOf(2, 3), test::pingOf(3, 2)), std::invalid_argument);
-    EXPECT_THROW(likewise(overPatches(test::pingOf(32, 32)), overPatches(test::pingOf(32, 48))), std::invalid_argument);
+    EXPECT_THROW(computeFigures(overPatches(test::makePing(32, 31))), std::invalid_argument);
+    EXPECT_THROW(overMeans(test::makePing(2, 3), test::makePing(3, 2)), std::invalid_argument);
+    EXPECT_THROW(likewise(overPatches(test::makePing(32, 32)), overPatches(test::makePing(32, 48))),
+                 std::invalid_argument);
 }
 
 TEST(SpeckleStatisticsTest, DescribeEighthsOfTheRangeSeparately) {
-    types::Sonar ping = speckled({}), means = test::pingOf(beams, bins);
+    types::Sonar ping = speckled({}), means = test::makePing(beams, bins);
     for (size_t beam = 0; beam < beams; ++beam)
         for (size_t bin = 320; bin < 384; ++bin) ping.bins[beam * bins + bin] = means.bins[beam * bins + bin] = 9;
     EXPECT_EQ(loudestSlice(ping), 5u);
     const SpeckleField field = overMeans(ping, means);
-    EXPECT_NEAR(figuresOf(sliceOf(field, 5)).scintillation.value, 0, 1e-12);
-    EXPECT_NEAR(figuresOf(sliceOf(field, 4)).scintillation.value, 1, 0.1);
-    EXPECT_EQ(figuresOf(sliceOf(field, 4)).bins, beams * 64);
+    EXPECT_NEAR(computeFigures(getSlice(field, 5)).scintillation.value, 0, 1e-12);
+    EXPECT_NEAR(computeFigures(getSlice(field, 4)).scintillation.value, 1, 0.1);
+    EXPECT_EQ(computeFigures(getSlice(field, 4)).bins, beams * 64);
 }
 
 TEST(SpeckleStatisticsTest, LoudPartsOfPingsOfAnM1200dAreStillAndTheRestIsRayleighNoise) {
@@ -171,8 +172,8 @@ TEST(SpeckleStatisticsTest, LoudPartsOfPingsOfAnM1200dAreStillAndTheRestIsRaylei
     device::OculusReader reader(file);
     for (const CodedPing& ping : codedPings(reader, {})) {
         EXPECT_EQ(loudestSlice(ping), 3u);
-        loud.push_back(sliceOf(overPatches(ping), 3));
-        far.push_back(sliceOf(overPatches(ping), 7));
+        loud.push_back(getSlice(overPatches(ping), 3));
+        far.push_back(getSlice(overPatches(ping), 7));
     }
     ASSERT_EQ(loud.size(), 3u);
     EXPECT_GT(likewise(loud[0], loud[1]).frozen(), 0.95);
@@ -180,7 +181,7 @@ TEST(SpeckleStatisticsTest, LoudPartsOfPingsOfAnM1200dAreStillAndTheRestIsRaylei
     EXPECT_LT(likewise(loud[0], loud[1]).noiseShare(), 0.05);
     EXPECT_LT(likewise(far[0], far[1]).frozen(), 0.4) << "noise is new in each ping";
     for (size_t i = 0; i < 3; ++i) {
-        const SpeckleFigures sediment = figuresOf(loud[i]), noise = figuresOf(far[i]);
+        const SpeckleFigures sediment = computeFigures(loud[i]), noise = computeFigures(far[i]);
         EXPECT_NEAR(sediment.shape(), 4, 1.5) << "K, of few scatterers";
         EXPECT_GT(sediment.texture.value, 3 * sediment.texture.error) << "not Rayleigh";
         EXPECT_NEAR(sediment.across[1], 0.6, 0.1) << "beams are closer than they are wide";

@@ -85,7 +85,7 @@ TEST(StabilityStudyTest, ACaseThatThrowsFailsAndTheSheetsReportIt) {
     EXPECT_EQ(rows[0].outcome.verdict, Verdict::Fail);
     writeStability(rows, folder.path());
     const auto text = [&](const char* name) {
-        const std::vector<char> bytes = bytesOf(folder / name);
+        const std::vector<char> bytes = toBytes(folder / name);
         return std::string(bytes.begin(), bytes.end());
     };
     EXPECT_EQ(text("stability.json"), R"([

@@ -37,7 +37,7 @@ void note(void* caller) {
     if (index < callers.size()) callers[index] = caller;
 }
 
-std::string placeOf(void* address) {
+std::string getPlace(void* address) {
     Dl_info info;
     std::ostringstream text;
     if (dladdr(address, &info) == 0) return "an unknown place";
@@ -69,7 +69,7 @@ void countHere(bool on) { counted_here = on; }
 std::vector<std::string> takeCounted() {
     std::vector<std::string> places;
     const size_t taken = std::min(count.exchange(0), callers.size());
-    for (size_t i = 0; i < taken; ++i) places.push_back(placeOf(callers[i]));
+    for (size_t i = 0; i < taken; ++i) places.push_back(getPlace(callers[i]));
     return places;
 }
 

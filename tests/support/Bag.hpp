@@ -22,7 +22,7 @@ public:
     /** @param received when it was received, which need not be its stamp */
     template <class Message>
     void add(const std::string& topic, types::Time received, const Message& message) {
-        types_[topic] = {Message::type_name, ros::schemaOf<Message>()};
+        types_[topic] = {Message::type_name, ros::describeSchema<Message>()};
         order_.push_back({topic, received.microseconds * 1000, {}});
         ros::encode(message, order_.back().bytes);
     }

@@ -7,7 +7,7 @@
 namespace insonify::test {
 
 template <class T>
-std::string bytesOf(std::span<const T> values) {
+std::string toBytes(std::span<const T> values) {
     std::string bytes(values.size_bytes(), '\0');
     std::memcpy(bytes.data(), values.data(), bytes.size());
     return bytes;

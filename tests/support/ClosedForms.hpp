@@ -61,7 +61,7 @@ inline Form times(double factor, Form form) {
 }
 
 /** The bins of a ping of one beam. */
-inline Form formOf(const types::Sonar& ping) {
+inline Form getForm(const types::Sonar& ping) {
     return [=](double r1, double) { return ping.bins[static_cast<size_t>(r1 / ping.binStart(1) + 0.5)]; };
 }
 

@@ -47,7 +47,7 @@ inline std::vector<RandomFan> randomFans(int rounds, uint32_t bins) {
     std::vector<RandomFan> fans;
     const auto add = [&](const std::string& name, std::vector<double> bearings_deg, double width_deg, bool shuffled) {
         if (shuffled) std::ranges::shuffle(bearings_deg, random);
-        RandomFan fan{name, pingOf(static_cast<uint32_t>(bearings_deg.size()), bins), {}, {}};
+        RandomFan fan{name, makePing(static_cast<uint32_t>(bearings_deg.size()), bins), {}, {}};
         fan.ping.beam_width = types::Angle::fromDeg(width_deg);
         for (size_t i = 0; i < bearings_deg.size(); ++i) fan.ping.bearings[i] = types::Angle::fromDeg(bearings_deg[i]);
         for (float& bin : fan.ping.bins) bin = static_cast<float>(any(0.1, 1));

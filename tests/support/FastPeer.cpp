@@ -65,7 +65,7 @@ struct Raw : TopicDataType {
 
 volatile std::sig_atomic_t begun = 0;
 
-Bytes bytesOf(const char* path) {
+Bytes toBytes(const char* path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -151,5 +151,5 @@ int main(int count, char** words) {
     Topic* const topic = participant->create_topic("rt" + std::string(words[3]), words[2], TOPIC_QOS_DEFAULT);
     const int rounds = std::atoi(words[count - 1]);
     if (!sends) return listen(*participant, topic, std::atof(words[4]), size_t(rounds));
-    return send(*participant, topic, bytesOf(words[4]), bytesOf(words[5]), rounds);
+    return send(*participant, topic, toBytes(words[4]), toBytes(words[5]), rounds);
 }

@@ -28,7 +28,7 @@ private:
     std::filesystem::path path_;
 };
 
-inline std::vector<char> bytesOf(const std::filesystem::path& path) {
+inline std::vector<char> toBytes(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
 }

@@ -48,7 +48,7 @@ constexpr unsigned max_seconds = 60;           // for one input
 constexpr size_t max_bytes = size_t{1} << 20;  // of an input
 
 std::string bytesOfFile(const fs::path& file) {
-    const std::vector<char> bytes = bytesOf(file);
+    const std::vector<char> bytes = toBytes(file);
     return {bytes.begin(), bytes.end()};
 }
 

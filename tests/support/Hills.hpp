@@ -23,7 +23,7 @@ inline types::Mesh hills(int cells) {
         for (int k = 0; k < cells; ++k)
             indices.insert(indices.end(),
                            {at(i, k), at(i + 1, k), at(i, k + 1), at(i, k + 1), at(i + 1, k), at(i + 1, k + 1)});
-    return meshOf(std::move(positions), std::move(indices));
+    return getMesh(std::move(positions), std::move(indices));
 }
 
 /** Returns the processor time that this thread takes for some work [s]. */

@@ -16,9 +16,9 @@ inline std::map<std::string, std::string> messageFiles(const std::string& packag
         const std::filesystem::path name = T::type_name;
         if (*name.begin() != package) return;
         if constexpr (requires { T::summary; })
-            files[name.filename().string() + ".msg"] = ros::fileOf<T>();
+            files[name.filename().string() + ".msg"] = ros::getFile<T>();
         else
-            files[name.filename().string() + ".msg"] = ros::definitionOf<T>();
+            files[name.filename().string() + ".msg"] = ros::describeDefinition<T>();
     });
     return files;
 }

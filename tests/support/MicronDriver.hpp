@@ -35,22 +35,22 @@ public:
     void reboot() {
         send(16);
         bytes_.clear();
-        packetOf(4);
+        makePacket(4);
     }
     int serialNumber() {
         send(23);
-        const Bytes packet = packetOf(1);
+        const Bytes packet = makePacket(1);
         return packet[15] | packet[16] << 8;
     }
     bool isFullDuplex() {
         send(24);
-        return packetOf(6)[146] == 0;
+        return makePacket(6)[146] == 0;
     }
     void configure(const Settings& settings) {
-        command_ = commandOf(settings);
+        command_ = getCommand(settings);
         send(19, command_);
         for (int tries = 0; tries < 5; ++tries) {
-            const uint8_t state = packetOf(4)[20];
+            const uint8_t state = makePacket(4)[20];
             if ((state & 2) || !(state & 64) || (state & 128)) return;
         }
         throw std::runtime_error("the configuration was not accepted");
@@ -60,18 +60,18 @@ public:
     bool openLikeMcGill(Settings settings) {
         settings.head_type = mcgill_head_type;
         send(16);
-        uint8_t state = packetOf(4)[20];
-        command_ = commandOf(settings);
+        uint8_t state = makePacket(4)[20];
+        command_ = getCommand(settings);
         send(19, command_);
         constexpr int max_packets = 10;
-        for (int i = 0; i < max_packets && !mcgillTakes(state); ++i) state = packetOf(4)[20];
-        return mcgillTakes(state) && mcgillTakes(packetOf(4)[20]);  // asked again before the first line
+        for (int i = 0; i < max_packets && !mcgillTakes(state); ++i) state = makePacket(4)[20];
+        return mcgillTakes(state) && mcgillTakes(makePacket(4)[20]);  // asked again before the first line
     }
     /** Reverses the head, with the head command of one byte. */
     void reverse() { send(19, {0x0F}); }
     void request() { send(25, Bytes(4)); }
     Beam beam() {
-        const Bytes packet = packetOf(2);
+        const Bytes packet = makePacket(2);
         check(packet);
         Beam beam;
         beam.sampling_interval = 640e-9 * number(packet, 33);
@@ -98,7 +98,7 @@ private:
         payload[at + 1] = static_cast<uint8_t>(value >> 8);
     }
 
-    static Bytes commandOf(const Settings& settings) {
+    static Bytes getCommand(const Settings& settings) {
         const auto limit = [](double angle) {
             return static_cast<int>((angle + std::numbers::pi) / (2 * std::numbers::pi) * 6399);
         };
@@ -134,7 +134,7 @@ private:
     }
 
     /** Returns the next packet of a type, and skips others. */
-    Bytes packetOf(uint8_t type) {
+    Bytes makePacket(uint8_t type) {
         for (int others = 0; others < 100; ++others) {
             while (bytes_.size() < 14 || bytes_.size() < size()) {
                 const Bytes more = read_();

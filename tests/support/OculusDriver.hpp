@@ -140,13 +140,13 @@ private:
 class EnstaDriver : public OculusDriver {
 public:
     EnstaDriver(const OculusStatus& status, uint16_t port)
-        : OculusDriver(ipOf(status), port), source_(status.header.source) {}
+        : OculusDriver(getIp(status), port), source_(status.header.source) {}
 
     /** Returns the number of times that the request was sent; 100: without success. */
     int request(OculusFire fire) {
         fire.flags |= OculusFire::row_gains;
         for (int sent = 1; sent < 100; ++sent) {
-            send(device::bytesOf(fire));
+            send(device::toBytes(fire));
             const device::Bytes message = nextMessage();
             if (fire.isStandby() ? device::oculusHeader(message)->is(OculusId::Dummy) : echoes(fire, message))
                 return sent;
@@ -163,7 +163,7 @@ public:
     }
 
 private:
-    static uint32_t ipOf(const OculusStatus& status) { return std::bit_cast<uint32_t>(status.address); }
+    static uint32_t getIp(const OculusStatus& status) { return std::bit_cast<uint32_t>(status.address); }
     static bool echoes(const OculusFire& asked, const device::Bytes& message) {
         const auto ping = device::oculusResult(message);
         if (!ping) return false;
@@ -187,7 +187,7 @@ public:
     void fire(OculusFire fire) const {
         fire.header.version = 0;
         fire.flags = OculusFire::range_in_metres | OculusFire::simple_result;
-        device::Bytes bytes = device::bytesOf(fire);
+        device::Bytes bytes = device::toBytes(fire);
         device::write<uint32_t>(bytes, 10, 0);
         send(bytes);
     }
@@ -206,7 +206,7 @@ struct UwDriver : OculusDriver {
         fire.header.version = 2;
         fire.flags |= OculusFire::beams_512;
         fire.extended_flags = OculusFire::wide_32;
-        send(device::bytesOf(fire));
+        send(device::toBytes(fire));
     }
 };
 

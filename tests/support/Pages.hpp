@@ -47,7 +47,7 @@ public:
         std::set<std::string> found;
         for (size_t level = 1; level <= 6; ++level)
             for (const std::string& heading : headings(level)) {
-                const std::string anchor = anchorOf(heading);
+                const std::string anchor = makeAnchor(heading);
                 std::string numbered = anchor;
                 for (int n = 1; !found.insert(numbered).second; ++n) numbered = anchor + "-" + std::to_string(n);
             }
@@ -78,7 +78,7 @@ private:
             found.push_back((*it)[1].str());
         return found;
     }
-    static std::string anchorOf(const std::string& heading) {
+    static std::string makeAnchor(const std::string& heading) {
         std::string anchor;
         for (const unsigned char c : heading)
             if (std::isalnum(c) || c == '_' || c == '-')
@@ -137,7 +137,7 @@ inline std::vector<Page> allPages() {
 
 /** Returns the text of the page's first block in this language, after a heading if one is named; "" if there is
  *  none. */
-inline std::string codeOf(const Page& page, const std::string& language, const std::string& heading = "") {
+inline std::string getCode(const Page& page, const std::string& language, const std::string& heading = "") {
     const auto at = std::ranges::find(page.lines(), "## " + heading);
     const size_t from = heading.empty() ? 0 : static_cast<size_t>(at - page.lines().begin());
     for (const CodeBlock& block : page.blocks())

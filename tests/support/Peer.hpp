@@ -19,7 +19,7 @@ public:
     /** Starts a program with its arguments. */
     explicit Peer(std::vector<std::string> words) { process_.emplace(std::move(words), folder_.path()); }
     /** Starts a Python script by its path from the root, with its arguments: "listen PoseStamped /pose 2". */
-    Peer(const std::string& script, const std::string& arguments) : Peer(wordsOf(script, arguments)) {}
+    Peer(const std::string& script, const std::string& arguments) : Peer(splitWords(script, arguments)) {}
     ~Peer() {
         if (!process_) return;
         signal(SIGKILL);
@@ -41,7 +41,7 @@ public:
     }
 
 private:
-    static std::vector<std::string> wordsOf(const std::string& script, const std::string& arguments) {
+    static std::vector<std::string> splitWords(const std::string& script, const std::string& arguments) {
         std::vector<std::string> words = {python(), sourceFile(script)};
         std::istringstream text(arguments);
         for (std::string word; text >> word;) words.push_back(word);

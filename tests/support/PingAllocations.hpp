@@ -20,7 +20,7 @@ void expectNoAllocation(const Config& config, framework::InputPort<types::SonarP
     task.config.set(config);
     ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto cycle = [&](int64_t time) {
-        in.port.write(shared(pingOf(16, 100, 1, time)));
+        in.port.write(shared(makePing(16, 100, 1, time)));
         task.update();
     };
     EXPECT_THAT(allocationsAfterTheFirst(task, cycle), testing::IsEmpty());

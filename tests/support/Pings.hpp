@@ -13,7 +13,7 @@
 namespace insonify::test {
 
 /** A ping of bins of 0.1 m, all of one intensity, in beams of 2 deg ahead. */
-inline types::Sonar pingOf(uint32_t beams, uint32_t bins, float value = 1, int64_t time = 1000000) {
+inline types::Sonar makePing(uint32_t beams, uint32_t bins, float value = 1, int64_t time = 1000000) {
     types::Sonar ping;
     ping.time.microseconds = time;
     ping.bin_duration.microseconds = 100;
@@ -28,7 +28,7 @@ inline types::Sonar pingOf(uint32_t beams, uint32_t bins, float value = 1, int64
 
 /** An empty ping of 50 m range whose beams cover `field_of_view_deg` evenly. */
 inline types::Sonar emptyPing(double field_of_view_deg, uint32_t beams, uint32_t bins = 100) {
-    types::Sonar ping = pingOf(beams, bins, 0);
+    types::Sonar ping = makePing(beams, bins, 0);
     ping.speed_of_sound = 1500;
     ping.bin_duration = {static_cast<int64_t>(50.0 / bins / 1500 * 1e6 + 0.5)};
     ping.beam_width = types::Angle::fromDeg(field_of_view_deg / beams);
@@ -57,10 +57,10 @@ inline double relativeL2(const types::Sonar& got, const types::Sonar& expected) 
     return relativeL2(got.bins, expected.bins);
 }
 
-inline double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
+inline double computeSum(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
 /** Returns all numbers of a truth, as bits: NaN equals NaN. */
-inline std::vector<uint32_t> bitsOf(const types::SonarTruth& truth) {
+inline std::vector<uint32_t> getBits(const types::SonarTruth& truth) {
     std::vector<uint32_t> all;
     types::SonarTruth::forEachArray(truth, [&](const char*, const auto& numbers, auto) {
         for (const auto number : numbers)

@@ -68,13 +68,13 @@ struct RandomSonar {
     types::Snapshot scene() const { return with(objects); }
     /** Returns the scene with other objects. */
     types::Snapshot with(const std::vector<RandomObject>& others) const {
-        types::Snapshot scene = sceneOf(others);
+        types::Snapshot scene = makeScene(others);
         scene.water_surface = water_surface;
         scene.targets = targets;
         return scene;
     }
 
-    static types::Snapshot sceneOf(const std::vector<RandomObject>& objects) {
+    static types::Snapshot makeScene(const std::vector<RandomObject>& objects) {
         auto geometry = std::make_shared<types::Geometry>();
         std::vector<types::Mesh> meshes;
         for (const RandomObject& object : objects) {
@@ -89,7 +89,7 @@ struct RandomSonar {
         }
         if (objects.empty()) geometry = std::make_shared<types::Geometry>(*openWater());
         if (!objects.empty()) geometry->meshes = std::move(meshes);
-        return snapshotOf(std::move(geometry));
+        return makeSnapshot(std::move(geometry));
     }
 };
 
@@ -109,7 +109,7 @@ public:
         if (!task.configure() || !task.start()) throw std::runtime_error(task.lastError());
     }
     /** Returns the pings of a scene that stands still, of a scanning sonar those from its left limit to the right. */
-    std::vector<types::Sonar> pingsOf(types::Snapshot scene) {
+    std::vector<types::Sonar> getPings(types::Snapshot scene) {
         std::vector<types::Sonar> pings;
         for (int k = 0; k < pings_; ++k) {
             scene.time.microseconds += 1'000'000;
@@ -144,13 +144,13 @@ private:
 };
 
 /** Returns the bins of all pings, one after the other. */
-inline std::vector<float> binsOf(const std::vector<types::Sonar>& pings) {
+inline std::vector<float> getBins(const std::vector<types::Sonar>& pings) {
     std::vector<float> bins;
     for (const types::Sonar& ping : pings) bins.insert(bins.end(), ping.bins.begin(), ping.bins.end());
     return bins;
 }
-inline std::vector<float> binsOf(const RandomSonar& one, const types::Snapshot& scene, int threads = 2) {
-    return binsOf(SonarBench(one, threads).pingsOf(scene));
+inline std::vector<float> getBins(const RandomSonar& one, const types::Snapshot& scene, int threads = 2) {
+    return getBins(SonarBench(one, threads).getPings(scene));
 }
 
 namespace random_sonars {

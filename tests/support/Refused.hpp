@@ -7,17 +7,17 @@
 
 namespace insonify::test {
 
-inline std::vector<std::string> textsOf(const types::Diagnostics& diagnostics) {
+inline std::vector<std::string> getTexts(const types::Diagnostics& diagnostics) {
     std::vector<std::string> texts;
     for (const types::Diagnostic& diagnostic : diagnostics) texts.push_back(diagnostic.text());
     return texts;
 }
 
 /** Returns the texts of the diagnostics that check() of a configuration or task reports. */
-std::vector<std::string> refusalsOf(const auto& checked) {
+std::vector<std::string> countRefusals(const auto& checked) {
     types::Diagnostics diagnostics;
     checked.check(diagnostics);
-    return textsOf(diagnostics);
+    return getTexts(diagnostics);
 }
 
 /** Returns the texts of the types::ConfigError that a call throws; empty if it throws none. */
@@ -25,14 +25,14 @@ std::vector<std::string> refused(auto&& call) {
     try {
         call();
     } catch (const types::ConfigError& error) {
-        return textsOf(error.diagnostics());
+        return getTexts(error.diagnostics());
     }
     return {};
 }
 
 /** Returns the message of the `Error` that a call throws; empty if it throws none. */
 template <class Error, class Call>
-std::string errorOf(Call&& call) {
+std::string computeError(Call&& call) {
     try {
         call();
     } catch (const Error& error) {

@@ -34,12 +34,12 @@ constexpr Plain plain_types[] = {{types::ROS_TYPE_FLOAT, "float32", 4}, {types::
                                  {types::ROS_TYPE_UINT8, "uint8", 1},   {types::ROS_TYPE_INT32, "int32", 4},
                                  {types::ROS_TYPE_UINT32, "uint32", 4}, {types::ROS_TYPE_INT64, "int64", 8}};
 
-const Plain* plainOf(const types::MessageMember& member) {
+const Plain* findPlain(const types::MessageMember& member) {
     const auto* found = std::ranges::find(plain_types, member.type_id_, &Plain::id);
     return found == std::end(plain_types) ? nullptr : found;
 }
 
-const types::MessageMembers& membersOf(const rosidl_message_type_support_t* support) {
+const types::MessageMembers& getMembers(const rosidl_message_type_support_t* support) {
     return *static_cast<const types::MessageMembers*>(support->data);
 }
 
@@ -66,11 +66,11 @@ struct Cdr {
     }
     void one(const types::MessageMember& member, void* value) {
         if (member.type_id_ == types::ROS_TYPE_MESSAGE)
-            message(membersOf(member.members_), value);
+            message(getMembers(member.members_), value);
         else if (member.type_id_ == types::ROS_TYPE_STRING)
             text(*static_cast<std::string*>(value));
         else
-            plain(value, plainOf(member)->size);
+            plain(value, findPlain(member)->size);
     }
     void message(const types::MessageMembers& members, void* value) {
         for (uint32_t i = 0; i < members.member_count_; ++i) {
@@ -89,20 +89,20 @@ struct Cdr {
 };
 
 /** "std_msgs/Header" */
-std::string nameOf(const types::MessageMembers& members) {
+std::string getName(const types::MessageMembers& members) {
     const std::string space = members.message_namespace_;
     return space.substr(0, space.find("::")) + "/" + members.message_name_;
 }
 
 template <class Message>
 void pass(const std::filesystem::path& folder, Message& message) {
-    const auto& members = membersOf(types::get_message_type_support_handle<Message>());
-    std::cout << nameOf(members) << '\n';
+    const auto& members = getMembers(types::get_message_type_support_handle<Message>());
+    std::cout << getName(members) << '\n';
     for (uint32_t i = 0; i < members.member_count_; ++i) {
         const types::MessageMember& member = members.members_[i];
-        const std::string type = member.type_id_ == types::ROS_TYPE_MESSAGE  ? nameOf(membersOf(member.members_))
+        const std::string type = member.type_id_ == types::ROS_TYPE_MESSAGE  ? getName(getMembers(member.members_))
                                  : member.type_id_ == types::ROS_TYPE_STRING ? "string"
-                                                                             : plainOf(member)->name;
+                                                                             : findPlain(member)->name;
         const bool is_sequence = member.is_array_ && member.array_size_ == 0 && !member.is_upper_bound_;
         std::cout << type << (is_sequence ? "[]" : member.is_array_ ? "[?]" : "") << ' ' << member.name_ << '\n';
     }

@@ -9,7 +9,7 @@
 namespace insonify::test {
 
 using study::disc;
-using study::meshOf;
+using study::getMesh;
 using study::quad;
 using study::sphere;
 
@@ -22,8 +22,8 @@ inline types::Mesh ground(float z, float size = 1000) {
 inline types::Mesh wall(float distance) { return quad({distance, -100, -100}, {0, 200, 0}, {0, 0, 200}); }
 
 /** One object for each mesh, at `positions` (or the origin), all of one material of lambert_db `mu_db`. */
-inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, float mu_db = 0,
-                                  std::vector<glm::dvec3> positions = {}) {
+inline types::GeometryPtr makeScene(std::vector<types::Mesh> meshes, float mu_db = 0,
+                                    std::vector<glm::dvec3> positions = {}) {
     auto geometry = std::make_shared<types::Geometry>();
     types::Material material;
     material.lambert_db = mu_db;
@@ -39,11 +39,11 @@ inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, float mu_db =
 }
 
 /** A scene without an echo for a sonar near the origin. */
-inline types::GeometryPtr openWater() { return sceneOf({disc(1, 0.1f)}, 0, {{-500, 0, 0}}); }
+inline types::GeometryPtr openWater() { return makeScene({disc(1, 0.1f)}, 0, {{-500, 0, 0}}); }
 
 /** A sonar at `position`, turned by yaw, pitch, roll [rad] (R = Rz Ry Rx). */
-inline types::Snapshot snapshotOf(types::GeometryPtr geometry, glm::dvec3 position = {}, double yaw = 0,
-                                  double pitch = 0, double roll = 0) {
+inline types::Snapshot makeSnapshot(types::GeometryPtr geometry, glm::dvec3 position = {}, double yaw = 0,
+                                    double pitch = 0, double roll = 0) {
     types::Snapshot snapshot;
     snapshot.time = {1'000'000};
     snapshot.sonar.position = position;

@@ -17,7 +17,7 @@ struct Fan {
 };
 
 /** A sonar in water of 1000 m/s, where a bin of 0.1 m lasts 100 us. */
-inline sonar::SonarConfig sonarOf(const Fan& fan) {
+inline sonar::SonarConfig getSonar(const Fan& fan) {
     sonar::SonarConfig config;
     config.speed_of_sound = 1000;
     config.range = fan.bin * fan.bins;
@@ -31,8 +31,8 @@ inline sonar::SonarConfig sonarOf(const Fan& fan) {
 }
 
 /** Returns the first ping of a sonar. */
-inline types::Sonar pingOf(const sonar::SonarConfig& config, const types::Snapshot& snapshot,
-                           const sonar::RenderOptions& options = {}) {
+inline types::Sonar makePing(const sonar::SonarConfig& config, const types::Snapshot& snapshot,
+                             const sonar::RenderOptions& options = {}) {
     sonar::SonarRenderer renderer(config, snapshot.geometry, options);
     types::Sonar ping;
     renderer.render(snapshot, ping);

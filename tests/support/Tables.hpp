@@ -25,7 +25,7 @@ struct Table {
 inline double wrappedDeg(double degrees) { return std::remainder(degrees, 360); }
 
 /** One table of each kind, all ahead except those across the seam and all around. */
-inline std::vector<Table> tablesOf(std::mt19937& random) {
+inline std::vector<Table> drawTables(std::mt19937& random) {
     const auto between = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };

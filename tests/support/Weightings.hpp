@@ -6,7 +6,7 @@
 
 namespace insonify::test {
 
-inline acoustics::BeamLaw lawOf(acoustics::Weighting weighting, double width_deg) {
+inline acoustics::BeamLaw getLaw(acoustics::Weighting weighting, double width_deg) {
     acoustics::BeamLaw law;
     law.weighting = weighting;
     law.width_deg = width_deg;

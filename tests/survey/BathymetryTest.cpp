@@ -78,8 +78,8 @@ struct BathymetryTest : testing::Test {
                                          columns, rows, east, north, spacing));
         return write(name + ".flt", {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
     }
-    /** Value of a tile's map at a vertex, bilinear: by `valueOf(texel)`. */
-    static double mapAt(const types::Mesh& mesh, size_t vertex, auto&& valueOf) {
+    /** Value of a tile's map at a vertex, bilinear: by `getValue(texel)`. */
+    static double mapAt(const types::Mesh& mesh, size_t vertex, auto&& getValue) {
         const types::SurfaceMap& map = *mesh.maps.at(0).map;
         const glm::vec2 at = mesh.map_uvs[vertex] * glm::vec2(map.width, map.height) - 0.5f, low = glm::floor(at),
                         share = at - low;
@@ -88,7 +88,7 @@ struct BathymetryTest : testing::Test {
             const int x = std::clamp(static_cast<int>(low.x) + (corner & 1), 0, map.width - 1),
                       y = std::clamp(static_cast<int>(low.y) + (corner >> 1), 0, map.height - 1);
             const double weight = (corner & 1 ? share.x : 1 - share.x) * (corner & 2 ? share.y : 1 - share.y);
-            if (weight > 1e-4) sum += weight * valueOf(map, static_cast<size_t>(y * map.width + x));
+            if (weight > 1e-4) sum += weight * getValue(map, static_cast<size_t>(y * map.width + x));
         }
         return sum;
     }
@@ -113,7 +113,7 @@ struct BathymetryTest : testing::Test {
 };
 
 /** Positions of all tiles. */
-std::vector<glm::vec3> positionsOf(const types::Geometry& geometry) {
+std::vector<glm::vec3> getPositions(const types::Geometry& geometry) {
     std::vector<glm::vec3> positions;
     for (const types::Mesh& mesh : geometry.meshes)
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
@@ -130,7 +130,7 @@ TEST_F(BathymetryTest, AFloorFarFromTheOriginHasTheShapeOfOneNearIt) {
     const types::GeometryPtr there = about(far_off, place + far);
     ASSERT_EQ(here->objects.size(), there->objects.size());
     for (size_t i = 0; i < here->objects.size(); ++i) {
-        const auto worldOf = [i](const types::Geometry& geometry, size_t vertex) {
+        const auto getWorld = [i](const types::Geometry& geometry, size_t vertex) {
             const types::Object& object = geometry.objects[i];
             const glm::vec3 position = geometry.meshes.at(static_cast<size_t>(object.mesh)).positions.at(vertex);
             EXPECT_LT(glm::length(glm::dvec2(position)), 8192) << "32 bits resolve it";
@@ -139,7 +139,7 @@ TEST_F(BathymetryTest, AFloorFarFromTheOriginHasTheShapeOfOneNearIt) {
         const size_t count = here->meshes.at(static_cast<size_t>(here->objects[i].mesh)).positions.size();
         ASSERT_EQ(count, there->meshes.at(static_cast<size_t>(there->objects[i].mesh)).positions.size());
         for (size_t vertex = 0; vertex < count; ++vertex)
-            ASSERT_LT(glm::distance(worldOf(*there, vertex) - far, worldOf(*here, vertex)), 1e-3);
+            ASSERT_LT(glm::distance(getWorld(*there, vertex) - far, getWorld(*here, vertex)), 1e-3);
     }
 }
 
@@ -202,7 +202,7 @@ TEST_F(BathymetryTest, TheFloorDoesNotDependOnTheVehiclesSpeed) {
             Bathymetry fresh(config_, file);
             floor.forget();
             const types::GeometryPtr geometry = about(floor, {way, -way, -40});
-            ASSERT_EQ(positionsOf(*geometry), positionsOf(*about(fresh, {way, -way, -40}))) << way;
+            ASSERT_EQ(getPositions(*geometry), getPositions(*about(fresh, {way, -way, -40}))) << way;
             if (step < 1) way += 5;
         }
     }
@@ -217,7 +217,7 @@ TEST_F(BathymetryTest, TheFloorCoversTheReachAndAtMostTwoTilesMore) {
         const types::GeometryPtr geometry = about(floor, place);
         made += geometry != before;
         before = geometry;
-        const types::Extent extent = types::extentOf(*geometry);
+        const types::Extent extent = types::getExtent(*geometry);
         for (int axis : {0, 1}) {
             const glm::dvec2 ends = axis == 0 ? glm::dvec2(0, 398) : glm::dvec2(-398, 0);
             EXPECT_LE(extent.low[axis], std::max(place[axis] - 20, ends.x) + 1e-9);
@@ -244,8 +244,8 @@ TEST_F(BathymetryTest, AForgottenFloorFollowsFromThePlaceAlone) {
     const types::GeometryPtr kept = about(floor, {89.9, -200, -40});
     floor.forget();
     const types::GeometryPtr anew = about(floor, {89.9, -200, -40});
-    EXPECT_EQ(positionsOf(*anew), positionsOf(*about(fresh, {89.9, -200, -40})));
-    EXPECT_NE(positionsOf(*anew), positionsOf(*kept)) << "places chosen so that it matters";
+    EXPECT_EQ(getPositions(*anew), getPositions(*about(fresh, {89.9, -200, -40})));
+    EXPECT_NE(getPositions(*anew), getPositions(*kept)) << "places chosen so that it matters";
 }
 
 TEST_F(BathymetryTest, TheDefaultOriginIsTheMiddleOfTheSurvey) {
@@ -253,13 +253,13 @@ TEST_F(BathymetryTest, TheDefaultOriginIsTheMiddleOfTheSurvey) {
     Bathymetry floor(config_, grid("floor", 61, 41));
     config_.easting = 1060, config_.northing = 5040;
     Bathymetry same(config_, grid("floor", 61, 41));
-    EXPECT_EQ(positionsOf(*about(floor, {0, 0, 0})), positionsOf(*about(same, {0, 0, 0})));
+    EXPECT_EQ(getPositions(*about(floor, {0, 0, 0})), getPositions(*about(same, {0, 0, 0})));
 }
 
 TEST_F(BathymetryTest, DepthsGoDown) {
     config_.positive_down = true;
     Bathymetry floor(config_, grid("floor", 30, 30));
-    for (const glm::vec3& p : positionsOf(*about(floor, {20, -20, 0})))
+    for (const glm::vec3& p : getPositions(*about(floor, {20, -20, 0})))
         EXPECT_NEAR(p.z, -elevation(1000 - p.y, 5000 + p.x), 2e-5);
 }
 
@@ -291,10 +291,10 @@ TEST_F(BathymetryTest, TheFilesOfAMosaicAreOneFloor) {
               "</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\">" +
                   sources + "</VRTRasterBand></VRTDataset>");
     Bathymetry floor(config_, grid("whole", 60, 40)), tiled(config_, mosaic);
-    EXPECT_EQ(positionsOf(*about(tiled, {40, -60, 0})), positionsOf(*about(floor, {40, -60, 0})));
+    EXPECT_EQ(getPositions(*about(tiled, {40, -60, 0})), getPositions(*about(floor, {40, -60, 0})));
     // A mosaic whose tiles are elsewhere could show any file.
     fs::create_directory(folder_ / "apart");
-    const std::vector<char> bytes = bytesOf(mosaic);
+    const std::vector<char> bytes = toBytes(mosaic);
     std::string text(bytes.begin(), bytes.end());
     for (const char* tile : {"\">west", "\">east"}) text.insert(text.find(tile) + 2, "../");
     EXPECT_THAT(test::refused([&] { Bathymetry(config_, write("apart/mosaic.vrt", text)); }),
@@ -377,7 +377,7 @@ TEST_F(BathymetryTest, AWrongMosaicIsReportedAtItsKey) {
     const auto refusals = [&] {
         SceneTask task("scene");
         task.config.set(config);
-        return test::refusalsOf(task);
+        return test::countRefusals(task);
     };
     EXPECT_THAT(refusals(),
                 testing::Contains(testing::AllOf(HasSubstr("bathymetry.map.file"), HasSubstr("is not there"))));
@@ -468,10 +468,10 @@ TEST_F(BathymetryTest, TheFloorHasTheConfiguredMaterialAndAWrongNameIsReported) 
     config.materials["bathymetry"].lambert_db = -27;
     SceneTask task("scene");
     task.config.set(config);
-    EXPECT_THAT(test::refusalsOf(task), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(task), testing::IsEmpty());
     config.materials["bathimetry"].lambert_db = -20;
     task.config.set(config);
-    EXPECT_THAT(test::refusalsOf(task), testing::ElementsAre(HasSubstr("did you mean bathymetry?")));
+    EXPECT_THAT(test::countRefusals(task), testing::ElementsAre(HasSubstr("did you mean bathymetry?")));
 }
 
 }  // namespace

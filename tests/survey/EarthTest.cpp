@@ -104,7 +104,7 @@ struct EarthTest : testing::Test {
         return count;
     }
     std::string refusal(const std::string& file, const types::Datum& datum) {
-        return test::errorOf<types::ConfigError>([&] { Bathymetry(config_, file, {}, datum); });
+        return test::computeError<types::ConfigError>([&] { Bathymetry(config_, file, {}, datum); });
     }
 
     Folder folder_;
@@ -167,7 +167,7 @@ TEST_F(EarthTest, AMapInDegreesIsReadAboutADatum) {
     const Chart pacific{4326, {190.2, -20}, {1.0 / 21'600, 1.0 / 21'600}};  // some count longitudes from 0 to 360
     const auto turned = [](const types::Datum& at) { return glm::dvec2(at.longitude_deg + 360, at.latitude_deg); };
     EXPECT_GT(check(pacific, {-20, -169.8, 0}, {}, turned), 3'600u);
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { Bathymetry(config_, write(chart)); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { Bathymetry(config_, write(chart)); }),
                 HasSubstr("is in degrees; give the deployment a datum"));
 }
 
@@ -246,7 +246,7 @@ TEST_F(EarthTest, ASceneHasOneZero) {
     const auto refusals = [&] {
         SceneTask task("scene");
         task.config.set(config);
-        return test::refusalsOf(task);
+        return test::countRefusals(task);
     };
     EXPECT_THAT(refusals(), testing::IsEmpty());
     config.bathymetry->easting = config.bathymetry->northing = 1;

@@ -13,7 +13,7 @@ using test::emptyPing;
 using testing::ElementsAre;
 
 Sonar pingAt(const std::vector<double>& bearings_deg, double width_deg) {
-    Sonar ping = test::pingOf(static_cast<uint32_t>(bearings_deg.size()), 1);
+    Sonar ping = test::makePing(static_cast<uint32_t>(bearings_deg.size()), 1);
     for (size_t i = 0; i < bearings_deg.size(); ++i) ping.bearings[i] = Angle::fromDeg(bearings_deg[i]);
     ping.beam_width = Angle::fromDeg(width_deg);
     return ping;

@@ -22,7 +22,7 @@ using testing::StartsWith;
 template <int a, int b>
 constexpr int sum = a + b;
 
-std::string failure(const auto& check) { return test::errorOf<CheckFailure>(check); }
+std::string failure(const auto& check) { return test::computeError<CheckFailure>(check); }
 
 TEST(CheckTest, AFailureSaysPlaceConditionAndValues) {
     const size_t bin = 50, bins = 40;

@@ -11,18 +11,19 @@ using ::testing::ElementsAre;
 
 const std::vector<CsvColumn> columns{{"time"}, {"level_db", -10, 0}};
 
-std::vector<std::vector<double>> rowsOf(const std::string& text, size_t minimum = 1,
-                                        const CsvValidator& validate = {}) {
+std::vector<std::vector<double>> getRows(const std::string& text, size_t minimum = 1,
+                                         const CsvValidator& validate = {}) {
     const Folder folder;
     std::ofstream(folder / "a.csv", std::ios::binary) << text;
     return readCsv(folder / "a.csv", columns, minimum, validate);
 }
 
 /** Returns "line:column: path: message" of each diagnostic. */
-std::vector<std::string> diagnosticsOf(const std::string& text, size_t minimum = 1, const CsvValidator& validate = {}) {
+std::vector<std::string> findDiagnostics(const std::string& text, size_t minimum = 1,
+                                         const CsvValidator& validate = {}) {
     std::vector<std::string> diagnostics;
     try {
-        rowsOf(text, minimum, validate);
+        getRows(text, minimum, validate);
     } catch (const ConfigError& error) {
         for (Diagnostic diagnostic : error.diagnostics()) {
             diagnostic.file.clear();
@@ -34,20 +35,21 @@ std::vector<std::string> diagnosticsOf(const std::string& text, size_t minimum =
 }
 
 TEST(CsvTest, RowsAreNumbersWithAnySpacing) {
-    EXPECT_THAT(rowsOf("\xEF\xBB\xBFtime,level_db\r\n0,-1\r\n\r\n 1.5 ,-2e0"),
+    EXPECT_THAT(getRows("\xEF\xBB\xBFtime,level_db\r\n0,-1\r\n\r\n 1.5 ,-2e0"),
                 ElementsAre(ElementsAre(0, -1), ElementsAre(1.5, -2)));
 }
 
 TEST(CsvTest, ReportsErrorsWithTheirPlace) {
     EXPECT_THAT(
-        diagnosticsOf("time,level_db\n0,-1\n1\n2,-3,4\nnan,5\n"),
+        findDiagnostics("time,level_db\n0,-1\n1\n2,-3,4\nnan,5\n"),
         ElementsAre("3:2: level_db: is missing; a line has 2 fields", "4:6: : has too many fields; a line has 2",
                     "5:1: time: is 'nan'; it must be a finite number",
                     "5:5: level_db: is '5'; it must be a number from -10 to 0"));
-    EXPECT_THAT(diagnosticsOf(""), ElementsAre("0:1: : is empty; it must start with the header time,level_db"));
-    EXPECT_THAT(diagnosticsOf("t,level\n0,0\n"), ElementsAre("1:1: : is 't,level'; the header must be time,level_db"));
-    EXPECT_THAT(diagnosticsOf("time\n0\n1\n"), ElementsAre("1:1: : is 'time'; the header must be time,level_db"));
-    EXPECT_THAT(diagnosticsOf("time,level_db\n0,0\n", 2),
+    EXPECT_THAT(findDiagnostics(""), ElementsAre("0:1: : is empty; it must start with the header time,level_db"));
+    EXPECT_THAT(findDiagnostics("t,level\n0,0\n"),
+                ElementsAre("1:1: : is 't,level'; the header must be time,level_db"));
+    EXPECT_THAT(findDiagnostics("time\n0\n1\n"), ElementsAre("1:1: : is 'time'; the header must be time,level_db"));
+    EXPECT_THAT(findDiagnostics("time,level_db\n0,0\n", 2),
                 ElementsAre("2:1: : has 1 lines after its header; it needs at least 2"));
     EXPECT_THROW(readCsv("nowhere.csv", columns, 1), ConfigError);
     EXPECT_THROW(readCsv(".", columns, 1), ConfigError);
@@ -71,7 +73,7 @@ TEST(CsvTest, TheCheckGetsEachRowAndThePreviousRow) {
         return before && row[0] <= before->front() ? std::vector<CsvDiagnostic>{{0, "must increase"}}
                                                    : std::vector<CsvDiagnostic>{};
     };
-    EXPECT_THAT(diagnosticsOf("time,level_db\n1,0\n2,0\n2,0\nx,0\n 1,0\n", 1, ascends),
+    EXPECT_THAT(findDiagnostics("time,level_db\n1,0\n2,0\n2,0\nx,0\n 1,0\n", 1, ascends),
                 ElementsAre("4:1: time: must increase", "5:1: time: is 'x'; it must be a finite number",
                             "6:1: time: must increase"));
 }

@@ -114,9 +114,9 @@ TEST(DatumTextTest, ADatumIsWrittenAndComparedAsAPlace) {
     EXPECT_TRUE(isSamePlace({54, 10, 3}, {54 + 1e-10, 10, 3}));
     for (const Datum& other : {Datum{54.00001, 10, 3}, {54, 10.00001, 3}, {54, 10, 3.01}, {54, NAN, 3}})
         EXPECT_FALSE(isSamePlace({54, 10, 3}, other)) << text(other);
-    EXPECT_THAT(test::refusalsOf(Datum{}),
+    EXPECT_THAT(test::countRefusals(Datum{}),
                 testing::ElementsAre(HasSubstr("latitude_deg: is missing"), HasSubstr("longitude_deg: is missing")));
-    EXPECT_THAT(test::refusalsOf(Datum{54, NAN}), testing::ElementsAre(HasSubstr("longitude_deg: is missing")));
+    EXPECT_THAT(test::countRefusals(Datum{54, NAN}), testing::ElementsAre(HasSubstr("longitude_deg: is missing")));
 }
 
 }  // namespace

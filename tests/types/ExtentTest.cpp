@@ -26,13 +26,13 @@ Snapshot twoSquares() {
 
 TEST(ExtentTest, ABoxContainsThePlacedVerticesOfTheTriangles) {
     Snapshot snapshot = twoSquares();
-    EXPECT_EQ(extentOf(*snapshot.geometry).low, glm::dvec3(0));
-    EXPECT_EQ(extentOf(*snapshot.geometry).high, glm::dvec3(11, 1, 0));
+    EXPECT_EQ(getExtent(*snapshot.geometry).low, glm::dvec3(0));
+    EXPECT_EQ(getExtent(*snapshot.geometry).high, glm::dvec3(11, 1, 0));
     snapshot.moved.push_back({1, glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -5))});
-    EXPECT_EQ(extentOf(snapshot).low, glm::dvec3(0, 0, -5));
-    EXPECT_EQ(extentOf(snapshot).high, glm::dvec3(1, 1, 0));
-    EXPECT_TRUE(extentOf(Geometry()).isEmpty());
-    EXPECT_EQ(extentOf(Geometry()).size(), glm::dvec3(0));
+    EXPECT_EQ(getExtent(snapshot).low, glm::dvec3(0, 0, -5));
+    EXPECT_EQ(getExtent(snapshot).high, glm::dvec3(1, 1, 0));
+    EXPECT_TRUE(getExtent(Geometry()).isEmpty());
+    EXPECT_EQ(getExtent(Geometry()).size(), glm::dvec3(0));
 }
 
 TEST(ExtentTest, TheNearestPointIsOnAFaceAnEdgeOrACorner) {
@@ -58,8 +58,8 @@ TEST(ExtentTest, MeshesThatDeformAreAsPosed) {
     geometry->meshes[0] = test::jointed(geometry->meshes[0]);
     snapshot.geometry = geometry;
     test::pose(snapshot, 1, glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 7)));
-    EXPECT_EQ(extentOf(snapshot).low, glm::dvec3(0));
-    EXPECT_EQ(extentOf(snapshot).high, glm::dvec3(11, 1, 7));
+    EXPECT_EQ(getExtent(snapshot).low, glm::dvec3(0));
+    EXPECT_EQ(getExtent(snapshot).high, glm::dvec3(11, 1, 7));
     const NearestPoint nearest = nearestPoint(snapshot, {10.5, 0.5, 9});
     EXPECT_NEAR(nearest.distance, 2, 1e-6);
     EXPECT_EQ(nearest.object, 1u);

@@ -16,7 +16,7 @@ std::string reasonFor(auto act) {
     try {
         act();
     } catch (const std::exception& failure) {
-        return reasonOf(failure);
+        return getReason(failure);
     }
     return "nothing was thrown";
 }
@@ -41,7 +41,7 @@ TEST(ReasonTest, ReplacesTextsOfTheStandardLibrary) {
 TEST(ReasonTest, KeepsASentence) {
     for (const char* text : {"range: is -3; must be positive", "stop: sonar::SonarTask has no such port", "",
                              "store.log: No space left on device", "out of paper"})
-        EXPECT_EQ(reasonOf(std::runtime_error(text)), text);
+        EXPECT_EQ(getReason(std::runtime_error(text)), text);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace insonify::types {
 namespace {
 
-SonarScan scanOf(std::vector<uint8_t> data, uint16_t beams, uint16_t bins) {
+SonarScan makeScan(std::vector<uint8_t> data, uint16_t beams, uint16_t bins) {
     SonarScan scan;
     scan.time = {5};
     scan.data = std::move(data);
@@ -19,7 +19,7 @@ SonarScan scanOf(std::vector<uint8_t> data, uint16_t beams, uint16_t bins) {
 }
 
 TEST(SonarScanTest, BearingsOfAScanDecreaseFromPortToStarboard) {
-    const Sonar ping = toSonar(scanOf({0, 51, 255}, 3, 1));
+    const Sonar ping = toSonar(makeScan({0, 51, 255}, 3, 1));
     std::vector<double> degrees;
     for (const Angle& bearing : ping.bearings) degrees.push_back(bearing.deg());
     EXPECT_THAT(degrees, testing::ElementsAre(testing::DoubleNear(30, 1e-12), testing::DoubleNear(0, 1e-12),
@@ -30,15 +30,15 @@ TEST(SonarScanTest, BearingsOfAScanDecreaseFromPortToStarboard) {
 }
 
 TEST(SonarScanTest, EitherMemoryLayoutGivesTheSamePing) {
-    SonarScan columns = scanOf({0, 255, 51, 0, 0, 51}, 2, 3);
-    SonarScan rows = scanOf({0, 51, 0, 255, 0, 51}, 2, 3);
+    SonarScan columns = makeScan({0, 255, 51, 0, 0, 51}, 2, 3);
+    SonarScan rows = makeScan({0, 51, 0, 255, 0, 51}, 2, 3);
     rows.memory_layout_column = false;
     EXPECT_EQ(toSonar(columns).bins, toSonar(rows).bins);
     EXPECT_THAT(toSonar(rows).bins, testing::ElementsAre(0, 0.2f, 0, 1, 0, 0.2f));
 }
 
 TEST(SonarScanTest, ABeamThatIsNotSetIsUnknown) {
-    SonarScan scan = scanOf({255, 255}, 2, 1);
+    SonarScan scan = makeScan({255, 255}, 2, 1);
     scan.time_beams = {{4}, {}};
     const Sonar ping = toSonar(scan);
     EXPECT_THAT(ping.bins, testing::ElementsAre(1, testing::IsNan()));
@@ -46,12 +46,12 @@ TEST(SonarScanTest, ABeamThatIsNotSetIsUnknown) {
 }
 
 TEST(SonarScanTest, RejectsInvalidScans) {
-    SonarScan scan = scanOf({1, 2, 3}, 2, 2);
+    SonarScan scan = makeScan({1, 2, 3}, 2, 2);
     EXPECT_THROW(toSonar(scan), std::logic_error);
-    scan = scanOf({1, 2}, 2, 1);
+    scan = makeScan({1, 2}, 2, 1);
     scan.polar_coordinates = false;
     EXPECT_THROW(toSonar(scan), std::logic_error);
-    scan = scanOf({1, 2}, 2, 1);
+    scan = makeScan({1, 2}, 2, 1);
     scan.sampling_interval = -1;
     EXPECT_THROW(toSonar(scan), std::logic_error);
 }

@@ -19,8 +19,8 @@ Sonar ping(uint32_t bins, uint32_t beams) {
     return sample;
 }
 
-std::string diagnosticOf(const Sonar& sample) {
-    return test::errorOf<std::logic_error>([&] { sample.validate(); });
+std::string findDiagnostic(const Sonar& sample) {
+    return test::computeError<std::logic_error>([&] { sample.validate(); });
 }
 
 TEST(SonarTest, BinsStartAtOneWayTimeTimesSpeed) {
@@ -40,7 +40,7 @@ TEST(SonarTest, AResizedPingKeepsEachValueWithItsBeamAndBin) {
     sample.resize(1, 2, true);
     EXPECT_THAT(sample.bins, testing::ElementsAre(1, 3));
     EXPECT_THAT(sample.timestamps, testing::ElementsAre(Time{}, Time{}));
-    EXPECT_EQ(diagnosticOf(sample), "");
+    EXPECT_EQ(findDiagnostic(sample), "");
 }
 
 TEST(SonarTest, RegularBearingsAreExactAndNormalised) {
@@ -49,7 +49,7 @@ TEST(SonarTest, RegularBearingsAreExactAndNormalised) {
     sample.setRegularBearings(Angle::fromRad(0), {step});
     EXPECT_EQ(sample.bearings.at(100).rad, 100 * step);
     EXPECT_NEAR(sample.bearings.at(511).rad, -step, 1e-15);
-    EXPECT_EQ(diagnosticOf(sample), "");
+    EXPECT_EQ(findDiagnostic(sample), "");
 }
 
 TEST(SonarTest, ABeamStartsAtItsOwnTimeOrAtThatOfThePing) {
@@ -62,8 +62,8 @@ TEST(SonarTest, ABeamStartsAtItsOwnTimeOrAtThatOfThePing) {
 }
 
 TEST(SonarTest, ValidationReportsEveryError) {
-    EXPECT_EQ(diagnosticOf(Sonar{}), "") << "empty, as in Rock";
-    EXPECT_EQ(diagnosticOf(ping(4, 3)), "") << "unknown bearings";
+    EXPECT_EQ(findDiagnostic(Sonar{}), "") << "empty, as in Rock";
+    EXPECT_EQ(findDiagnostic(ping(4, 3)), "") << "unknown bearings";
     Sonar sample = ping(4, 3);
     sample.bins.pop_back();
     sample.bearings[0] = {4};
@@ -72,7 +72,7 @@ TEST(SonarTest, ValidationReportsEveryError) {
     sample.speed_of_sound = nan;
     EXPECT_FALSE(sample.wellShaped());
     EXPECT_EQ(
-        diagnosticOf(sample),
+        findDiagnostic(sample),
         "a ping has 11 bins, must have 12; has 1 timestamps, must have 3 or none; has a bearing outside (-pi, pi]; "
         "has bins without a duration; has bins without a speed of sound");
 }
@@ -83,7 +83,7 @@ TEST(SonarTest, RejectsCountsWhoseProductOverflows) {
     sample.beam_count = 1u << 16;  // 2^32 bins: 0 in 32 bits
     sample.bearings.resize(sample.beam_count);
     EXPECT_FALSE(sample.wellShaped());
-    EXPECT_EQ(diagnosticOf(sample), "a ping has 0 bins, must have 4294967296");
+    EXPECT_EQ(findDiagnostic(sample), "a ping has 0 bins, must have 4294967296");
 }
 
 }  // namespace

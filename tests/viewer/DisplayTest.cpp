@@ -29,7 +29,7 @@ struct DisplayTest : PageTest {
         return value(byId(button) + ".getAttribute('aria-pressed') === 'true' && " + byId(button) +
                      ".classList.contains('on')");
     }
-    std::string styleOf(const std::string& selector, const std::string& style) {
+    std::string getStyle(const std::string& selector, const std::string& style) {
         return value("getComputedStyle(document.querySelector('" + selector + "'))['" + style + "']");
     }
     void reload() {
@@ -43,15 +43,15 @@ const char* const every_message = "true";
 TEST_F(DisplayTest, APageWithoutPingsDoesNotLookLive) {
     EXPECT_EQ(value(byId("silence") + ".hidden"), true);
     EXPECT_TRUE(becomes("Number(" + byId("rate") + ".textContent) > 1"));
-    EXPECT_EQ(styleOf("#fan", "filter"), "none");
+    EXPECT_EQ(getStyle("#fan", "filter"), "none");
     passOnly("message.kind !== 1");
     ASSERT_TRUE(becomes("!" + byId("silence") + ".hidden"));
     EXPECT_THAT(text("silence"), MatchesRegex("no ping for [2-9] s"));
-    EXPECT_THAT(styleOf("#fan", "filter"), HasSubstr("brightness(0.4)")) << "the picture is dim";
-    EXPECT_THAT(styleOf("#view", "filter"), HasSubstr("brightness(0.4)"));
+    EXPECT_THAT(getStyle("#fan", "filter"), HasSubstr("brightness(0.4)")) << "the picture is dim";
+    EXPECT_THAT(getStyle("#view", "filter"), HasSubstr("brightness(0.4)"));
     EXPECT_EQ(text("rate"), "0.0");
     EXPECT_EQ(text("latency"), "-");
-    EXPECT_EQ(styleOf("#time", "color"), styleOf("header i", "color")) << "figures are gray";
+    EXPECT_EQ(getStyle("#time", "color"), getStyle("header i", "color")) << "figures are gray";
     EXPECT_EQ(value("document.querySelectorAll('#tasks .Running').length"), 3) << "statuses still come";
     EXPECT_EQ(text("alarm"), "no ping") << "for screen readers, once";
     EXPECT_THAT(value("document.title").get<std::string>(), HasSubstr("no pings"));
@@ -59,7 +59,7 @@ TEST_F(DisplayTest, APageWithoutPingsDoesNotLookLive) {
 
     passOnly(every_message);
     ASSERT_TRUE(becomes(byId("silence") + ".hidden"));
-    EXPECT_EQ(styleOf("#fan", "filter"), "none");
+    EXPECT_EQ(getStyle("#fan", "filter"), "none");
     EXPECT_TRUE(becomes("Number(" + byId("rate") + ".textContent) > 1"));
     EXPECT_EQ(value("document.title"), "Insonify");
     EXPECT_EQ(text("alarm"), "");
@@ -76,7 +76,7 @@ TEST_F(DisplayTest, APageWithoutStatusesKnowsNoStates) {
     EXPECT_THAT(value("[...document.querySelectorAll('#graph .small')].map((one) => one.textContent).join()"),
                 "unknown,unknown,unknown");
     ASSERT_TRUE(becomes("!" + byId("silence") + ".hidden"));
-    EXPECT_EQ(styleOf("#recorded", "animationName"), "none") << "it does not say that it records";
+    EXPECT_EQ(getStyle("#recorded", "animationName"), "none") << "it does not say that it records";
     passOnly(every_message);
     EXPECT_TRUE(becomes("document.querySelectorAll('#tasks .Running').length === 3"));
 }
@@ -85,7 +85,7 @@ TEST_F(DisplayTest, ALostConnectionIsShownOverThePicture) {
     running.reset();
     ASSERT_TRUE(becomes("/no connection for/.test(" + byId("silence") + ".textContent)"));
     EXPECT_THAT(text("silence"), MatchesRegex("no connection for [0-9]+ s, no ping for [0-9]+ s"));
-    EXPECT_THAT(styleOf("#fan", "filter"), HasSubstr("brightness"));
+    EXPECT_THAT(getStyle("#fan", "filter"), HasSubstr("brightness"));
     EXPECT_EQ(text("rate"), "0.0");
     EXPECT_TRUE(becomes("document.querySelectorAll('#tasks .Running').length === 0"));
 }
@@ -93,7 +93,7 @@ TEST_F(DisplayTest, ALostConnectionIsShownOverThePicture) {
 TEST_F(DisplayTest, APausedDeploymentIsNoAlarm) {
     click("pause");
     ASSERT_TRUE(becomes("/^paused, no ping for/.test(" + byId("silence") + ".textContent)"));
-    EXPECT_EQ(styleOf("#fan", "filter"), "none") << "it is looked at step by step";
+    EXPECT_EQ(getStyle("#fan", "filter"), "none") << "it is looked at step by step";
     EXPECT_EQ(text("rate"), "0.0");
     EXPECT_EQ(text("alarm"), "");
     EXPECT_EQ(value("document.title"), "Insonify");
@@ -299,10 +299,10 @@ TEST_F(DisplayTest, KeysAreListedAndWorkUnlessAFieldHasTheFocus) {
     EXPECT_TRUE(becomes("insonify.status().tasks[0].properties.record === true"));
 
     choose("task", "source");
-    browser->click(fieldOf("level"));
+    browser->click(getField("level"));
     browser->press("Control+a");
     browser->type("2g");
-    EXPECT_EQ(value(fieldOf("level") + ".value"), "2g");
+    EXPECT_EQ(value(getField("level") + ".value"), "2g");
     EXPECT_EQ(value(byId("rings") + ".checked"), false) << "a field takes its keys";
     browser->press("Escape");
     set("keys", "off");
@@ -366,12 +366,12 @@ TEST_F(DisplayTest, AnErrorInATableCanBeSelected) {
 
 TEST_F(DisplayTest, PropertiesThatNoRunningTaskTakesAreReadOnly) {
     choose("task", "source");
-    EXPECT_EQ(value(fieldOf("fixed") + ".readOnly"), true);
-    EXPECT_EQ(value(fieldOf("level") + ".readOnly"), false);
-    EXPECT_THAT(value(fieldOf("fixed") + ".closest('tr').title").get<std::string>(), HasSubstr("stopped"));
-    browser->click(fieldOf("fixed"));
+    EXPECT_EQ(value(getField("fixed") + ".readOnly"), true);
+    EXPECT_EQ(value(getField("level") + ".readOnly"), false);
+    EXPECT_THAT(value(getField("fixed") + ".closest('tr').title").get<std::string>(), HasSubstr("stopped"));
+    browser->click(getField("fixed"));
     browser->type("5");
-    EXPECT_EQ(value(fieldOf("fixed") + ".value"), "4");
+    EXPECT_EQ(value(getField("fixed") + ".value"), "4");
     choose("task", "viewer");
     EXPECT_EQ(value("[...document.querySelectorAll('#properties input, #properties select')].filter((one) => "
                     "!one.readOnly && !one.disabled).length"),

@@ -8,7 +8,7 @@
 namespace insonify::viewer {
 namespace {
 
-ros::Image pictureOf(const types::Sonar& ping) {
+ros::Image makePicture(const types::Sonar& ping) {
     ros::SonarOptions options;
     options.reference_db = 0;
     ros::Image message;
@@ -18,15 +18,15 @@ ros::Image pictureOf(const types::Sonar& ping) {
 
 TEST(FanPictureTest, ARandomFanIsDrawnLikeTheBeamsInAscendingOrder) {
     for (const test::RandomFan& fan : test::randomFans(2, 40))
-        EXPECT_EQ(pictureOf(fan.ping).data, pictureOf(fan.ascending).data) << fan.name;
+        EXPECT_EQ(makePicture(fan.ping).data, makePicture(fan.ascending).data) << fan.name;
 }
 
 TEST(FanPictureTest, AFanAcrossTheSeamIsBehindTheSonarAndGapsAreEmpty) {
-    types::Sonar ping = test::pingOf(5, 40);
+    types::Sonar ping = test::makePing(5, 40);
     const double bearings_deg[] = {-155, 160, 165, 170, -160};  // a gap from 172.5 to -162.5 degrees
     for (size_t beam = 0; beam < 5; ++beam) ping.bearings[beam] = types::Angle::fromDeg(bearings_deg[beam]);
     ping.beam_width = types::Angle::fromDeg(5);
-    const ros::Image picture = pictureOf(ping);
+    const ros::Image picture = makePicture(ping);
     // The sonar is at the middle of the upper edge, the range is the height.
     const double port = std::sin(types::radians(22.5)), starboard = std::sin(types::radians(27.5));
     const double middle = picture.width * port / (port + starboard);
@@ -45,9 +45,9 @@ TEST(FanPictureTest, AFanAcrossTheSeamIsBehindTheSonarAndGapsAreEmpty) {
 }
 
 TEST(FanPictureTest, APingWithoutKnownBearingsIsAnEmptyPicture) {
-    types::Sonar ping = test::pingOf(3, 40);
+    types::Sonar ping = test::makePing(3, 40);
     ping.bearings.assign(3, types::Angle{});
-    EXPECT_THAT(pictureOf(ping).data, testing::Each(0));
+    EXPECT_THAT(makePicture(ping).data, testing::Each(0));
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST(MessagesTest, RosbagsComputesTheSameHashesOfFoxglovesMessages) {
         const std::string number = std::to_string(count++);
         std::vector<char> bytes;
         ros::encode(message, bytes);
-        std::ofstream(folder / (number + ".msg")) << ros::schemaOf<T>();
+        std::ofstream(folder / (number + ".msg")) << ros::describeSchema<T>();
         std::ofstream(folder / (number + ".cdr")).write(bytes.data(), static_cast<int64_t>(bytes.size()));
         list << number << ' ' << T::type_name << ' ' << ros::typeHash<T>() << std::endl;
     };

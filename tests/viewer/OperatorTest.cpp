@@ -72,8 +72,8 @@ TEST_F(OperatorTest, ATargetStaysWhereItIsWhileTheVehicleMoves) {
     click("target");
     clickAt(10, 0);
     EXPECT_EQ(value("insonify.settings.targets.length"), 1) << "the tool is put away";
-    value("location.reload()");
-    ASSERT_TRUE(becomes("self.insonify?.settings.targets.length === 1 && !" + byId("marked") + ".hidden"));
+    value("self.is_old = true, location.reload()");
+    ASSERT_TRUE(becomes("!self.is_old && self.insonify?.settings.targets.length === 1 && !" + byId("marked") + ".hidden"));
     enter("document.querySelector('#targets input')", "wreck");
     EXPECT_TRUE(becomes("insonify.settings.targets[0].name === 'wreck'"));
     browser->click("document.querySelector('#targets button')");
@@ -116,13 +116,13 @@ TEST_F(OperatorTest, TargetsAreSavedAsCsvAndGeoJson) {
 
 TEST_F(OperatorTest, PlacesAndPositionsAgreeForAnyPoseAndDatum) {
     const json wrong =
-        value(R"(import('./targets.js').then(({positionOf, placeOf, onEarth, csvOf, geoJsonOf, datumOf}) => {
+        value(R"(import('./targets.js').then(({getPosition, getPlace, onEarth, toCsv, toGeoJson, findDatum}) => {
         let seed = 11;
         const random = (low, high) => low + (high - low) * (seed = (seed * 48271) % 2147483647) / 2147483647, wrong = [];
         for (let draw = 0; draw < 500; ++draw) {
             const q = [0, 1, 2, 3].map(() => random(-1, 1)), size = Math.hypot(...q);
             const pose = {position: [0, 1, 2].map(() => random(-500, 500)), orientation: q.map((x) => x / size)};
-            const place = {range: random(0.1, 200), bearing: random(-3.14, 3.14)}, at = positionOf(place, pose), back = placeOf(at, pose);
+            const place = {range: random(0.1, 200), bearing: random(-3.14, 3.14)}, at = getPosition(place, pose), back = getPlace(at, pose);
             if (Math.abs(back.range - place.range) > 1e-6 || Math.abs(back.bearing - place.bearing) > 1e-6) wrong.push(['place', place, back]);
 
             // By the radii of curvature of WGS 84, for small offsets.
@@ -133,17 +133,17 @@ TEST_F(OperatorTest, PlacesAndPositionsAgreeForAnyPoseAndDatum) {
             if (Math.abs(north - offset[0]) > 0.02 || Math.abs(east + offset[1]) > 0.02 || Math.abs(found.height - datum.height_m - offset[2]) > 0.01)
                 wrong.push(['earth', datum, offset, north, east, found.height]);
             const target = {name: 'x', time_us: 5, source: 's', ...place, heading: 10, position: offset, depth: null};
-            const [lon, lat] = JSON.parse(geoJsonOf([target], datum)).features[0].geometry.coordinates, cells = csvOf([target], datum).split('\n')[1].split(',');
+            const [lon, lat] = JSON.parse(toGeoJson([target], datum)).features[0].geometry.coordinates, cells = toCsv([target], datum).split('\n')[1].split(',');
             if (Math.abs(lat - found.latitude) > 1e-8 || Math.abs(lon - found.longitude) > 1e-8 || Number(cells[11]) !== lat || Number(cells[12]) !== lon)
                 wrong.push(['files', lat, lon, cells]);
         }
         // Far from the datum: a quarter of the equator ahead of it, seen along a straight line.
         const far = onEarth([0, -6378137, -6378137], {latitude_deg: 0, longitude_deg: 0});
         if (Math.abs(far.longitude - 90) > 1e-9 || Math.abs(far.height) > 1e-6) wrong.push(['far', far]);
-        const unknown = csvOf([{name: '', time_us: 1.7e15, source: 's', range: 1, bearing: 0, heading: null, position: null, depth: null}]).split('\n')[1];
+        const unknown = toCsv([{name: '', time_us: 1.7e15, source: 's', range: 1, bearing: 0, heading: null, position: null, depth: null}]).split('\n')[1];
         if (unknown !== ',2023-11-14T22:13:20.000Z,s,1,0,,,,,,,,,') wrong.push(unknown);
-        const held = (...datums) => datumOf({tasks: datums.map((datum) => ({properties: {datum}}))});
-        for (const none of [held(), held('', '7', '{', '{"latitude_deg": 5}', undefined), datumOf(null)]) if (none !== undefined) wrong.push(none);
+        const held = (...datums) => findDatum({tasks: datums.map((datum) => ({properties: {datum}}))});
+        for (const none of [held(), held('', '7', '{', '{"latitude_deg": 5}', undefined), findDatum(null)]) if (none !== undefined) wrong.push(none);
         if (held(undefined, '{"latitude_deg": 54.5, "longitude_deg": 10.25, "height_m": 3}')?.height_m !== 3) wrong.push('datum');
         return wrong.slice(0, 3);
     }))");
@@ -291,7 +291,7 @@ TEST_F(OperatorTest, NorthIsUpIfItIsWanted) {
         EXPECT_EQ(pixelAt(5.7, 0), darkest) << heading;
         EXPECT_THAT(readAt(6.75, 8), MatchesRegex("6.7[0-9] m   [78].[0-9]° port.*")) << heading;
         const json place = value(
-            "(() => { const {fan} = insonify, [x, y] = fan.pixelOf(6, 0), [u, v] = fan.pixelOf(0, 0); "
+            "(() => { const {fan} = insonify, [x, y] = fan.findPixel(6, 0), [u, v] = fan.findPixel(0, 0); "
             "return [x - u, y - v]; })()");
         EXPECT_NEAR(std::atan2(place[0].get<double>(), place[1].get<double>()),
                     std::remainder(types::radians(heading), 2 * M_PI), 1e-6)

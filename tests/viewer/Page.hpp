@@ -39,12 +39,12 @@ struct PageTest : testing::Test {
     std::string text(const std::string& id) { return value("document.getElementById('" + id + "').textContent"); }
     static std::string byId(const std::string& id) { return "document.getElementById('" + id + "')"; }
     /** Returns the field of a property in the table. */
-    static std::string fieldOf(const std::string& property) {
+    static std::string getField(const std::string& property) {
         return "[...document.querySelectorAll('#properties tr')].find((one) => one.cells[0].textContent === '" +
                property + "')?.querySelector('input, select')";
     }
     /** Returns the red text next to a field. */
-    static std::string refusalOf(const std::string& field) {
+    static std::string getRefusal(const std::string& field) {
         return field + ".parentElement.querySelector('.refused').textContent";
     }
     void click(const std::string& button) {
@@ -84,7 +84,7 @@ struct PageTest : testing::Test {
         nextFrame();
         return value(
             "(() => { const {fan} = insonify, p = new Uint8Array(4);"
-            "const [x, y] = fan.pixelOf(" +
+            "const [x, y] = fan.findPixel(" +
             std::to_string(range) + ", " + std::to_string(types::radians(bearing_deg)) +
             "); fan.gl.readPixels(x, y, 1, 1, fan.gl.RGBA, fan.gl.UNSIGNED_BYTE, p);"
             "return [...p].slice(0, 3); })()");
@@ -94,7 +94,7 @@ struct PageTest : testing::Test {
         nextFrame();
         return value(
             "(() => { const {fan} = insonify, box = fan.canvas.getBoundingClientRect();"
-            "const [x, y] = fan.pixelOf(" +
+            "const [x, y] = fan.findPixel(" +
             std::to_string(range) + ", " + std::to_string(types::radians(bearing_deg)) +
             "); return [box.left + x / devicePixelRatio, box.bottom - y / devicePixelRatio]; })()");
     }

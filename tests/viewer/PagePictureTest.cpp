@@ -254,7 +254,7 @@ TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {
     EXPECT_EQ(picture.rows, value("insonify.fan.canvas.height + 22"));
     EXPECT_EQ(picture.cols, value("insonify.fan.canvas.width"));
     const json at = value(
-        "(() => { const {fan} = insonify, [x, y] = fan.pixelOf(6.75, 0); return [x, fan.canvas.height - y]; })()");
+        "(() => { const {fan} = insonify, [x, y] = fan.findPixel(6.75, 0); return [x, fan.canvas.height - y]; })()");
     const auto pixel = picture.at<cv::Vec3b>(at[1].get<int>(), at[0].get<int>());
     EXPECT_EQ(json({pixel[2], pixel[1], pixel[0]}), brightest);
 }
@@ -285,13 +285,13 @@ TEST_F(PageTest, ShowsHeadingDepthAndAttitudeOverThePicture) {
                 "'heading000.0°depth2.00 mpitch0.0°roll0.0°speed2.00 m/s'"))
         << text("attitude");
     // Turned to starboard by 90 degrees, then nose down by 20, then starboard down by 10: z, y, x of the body.
-    const json turned = value(R"(import('./instruments.js').then(({attitudeOf}) => {
+    const json turned = value(R"(import('./instruments.js').then(({computeAttitude}) => {
         const half = (deg) => deg * Math.PI / 360, product = ([ax, ay, az, aw], [bx, by, bz, bw]) =>
             [aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw,
              aw * bw - ax * bx - ay * by - az * bz];
         const about = (axis, deg) => [0, 1, 2].map((i) => i === axis ? Math.sin(half(deg)) : 0).concat(Math.cos(half(deg)));
         const orientation = product(product(about(2, -90), about(1, 20)), about(0, 10));
-        return attitudeOf({orientation, position: [1, 2, -3.5]}, 0.5);
+        return computeAttitude({orientation, position: [1, 2, -3.5]}, 0.5);
     }))");
     EXPECT_NEAR(turned["heading"], 90, 1e-9);
     EXPECT_NEAR(turned["pitch"], 20, 1e-9);

@@ -13,19 +13,19 @@ TEST_F(PageTest, SetsAPropertyInItsField) {
     EXPECT_EQ(value("[...document.getElementById('task').options].map((one) => one.value)"),
               json({"source", "world", "viewer"}));
     choose("task", "source");
-    enter(fieldOf("level"), "10");
+    enter(getField("level"), "10");
     EXPECT_TRUE(becomes("Math.abs(insonify.fan.ping.top_db - 10) < 0.1")) << "of a level ten times as high";
     EXPECT_TRUE(becomes("insonify.status().tasks[0].properties.level == 10"));
-    enter(fieldOf("level"), "1000");
-    EXPECT_TRUE(becomes(refusalOf(fieldOf("level")) + " === 'level: is 1000; may be 0 to 100'"));
-    EXPECT_TRUE(becomes(fieldOf("level") + ".value === '10'")) << "it shows what holds";
+    enter(getField("level"), "1000");
+    EXPECT_TRUE(becomes(getRefusal(getField("level")) + " === 'level: is 1000; may be 0 to 100'"));
+    EXPECT_TRUE(becomes(getField("level") + ".value === '10'")) << "it shows what holds";
 }
 
 TEST_F(PageTest, ReplacesABlockSoThatRowsMayBecomeABudget) {
     choose("task", "source");
-    enter(fieldOf("quality"), "{budget_ms: 20}");
+    enter(getField("quality"), "{budget_ms: 20}");
     EXPECT_TRUE(becomes("insonify.status().tasks[0].properties.quality === '{\"budget_ms\": 20}'"));
-    EXPECT_EQ(value(refusalOf(fieldOf("quality"))), "");
+    EXPECT_EQ(value(getRefusal(getField("quality"))), "");
 }
 
 TEST_F(PageTest, TheButtonsRecordPauseAndStep) {

@@ -24,7 +24,7 @@ Message takenApart(const std::string& bytes) {
     return {nlohmann::json::parse(bytes.substr(8, head[1])), bytes.substr(8 + head[1])};
 }
 
-types::Sonar pingOf(uint32_t beams, uint32_t bins) {
+types::Sonar makePing(uint32_t beams, uint32_t bins) {
     types::Sonar ping;
     ping.time = {5};
     ping.bin_duration = {100};
@@ -35,7 +35,7 @@ types::Sonar pingOf(uint32_t beams, uint32_t bins) {
 }
 
 TEST(PingPictureTest, ALevelIsWithinHalfAStepOfTheBin) {
-    types::Sonar ping = pingOf(1, 200);
+    types::Sonar ping = makePing(1, 200);
     for (size_t i = 0; i < 200; ++i) ping.bins[i] = static_cast<float>(std::pow(10, -0.05 * static_cast<double>(i)));
     const Message message = takenApart(PingPicture(ros::BinScale::Linear).encode(ping, {"s", 0.5, 7}));
     EXPECT_NEAR(message.json["top_db"].get<double>(), 0, 0.02);
@@ -50,7 +50,7 @@ TEST(PingPictureTest, ALevelIsWithinHalfAStepOfTheBin) {
 }
 
 TEST(PingPictureTest, NoEchoIsZero) {
-    types::Sonar ping = pingOf(2, 4);
+    types::Sonar ping = makePing(2, 4);
     const float infinite = std::numeric_limits<float>::infinity();
     ping.bins = {NAN, 0, -1, infinite, 1, 1e-38f, -infinite, -0.0f};
     const Message message = takenApart(PingPicture(ros::BinScale::Linear).encode(ping, {}));
@@ -58,7 +58,7 @@ TEST(PingPictureTest, NoEchoIsZero) {
 }
 
 TEST(PingPictureTest, DecibelsAreUnchanged) {
-    types::Sonar ping = pingOf(1, 4);
+    types::Sonar ping = makePing(1, 4);
     ping.bins = {-20, -24, -3000, NAN};
     const Message message = takenApart(PingPicture(ros::BinScale::Decibel).encode(ping, {}));
     EXPECT_EQ(message.levels, std::string("\xff\xf5\0\0", 4));
@@ -66,7 +66,7 @@ TEST(PingPictureTest, DecibelsAreUnchanged) {
 }
 
 TEST(PingPictureTest, TheStrongestOfMergedBinsCounts) {
-    types::Sonar ping = pingOf(2, 10001);
+    types::Sonar ping = makePing(2, 10001);
     std::ranges::fill(ping.bins, 0.0f);
     ping.bins[10001 + 4] = 1;
     const Message message = takenApart(PingPicture(ros::BinScale::Linear).encode(ping, {}));
@@ -76,7 +76,7 @@ TEST(PingPictureTest, TheStrongestOfMergedBinsCounts) {
 }
 
 TEST(PingPictureTest, BeamsAreFromStarboardToPortWithEdgesWithoutUnknownBearings) {
-    types::Sonar ping = pingOf(4, 1);
+    types::Sonar ping = makePing(4, 1);
     ping.bins = {0.1f, 1, 0.01f, 10};
     ping.bearings = {types::Angle::fromDeg(-175), types::Angle::fromDeg(175), types::Angle{},
                      types::Angle::fromDeg(150)};
@@ -92,9 +92,9 @@ TEST(PingPictureTest, BeamsAreFromStarboardToPortWithEdgesWithoutUnknownBearings
 }
 
 TEST(PingPictureTest, EncodesAPingWithoutEchoOrBins) {
-    types::Sonar silent = pingOf(1, 3);
+    types::Sonar silent = makePing(1, 3);
     EXPECT_EQ(takenApart(PingPicture(ros::BinScale::Linear).encode(silent, {})).levels, std::string(3, '\0'));
-    EXPECT_EQ(takenApart(PingPicture(ros::BinScale::Linear).encode(pingOf(0, 0), {})).levels, "");
+    EXPECT_EQ(takenApart(PingPicture(ros::BinScale::Linear).encode(makePing(0, 0), {})).levels, "");
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ public:
 
     Publisher publisher{
         config(),
-        {{"sonar", formsOf<types::Sonar>("sonar"), false}, {"scene", formsOf<types::Snapshot>("scene"), false}},
+        {{"sonar", getForms<types::Sonar>("sonar"), false}, {"scene", getForms<types::Snapshot>("scene"), false}},
         {"viewer", nullptr, [](const std::string&) {}}};
 
     void offerPing(int64_t seconds, uint32_t beams = 32, uint32_t bins = 100) {

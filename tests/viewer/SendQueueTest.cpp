@@ -5,8 +5,8 @@
 namespace insonify::viewer {
 namespace {
 
-Frame frame(const char* text) { return {"", bytesOf(text), true}; }
-std::string textOf(const std::optional<Frame>& frame) { return frame ? *frame->body : "nothing"; }
+Frame frame(const char* text) { return {"", toBytes(text), true}; }
+std::string toText(const std::optional<Frame>& frame) { return frame ? *frame->body : "nothing"; }
 
 TEST(SendQueueTest, KeepsOnlyTheNewestFrameOfAStreamAndCountsTheOthers) {
     SendQueue outbox;
@@ -14,9 +14,9 @@ TEST(SendQueueTest, KeepsOnlyTheNewestFrameOfAStreamAndCountsTheOthers) {
     outbox.put(2, frame("other"));
     outbox.put(1, frame("newer"));
     outbox.put(1, frame("newest"));
-    EXPECT_EQ(textOf(outbox.next()), "newest");
-    EXPECT_EQ(textOf(outbox.next()), "other");
-    EXPECT_EQ(textOf(outbox.next()), "nothing");
+    EXPECT_EQ(toText(outbox.next()), "newest");
+    EXPECT_EQ(toText(outbox.next()), "other");
+    EXPECT_EQ(toText(outbox.next()), "nothing");
     EXPECT_EQ(outbox.dropped(), 2u);
 }
 
@@ -24,9 +24,9 @@ TEST(SendQueueTest, ABusyStreamDoesNotBlockAnother) {
     SendQueue outbox;
     outbox.put(1, frame("busy"));
     outbox.put(2, frame("rare"));
-    EXPECT_EQ(textOf(outbox.next()), "busy");
+    EXPECT_EQ(toText(outbox.next()), "busy");
     outbox.put(1, frame("busy again"));
-    EXPECT_EQ(textOf(outbox.next()), "rare");
+    EXPECT_EQ(toText(outbox.next()), "rare");
 }
 
 TEST(SendQueueTest, SendsRepliesFirstAndRefusesTooMany) {
@@ -34,7 +34,7 @@ TEST(SendQueueTest, SendsRepliesFirstAndRefusesTooMany) {
     outbox.put(1, frame("stream"));
     for (size_t i = 0; i < SendQueue::max_replies; ++i) EXPECT_TRUE(outbox.post(frame("reply")));
     EXPECT_FALSE(outbox.post(frame("one too many")));
-    EXPECT_EQ(textOf(outbox.next()), "reply");
+    EXPECT_EQ(toText(outbox.next()), "reply");
     EXPECT_TRUE(outbox.post(frame("now there is room")));
 }
 
@@ -45,11 +45,11 @@ TEST(SendQueueTest, ANewerReplyOfAStreamReplacesAWaitingReply) {
     EXPECT_TRUE(outbox.post(frame("newest scene"), 1));
     EXPECT_TRUE(outbox.post(frame("other scene"), 2));
     outbox.put(1, frame("what moves"));
-    EXPECT_EQ(textOf(outbox.next()), "reply");
-    EXPECT_EQ(textOf(outbox.next()), "newest scene");
+    EXPECT_EQ(toText(outbox.next()), "reply");
+    EXPECT_EQ(toText(outbox.next()), "newest scene");
     outbox.forget(2);
-    EXPECT_EQ(textOf(outbox.next()), "what moves");
-    EXPECT_EQ(textOf(outbox.next()), "nothing");
+    EXPECT_EQ(toText(outbox.next()), "what moves");
+    EXPECT_EQ(toText(outbox.next()), "nothing");
     EXPECT_EQ(outbox.dropped(), 0u) << "a whole scene includes all of an older scene";
 }
 

@@ -34,7 +34,7 @@ TEST(ServerTest, AnErrorClosesOnlyItsSession) {
     EXPECT_EQ(asks.nextMessage(), std::nullopt);
     EXPECT_TRUE(becomesTrue([&] { return server.counts().clients == 1; }));
     EXPECT_EQ(server.counts().refused, 2u);
-    server.toPages(0, {"", bytesOf("still there"), true});
+    server.toPages(0, {"", toBytes("still there"), true});
     EXPECT_EQ(silent.textOfNext(), "still there");
 }
 
@@ -155,8 +155,8 @@ TEST(ServerTest, CountsReplacedFramesForEachClient) {
     ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
     ASSERT_TRUE(becomesTrue([&] { return server.pages() == 1; }));
     constexpr uint64_t published = 20000;
-    for (uint64_t i = 0; i < published; ++i) server.toPages(0, {"", bytesOf("sample"), true});
-    server.toPages(1, {"", bytesOf("last"), true});
+    for (uint64_t i = 0; i < published; ++i) server.toPages(0, {"", toBytes("sample"), true});
+    server.toPages(1, {"", toBytes("last"), true});
     uint64_t textOfNext = 0;
     while (client.textOfNext() == "sample") ++textOfNext;
     EXPECT_EQ(textOfNext + server.counts().dropped, published);

@@ -88,7 +88,7 @@ void TypingTest::typeInto(const std::string& field) {
     EXPECT_FALSE(hasFocus(field));
     nextStatuses();
     EXPECT_EQ(value(field + ".value"), before);
-    EXPECT_EQ(value(refusalOf(field)), "");
+    EXPECT_EQ(value(getRefusal(field)), "");
 }
 
 void TypingTest::toggle(const std::string& field) {
@@ -231,17 +231,17 @@ TEST_F(TypingTest, TypedValuesReachTheTask) {
                             {"spare", "{rows: 9}", "{\"rows\": 9}", "{\"rows\": 9}"},
                             {"spare", "", nullptr, ""}}) {
         SCOPED_TRACE(std::string(one.property) + ": " + one.typed);
-        enter(fieldOf(one.property), one.typed);
+        enter(getField(one.property), one.typed);
         EXPECT_TRUE(holds(one.property, one.held))
-            << held(one.property) << " " << value(refusalOf(fieldOf(one.property)));
-        EXPECT_TRUE(becomes(fieldOf(one.property) + ".value === " + json(one.shown).dump()));
-        EXPECT_EQ(value(refusalOf(fieldOf(one.property))), "");
-        EXPECT_TRUE(hasFocus(fieldOf(one.property))) << "Enter leaves no field";
+            << held(one.property) << " " << value(getRefusal(getField(one.property)));
+        EXPECT_TRUE(becomes(getField(one.property) + ".value === " + json(one.shown).dump()));
+        EXPECT_EQ(value(getRefusal(getField(one.property))), "");
+        EXPECT_TRUE(hasFocus(getField(one.property))) << "Enter leaves no field";
     }
     EXPECT_TRUE(becomes("Math.abs(insonify.fan.ping.top_db - 10 * Math.log10(42.5)) < 0.1")) << "the pings have it";
 
     choose("task", "form");
-    browser->click(fieldOf("shape"));
+    browser->click(getField("shape"));
     browser->type("square");
     browser->press("Enter");
     EXPECT_TRUE(holds("shape", "square"));
@@ -260,11 +260,11 @@ TEST_F(TypingTest, LeavingAFieldSetsTheTypedValue) {
     browser->type("0");
     clickAt(6.75, 0);
     EXPECT_TRUE(holds("range", 100.0)) << "by a click on the picture";
-    EXPECT_TRUE(becomes(fieldOf("range") + ".value === '100'")) << "the table shows the same";
+    EXPECT_TRUE(becomes(getField("range") + ".value === '100'")) << "the table shows the same";
 }
 
 TEST_F(TypingTest, ALateAnswerKeepsTheCaret) {
-    browser->click(fieldOf("title"));
+    browser->click(getField("title"));
     browser->press("Control+a");
     browser->type("slow");
     browser->press("Enter");
@@ -296,7 +296,7 @@ TEST_F(TypingTest, ARefusalIsRedAndTheFieldShowsThePresentValue) {
                             {"quality", "{rows: 5, budget_ms: 5}", "is given in addition to budget_ms"},
                             {"quality", "{row: 5}", "row"},
                             {"spare", "{rows: [", "spare"}}) {
-        const std::string field = fieldOf(one.property), message = refusalOf(field);
+        const std::string field = getField(one.property), message = getRefusal(field);
         SCOPED_TRACE(std::string(one.property) + ": " + one.typed);
         const json before = value(field + ".value"), held_before = held(one.property);
         enter(field, one.typed);
@@ -312,42 +312,42 @@ TEST_F(TypingTest, ARefusalIsRedAndTheFieldShowsThePresentValue) {
         EXPECT_EQ(value(message), "");
     }
     // Typing after a refusal replaces the field's text.
-    enter(fieldOf("range"), "1000");
-    ASSERT_TRUE(becomes(refusalOf(fieldOf("range")) + " !== ''"));
+    enter(getField("range"), "1000");
+    ASSERT_TRUE(becomes(getRefusal(getField("range")) + " !== ''"));
     browser->type("20");
     browser->press("Enter");
     EXPECT_TRUE(holds("range", 20.0)) << held("range");
-    EXPECT_TRUE(becomes(refusalOf(fieldOf("range")) + " === ''"));
+    EXPECT_TRUE(becomes(getRefusal(getField("range")) + " === ''"));
 
-    browser->click(fieldOf("enabled"));
-    EXPECT_TRUE(becomes(refusalOf(fieldOf("enabled")) + ".includes('not without it today')"));
-    EXPECT_EQ(value(fieldOf("enabled") + ".checked"), true) << "a checkbox as well";
-    browser->click(fieldOf("shape"));
+    browser->click(getField("enabled"));
+    EXPECT_TRUE(becomes(getRefusal(getField("enabled")) + ".includes('not without it today')"));
+    EXPECT_EQ(value(getField("enabled") + ".checked"), true) << "a checkbox as well";
+    browser->click(getField("shape"));
     browser->type("flat");
     browser->press("Enter");
-    EXPECT_TRUE(becomes(refusalOf(fieldOf("shape")) + ".includes('flat is for later')"));
-    EXPECT_EQ(value(fieldOf("shape") + ".value"), "round") << "and a list";
+    EXPECT_TRUE(becomes(getRefusal(getField("shape")) + ".includes('flat is for later')"));
+    EXPECT_EQ(value(getField("shape") + ".value"), "round") << "and a list";
 }
 
 TEST_F(TypingTest, AFieldWithoutFocusShowsValuesSetByOthers) {
-    browser->click(fieldOf("range"));
+    browser->click(getField("range"));
     running->deployment().call("form.setRange", {"33"});
-    EXPECT_TRUE(becomes(fieldOf("range") + ".value === '33'"));
+    EXPECT_TRUE(becomes(getField("range") + ".value === '33'"));
     browser->press("Control+a");
     browser->type("44");
     running->deployment().call("form.setRange", {"55"});
     ASSERT_TRUE(becomes("document.querySelector('#first input').value === '55'"));
-    EXPECT_EQ(value(fieldOf("range") + ".value"), "44");
+    EXPECT_EQ(value(getField("range") + ".value"), "44");
     browser->press("Control+a");
     browser->type("33");
     browser->press("Tab");
-    EXPECT_TRUE(becomes(fieldOf("range") + ".value === insonify.status().tasks.at(-1).properties.range.toString()"));
+    EXPECT_TRUE(becomes(getField("range") + ".value === insonify.status().tasks.at(-1).properties.range.toString()"));
 }
 
 TEST_F(TypingTest, ABrokenConnectionKeepsTypedText) {
     const uint16_t port = quietPort();
     openForm({}, "", port);
-    browser->click(fieldOf("title"));
+    browser->click(getField("title"));
     browser->press("Control+a");
     browser->type("half");
     running.reset();
@@ -380,16 +380,16 @@ TEST_F(TypingTest, AViewerWithoutControlShowsButSetsNothing) {
     EXPECT_EQ(value("document.querySelectorAll('#properties input:enabled, #properties select:enabled, #first "
                     "input:enabled, .timeline input:enabled, #controls button').length"),
               0);
-    browser->click(fieldOf("range"));
+    browser->click(getField("range"));
     browser->type("9");
     browser->press("Enter");
     nextStatuses();
-    EXPECT_EQ(value(fieldOf("range") + ".value"), "1");
+    EXPECT_EQ(value(getField("range") + ".value"), "1");
 }
 
 TEST_F(TypingTest, APageWithATokenIsUsedLikeAPageWithout) {
     openForm({"viewer.token='p&ss w#rd'"}, "?token=p%26ss%20w%23rd");
-    enter(fieldOf("range"), "12");
+    enter(getField("range"), "12");
     EXPECT_TRUE(holds("range", 12.0));
 }
 

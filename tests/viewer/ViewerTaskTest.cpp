@@ -28,12 +28,12 @@ ViewerConfig viewerAt(const std::string& address, const std::string& token = "")
 
 TEST(ViewerTaskTest, AnAddressReachableByOthersNeedsAToken) {
     for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"})
-        EXPECT_THAT(test::refusalsOf(viewerAt(local)), IsEmpty()) << local;
+        EXPECT_THAT(test::countRefusals(viewerAt(local)), IsEmpty()) << local;
     for (const char* open : {"0.0.0.0", "192.168.0.1", "::"}) {
-        EXPECT_THAT(test::refusalsOf(viewerAt(open)), Contains(HasSubstr("token: is missing"))) << open;
-        EXPECT_THAT(test::refusalsOf(viewerAt(open, "secret")), IsEmpty()) << open;
+        EXPECT_THAT(test::countRefusals(viewerAt(open)), Contains(HasSubstr("token: is missing"))) << open;
+        EXPECT_THAT(test::countRefusals(viewerAt(open, "secret")), IsEmpty()) << open;
     }
-    EXPECT_THAT(test::refusalsOf(viewerAt("localhost", "secret")),
+    EXPECT_THAT(test::countRefusals(viewerAt("localhost", "secret")),
                 Contains(HasSubstr("address: is 'localhost'; it must be a numeric address")));
 }
 
@@ -67,9 +67,9 @@ TEST(ViewerTaskTest, ReadsATokenFromAFile) {
     config.token_file = "token.txt";
     ViewerConfig open = config, both = config;
     open.address = "0.0.0.0";
-    EXPECT_THAT(test::refusalsOf(open), IsEmpty());
+    EXPECT_THAT(test::countRefusals(open), IsEmpty());
     both.token = "x";
-    EXPECT_THAT(test::refusalsOf(both), Contains(HasSubstr("token_file: is given in addition to token")));
+    EXPECT_THAT(test::countRefusals(both), Contains(HasSubstr("token_file: is given in addition to token")));
     config.port = 0;
     bench.viewer.config.set(config);
     EXPECT_FALSE(bench.viewer.configure());
@@ -101,7 +101,7 @@ struct Unknown {
 TEST(ViewerTaskTest, RefusesATypeThatItCannotShowByName) {
     ViewerTask viewer("viewer");
     test::Writer<std::shared_ptr<const Unknown>> source("depth");
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { viewer.makeInput("x", source.port); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { viewer.makeInput("x", source.port); }),
                 HasSubstr("depth.port is /unknown, which a viewer cannot show"));
 }
 
@@ -174,7 +174,7 @@ TEST(ViewerTaskTest, APageSetsPropertiesButNoStates) {
 }
 
 /** Returns the next text message with this op. */
-nlohmann::json nextOf(Client& client, const std::string& op) {
+nlohmann::json getNext(Client& client, const std::string& op) {
     while (const auto message = client.nextMessage()) {
         const auto json = nlohmann::json::parse(*message, nullptr, false);
         if (json.is_object() && json["op"] == op) return json;
@@ -194,7 +194,7 @@ TEST(ViewerTaskTest, FoxglovesParametersAreThePropertiesOfTasks) {
     Client client(running.port());
     ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
     client.say(R"({"op":"getParameters","parameterNames":[],"id":"all"})");
-    auto said = nextOf(client, "parameterValues");
+    auto said = getNext(client, "parameterValues");
     EXPECT_EQ(said["id"], "all");
     EXPECT_EQ(valuesIn(said).at("source.level"), 1);
     EXPECT_EQ(valuesIn(said).at("world.water"), true);
@@ -202,7 +202,7 @@ TEST(ViewerTaskTest, FoxglovesParametersAreThePropertiesOfTasks) {
 
     client.say(
         R"({"op":"setParameters","id":"one","parameters":[{"name":"source.level","value":7.5},{"name":"world.water","value":false}]})");
-    said = nextOf(client, "parameterValues");
+    said = getNext(client, "parameterValues");
     EXPECT_EQ(said["id"], "one");
     EXPECT_EQ(valuesIn(said).size(), 2u);
     EXPECT_EQ(valuesIn(said).at("source.level"), 7.5);
@@ -214,7 +214,7 @@ TEST(ViewerTaskTest, FoxglovesParametersAreThePropertiesOfTasks) {
                                     {"source", "is not a property of any task"},
                                     {"viewer.port", "does not control itself"}}) {
         client.say(std::string(R"({"op":"setParameters","parameters":[{"name":")") + name + R"(","value":700}]})");
-        const auto refused = nextOf(client, "status");
+        const auto refused = getNext(client, "status");
         EXPECT_THAT(refused["message"].get<std::string>(), HasSubstr(why));
         EXPECT_EQ(refused["level"], 2);
     }
@@ -225,12 +225,13 @@ TEST(ViewerTaskTest, SendsFoxgloveParametersThatChange) {
     Client client(running.port());
     ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
     client.say(R"({"op":"subscribeParameterUpdates","parameterNames":["source.level"]})");
-    EXPECT_EQ(valuesIn(nextOf(client, "parameterValues")), (std::map<std::string, nlohmann::json>{{"source.level", 1}}))
+    EXPECT_EQ(valuesIn(getNext(client, "parameterValues")),
+              (std::map<std::string, nlohmann::json>{{"source.level", 1}}))
         << "as it is";
     running.deployment().call("world.setWater", {"false"});
     running.deployment().call("source.setLevel", {"3"});
     for (nlohmann::json level = 1; level != 3;) {
-        const auto reported = valuesIn(nextOf(client, "parameterValues"));
+        const auto reported = valuesIn(getNext(client, "parameterValues"));
         ASSERT_EQ(reported.size(), 1u) << "of this one alone";
         level = reported.at("source.level");
         ASSERT_TRUE(level == 1 || level == 3) << level;
@@ -242,8 +243,8 @@ TEST(ViewerTaskTest, AWebSiteReadsParametersAndSetsThemOnlyWithTheToken) {
     Client client(running.port());
     ASSERT_THAT(client.upgrade(foxglove_protocol, "/", "Origin: https://app.foxglove.dev\r\n"), HasSubstr("101"));
     client.say(R"({"op":"setParameters","id":"x","parameters":[{"name":"source.level","value":9}]})");
-    EXPECT_THAT(nextOf(client, "status")["message"].get<std::string>(), HasSubstr("only with the viewer's token"));
-    EXPECT_EQ(valuesIn(nextOf(client, "parameterValues")).at("source.level"), 1);
+    EXPECT_THAT(getNext(client, "status")["message"].get<std::string>(), HasSubstr("only with the viewer's token"));
+    EXPECT_EQ(valuesIn(getNext(client, "parameterValues")).at("source.level"), 1);
 }
 
 /** Returns a plate and a door of one triangle of steel each. */

@@ -16,7 +16,7 @@ double normalised(Angle bearing) { return std::abs(bearing.rad) <= pi ? bearing.
 
 /** Returns the place behind the widest gap of ascending bearings; 0, behind the gap astern, unless another gap is
  *  clearly wider. */
-size_t beginOf(const std::vector<double>& ascending) {
+size_t findBegin(const std::vector<double>& ascending) {
     size_t begin = 0;
     double widest = ascending.front() + 2 * pi - ascending.back() + 1e-6;
     for (size_t i = 1; i < ascending.size(); ++i)
@@ -65,7 +65,7 @@ void BeamArc::take(std::span<const Angle> table, Angle beam_width, double lone_w
     width_known_ = beam_width.rad > 0;
     width = width_known_ ? beam_width.rad : lone_width;
     if (beams.empty()) return;
-    const auto begin = static_cast<std::ptrdiff_t>(beginOf(bearings));
+    const auto begin = static_cast<std::ptrdiff_t>(findBegin(bearings));
     std::for_each(bearings.begin(), bearings.begin() + begin, [](double& bearing) { bearing += 2 * pi; });
     std::ranges::rotate(bearings, bearings.begin() + begin);
     std::ranges::rotate(beams, beams.begin() + begin);

@@ -21,14 +21,14 @@ glm::dvec3 placed(const glm::dmat4& world_from_mesh, const glm::vec3& position) 
 }
 
 /** Returns world_from_object of every object at the time of the snapshot. */
-std::vector<glm::dmat4> placesOf(const Snapshot& snapshot) {
+std::vector<glm::dmat4> getPlaces(const Snapshot& snapshot) {
     std::vector<glm::dmat4> places;
     for (const Object& object : snapshot.geometry->objects) places.push_back(object.world_from_object);
     for (const MovedObject& moved : snapshot.moved) places.at(moved.object) = moved.world_from_object;
     return places;
 }
 
-const Mesh& meshOf(const Geometry& geometry, size_t object) {
+const Mesh& getMesh(const Geometry& geometry, size_t object) {
     return geometry.meshes[static_cast<size_t>(geometry.objects[object].mesh)];
 }
 
@@ -154,7 +154,7 @@ void Extent::add(const Extent& other) {
     add(other.high);
 }
 
-Extent extentOf(const Mesh& mesh, const glm::dmat4& world_from_mesh) {
+Extent getExtent(const Mesh& mesh, const glm::dmat4& world_from_mesh) {
     Extent extent;
     const auto addAll = [&](std::span<const uint32_t> indices) {
         for (const uint32_t index : indices) extent.add(placed(world_from_mesh, mesh.positions[index]));
@@ -174,18 +174,18 @@ Extent extentOf(const Mesh& mesh, const glm::dmat4& world_from_mesh) {
     return extent;
 }
 
-Extent extentOf(const Geometry& geometry) {
+Extent getExtent(const Geometry& geometry) {
     Extent extent;
     for (const Object& object : geometry.objects)
-        extent.add(extentOf(geometry.meshes[static_cast<size_t>(object.mesh)], object.world_from_object));
+        extent.add(getExtent(geometry.meshes[static_cast<size_t>(object.mesh)], object.world_from_object));
     return extent;
 }
 
-Extent extentOf(const Snapshot& snapshot) {
+Extent getExtent(const Snapshot& snapshot) {
     Extent extent;
-    const std::vector<glm::dmat4> places = placesOf(snapshot);
+    const std::vector<glm::dmat4> places = getPlaces(snapshot);
     const GeometryPtr geometry = posedGeometry(snapshot);
-    for (size_t i = 0; i < places.size(); ++i) extent.add(extentOf(meshOf(*geometry, i), places[i]));
+    for (size_t i = 0; i < places.size(); ++i) extent.add(getExtent(getMesh(*geometry, i), places[i]));
     return extent;
 }
 
@@ -203,18 +203,18 @@ glm::dvec3 nearestOfTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm
 }
 
 NearestPoint nearestPoint(const Snapshot& snapshot, const glm::dvec3& place) {
-    const std::vector<glm::dmat4> places = placesOf(snapshot);
+    const std::vector<glm::dmat4> places = getPlaces(snapshot);
     const GeometryPtr geometry = posedGeometry(snapshot);
     NearestSearch search(place);
     std::vector<uint32_t> order(places.size());
     std::vector<double> bounds(places.size());
     for (size_t i = 0; i < places.size(); ++i) {
         order[i] = static_cast<uint32_t>(i);
-        bounds[i] = search.atLeast(meshOf(*geometry, i), places[i]);
+        bounds[i] = search.atLeast(getMesh(*geometry, i), places[i]);
     }
     std::ranges::sort(order, {}, [&](uint32_t i) { return std::pair(bounds[i], i); });
     for (const uint32_t i : order)
-        if (bounds[i] <= search.nearest().distance) search.lookAt(meshOf(*geometry, i), places[i], i);
+        if (bounds[i] <= search.nearest().distance) search.lookAt(getMesh(*geometry, i), places[i], i);
     return search.nearest();
 }
 

@@ -21,11 +21,11 @@ struct Extent {
 
 /** Returns the extent in the world of the vertices that triangles of a mesh use. Looks only at clusters whose boxes are
  *  not inside of the extent so far: a small share of a large mesh. */
-Extent extentOf(const Mesh& mesh, const glm::dmat4& world_from_mesh);
+Extent getExtent(const Mesh& mesh, const glm::dmat4& world_from_mesh);
 /** Returns the extent of all objects at their places in the geometry. */
-Extent extentOf(const Geometry& geometry);
+Extent getExtent(const Geometry& geometry);
 /** Returns the extent of all objects at the time of the snapshot. */
-Extent extentOf(const Snapshot& snapshot);
+Extent getExtent(const Snapshot& snapshot);
 
 /** The point of all triangles that is nearest to a place. */
 struct NearestPoint {

@@ -58,8 +58,8 @@ public:
 
     /** Returns the first vertex of the place of a vertex, which becomes one itself where there is none. */
     uint32_t of(uint32_t vertex) {
-        const glm::dvec3 at(positions_[vertex]), own = cellOf(at);
-        const glm::dvec3 low = cellOf(at - within_), high = cellOf(at + within_);
+        const glm::dvec3 at(positions_[vertex]), own = findCell(at);
+        const glm::dvec3 low = findCell(at - within_), high = findCell(at + within_);
         uint32_t found = nobody;
         for (int corner = 0; corner < 8; ++corner) {  // at most two cells in each direction
             const bool right = corner & 1, up = corner & 2, on = corner & 4;
@@ -75,7 +75,7 @@ public:
 private:
     static constexpr double cells = 8;  ///< Side of a cell, in distances of one place [1].
 
-    glm::dvec3 cellOf(const glm::dvec3& at) const { return glm::floor(at * per_cell_); }
+    glm::dvec3 findCell(const glm::dvec3& at) const { return glm::floor(at * per_cell_); }
     size_t slot(const glm::dvec3& cell) const {
         uint64_t key = 0;
         for (const double number : {cell.x, cell.y, cell.z}) {
@@ -136,15 +136,15 @@ glm::dvec3 morphed(const auto& base, std::span<const MorphPose> morphs, const De
     return sum;
 }
 
-std::span<const JointShare> sharesOf(const Deformation& deformation, size_t vertex) {
+std::span<const JointShare> computeShares(const Deformation& deformation, size_t vertex) {
     if (deformation.share_begin.empty()) return {};
     const uint32_t begin = deformation.share_begin[vertex];
     return std::span(deformation.shares).subspan(begin, deformation.share_begin[vertex + 1] - begin);
 }
 
 /** The matrix that turns and stretches a vertex's surroundings; identity without a skin. */
-glm::dmat3 linearOf(const MeshPose& pose, const Deformation& deformation, size_t vertex) {
-    const auto shares = sharesOf(deformation, vertex);
+glm::dmat3 computeLinear(const MeshPose& pose, const Deformation& deformation, size_t vertex) {
+    const auto shares = computeShares(deformation, vertex);
     if (shares.empty()) return glm::dmat3(1);
     glm::dmat3 sum(0);
     for (const JointShare& share : shares)
@@ -167,7 +167,7 @@ glm::vec3 unitOr(const glm::dvec3& vector, const glm::vec3& otherwise) {
 void posePositions(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& positions) {
     for (size_t i = 0; i < positions.size(); ++i) {
         const glm::dvec3 p = morphed(deformation.positions[i], pose.morphs, deformation, i, &MorphTarget::positions);
-        const auto shares = sharesOf(deformation, i);
+        const auto shares = computeShares(deformation, i);
         glm::dvec3 sum = shares.empty() ? p : glm::dvec3(0);
         for (const JointShare& share : shares)
             sum += static_cast<double>(share.weight) * (pose.joints[share.joint].mesh_from_bind * glm::dvec4(p, 1));
@@ -179,7 +179,7 @@ void posePositions(const MeshPose& pose, const Deformation& deformation, std::ve
 /** Turns the frames of normal maps. */
 void poseFrames(const MeshPose& pose, const Deformation& deformation, Mesh& mesh) {
     for (size_t i = 0; i < mesh.normals.size(); ++i) {
-        const glm::dmat3 linear = linearOf(pose, deformation, i);
+        const glm::dmat3 linear = computeLinear(pose, deformation, i);
         // Cofactors are the inverse transpose up to a factor, and are there for a flat matrix as well.
         const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                    glm::cross(linear[0], linear[1]));
@@ -194,7 +194,7 @@ void poseFrames(const MeshPose& pose, const Deformation& deformation, Mesh& mesh
 
 }  // namespace
 
-MeshPose poseOf(const Snapshot& snapshot, const DeformedObject& deformed, const Deformation& deformation) {
+MeshPose getPose(const Snapshot& snapshot, const DeformedObject& deformed, const Deformation& deformation) {
     return {std::span(snapshot.joints).subspan(deformed.first_joint, deformation.joint_count),
             std::span(snapshot.morphs).subspan(deformed.first_morph, deformation.targets.size())};
 }
@@ -235,7 +235,7 @@ void poseMesh(const MeshPose& pose, Mesh& mesh) {
     boundClusters(mesh);
 }
 
-void velocitiesOf(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& velocities) {
+void computeVelocities(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& velocities) {
     velocities.resize(deformation.positions.size());
     for (size_t i = 0; i < velocities.size(); ++i) {
         const glm::dvec3 p = morphed(deformation.positions[i], pose.morphs, deformation, i, &MorphTarget::positions);
@@ -244,7 +244,7 @@ void velocitiesOf(const MeshPose& pose, const Deformation& deformation, std::vec
             const std::vector<glm::vec3>& added = deformation.targets[k].positions;
             if (pose.morphs[k].rate != 0 && !added.empty()) rate += pose.morphs[k].rate * glm::dvec3(added[i]);
         }
-        const auto shares = sharesOf(deformation, i);
+        const auto shares = computeShares(deformation, i);
         glm::dvec3 sum = shares.empty() ? rate : glm::dvec3(0);
         for (const JointShare& share : shares) {
             const JointPose& joint = pose.joints[share.joint];
@@ -261,7 +261,7 @@ GeometryPtr posedGeometry(const Snapshot& snapshot) {
     for (const DeformedObject& deformed : snapshot.deformed) {
         Object& object = geometry->objects[deformed.object];
         Mesh mesh = snapshot.geometry->meshes[static_cast<size_t>(object.mesh)];
-        poseMesh(poseOf(snapshot, deformed, *mesh.deformation), mesh);
+        poseMesh(getPose(snapshot, deformed, *mesh.deformation), mesh);
         object.mesh = static_cast<int>(geometry->meshes.size());
         geometry->meshes.push_back(std::move(mesh));
     }

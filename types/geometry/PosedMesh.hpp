@@ -24,7 +24,7 @@ struct MeshPose {
 };
 
 /** Returns the pose of an object, which is part of the snapshot. */
-MeshPose poseOf(const Snapshot& snapshot, const DeformedObject& deformed, const Deformation& deformation);
+MeshPose getPose(const Snapshot& snapshot, const DeformedObject& deformed, const Deformation& deformation);
 
 /** Returns whether all objects that the snapshot deforms can deform, and have the joints and targets they need. */
 bool deformsRightly(const Snapshot& snapshot);
@@ -35,7 +35,7 @@ bool deformsRightly(const Snapshot& snapshot);
 void poseMesh(const MeshPose& pose, Mesh& mesh);
 
 /** Fills in the velocity of each vertex, in the axes of the mesh [m/s]. */
-void velocitiesOf(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& velocities);
+void computeVelocities(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& velocities);
 
 /** Returns the geometry of a snapshot with deformed objects in their shape, each with its own mesh after those of
  *  the geometry. Returns the same geometry if no object is deformed. */

@@ -31,7 +31,7 @@ struct Turns {
 };
 
 /** Returns the rotation angles of a unit quaternion. */
-inline Turns turnsOf(const glm::dquat& q) {
+inline Turns toTurns(const glm::dquat& q) {
     return {.yaw = std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)),
             .pitch = std::asin(std::clamp(2 * (q.w * q.y - q.z * q.x), -1.0, 1.0)),
             .roll = std::atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y))};

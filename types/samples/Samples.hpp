@@ -85,7 +85,7 @@ concept Scalar = std::is_arithmetic_v<T> || std::is_same_v<T, Time> || std::is_s
 
 /** Returns the number of a sample, a truth value as 0 or 1. */
 template <Scalar T>
-auto numberOf(const T& value) {
+auto getNumber(const T& value) {
     if constexpr (std::is_same_v<T, Time>)
         return value.seconds();
     else if constexpr (std::is_same_v<T, Angle>)
@@ -240,7 +240,7 @@ concept NamesObjects = requires(const T& sample) {
 /** Returns the contradiction in a sample, as the rest of a sentence after "a sample"; null when there is none. Types
  *  report it by `diagnostic()`. */
 template <class T>
-const char* diagnosticOf(const T& sample) {
+const char* findDiagnostic(const T& sample) {
     if constexpr (requires { sample.diagnostic(); })
         return sample.diagnostic();
     else
@@ -251,7 +251,7 @@ const char* diagnosticOf(const T& sample) {
  *  `where` are the arguments of the Error before its text. */
 template <class Error = std::invalid_argument, class Sample, class... Where>
 void requireSound(const Sample& sample, const std::string& what, const Where&... where) {
-    if (const char* const diagnostic = diagnosticOf(sample)) throw Error(where..., what + " " + diagnostic);
+    if (const char* const diagnostic = findDiagnostic(sample)) throw Error(where..., what + " " + diagnostic);
 }
 
 }  // namespace insonify::types

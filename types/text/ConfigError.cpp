@@ -44,7 +44,7 @@ ConfigError::ConfigError(Diagnostics diagnostics)
 ConfigError::ConfigError(std::string file, std::string path, std::string message)
     : ConfigError(Diagnostics{{std::move(path), std::move(message), std::move(file)}}) {}
 
-std::string reasonOf(const std::exception& failure) {
+std::string getReason(const std::exception& failure) {
     if (dynamic_cast<const std::bad_alloc*>(&failure)) return "out of memory";
     if (!isOfStandardLibrary(failure.what())) return failure.what();
     if (dynamic_cast<const std::length_error*>(&failure)) return "out of memory";

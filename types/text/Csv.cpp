@@ -23,14 +23,14 @@ std::string_view trimmed(std::string_view text) {
     return first == text.npos ? text.substr(0, 0) : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-std::string headerOf(const std::vector<CsvColumn>& columns) {
+std::string makeHeader(const std::vector<CsvColumn>& columns) {
     std::string header;
     for (const CsvColumn& column : columns) header += (header.empty() ? "" : ",") + column.name;
     return header;
 }
 
 /** Returns "a finite number", or a text such as "a number from 0 to 90". */
-std::string wantedOf(const CsvColumn& column) {
+std::string describeWanted(const CsvColumn& column) {
     if (std::isinf(column.min) && std::isinf(column.max)) return "a finite number";
     char text[80];
     std::snprintf(text, sizeof text, "a number from %g to %g", column.min, column.max);
@@ -53,7 +53,7 @@ public:
             text.remove_prefix(std::min(end + 1, text.size()));
         }
         if (!has_header_)
-            report(1, "", "is empty; it must start with the header " + headerOf(columns_));
+            report(1, "", "is empty; it must start with the header " + makeHeader(columns_));
         else if (rows_.size() < minimum && diagnostics_.empty())
             report(1, "",
                    "has " + std::to_string(rows_.size()) +
@@ -70,7 +70,7 @@ private:
         if (has_header_ && is_commented && trimmed(line).front() == '#') return;
         if (has_header_) return readRow(line);
         has_header_ = true;
-        const std::string wanted = headerOf(columns_);
+        const std::string wanted = makeHeader(columns_);
         if (is_commented ? namesIn(line).starts_with("#" + wanted) : trimmed(line) == wanted) return;
         report(1, "",
                "is '" + std::string(trimmed(line).substr(0, 80)) + "'; the header must " +
@@ -135,7 +135,8 @@ private:
         const auto [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
         const bool is_number = code == std::errc() && stop == text.data() + text.size() && std::isfinite(value);
         if (is_number && value >= column.min && value <= column.max) return;
-        report(place, column.name, "is '" + std::string(text.substr(0, 40)) + "'; it must be " + wantedOf(column));
+        report(place, column.name,
+               "is '" + std::string(text.substr(0, 40)) + "'; it must be " + describeWanted(column));
     }
 
     void report(int place, std::string path, std::string message) {
@@ -168,7 +169,7 @@ std::vector<std::string> csvFilesNextTo(const std::filesystem::path& file) {
 std::vector<std::vector<double>> readTable(const std::filesystem::path& file,
                                            const std::function<TableForm(std::string_view)>& form, size_t minimum,
                                            const CsvValidator& validate) {
-    const auto wanted = [&] { return "must be a CSV file with header " + headerOf(form("").columns); };
+    const auto wanted = [&] { return "must be a CSV file with header " + makeHeader(form("").columns); };
     std::ifstream stream(file, std::ios::binary);
     if (std::error_code error; !stream && !std::filesystem::exists(file, error))
         throw ConfigError(file.string(), "",

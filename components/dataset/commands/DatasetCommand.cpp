@@ -28,7 +28,7 @@ struct DatasetOptions {
     bool quiet = false;
 };
 
-Format formatOf(const std::string& name) {
+Format getFormat(const std::string& name) {
     const auto& names = types::EnumNames<Format>::names;
     return static_cast<Format>(std::ranges::find(names, name) - std::begin(names));
 }
@@ -65,7 +65,7 @@ Made makeMissing(DatasetRun& run, Store& store, const DatasetOptions& options) {
 }
 
 int makeDataset(const DatasetOptions& options) {
-    DatasetRun run(options.deployment, options.sweep, formatOf(options.format), options.changes);
+    DatasetRun run(options.deployment, options.sweep, getFormat(options.format), options.changes);
     console::OutputFolder folder(options.out, options.deployment);
     folder.keep();
     Collection collection(run.title(options.sweep), folder.path());

@@ -42,9 +42,9 @@ fs::path ownFolder(const fs::path& path) {
 
 /** Returns the folder of made scenes: by the XDG base directory specification, or the folder of temporary files. */
 fs::path cacheFolder() {
-    const auto valueOf = [](const char* name) { return fs::path(std::getenv(name) ? std::getenv(name) : ""); };
-    fs::path base = valueOf("XDG_CACHE_HOME");
-    if (!base.is_absolute() && valueOf("HOME").is_absolute()) base = valueOf("HOME") / ".cache";
+    const auto getValue = [](const char* name) { return fs::path(std::getenv(name) ? std::getenv(name) : ""); };
+    fs::path base = getValue("XDG_CACHE_HOME");
+    if (!base.is_absolute() && getValue("HOME").is_absolute()) base = getValue("HOME") / ".cache";
     if (!base.is_absolute()) base = ownFolder(fs::temp_directory_path() / fmt::format("insonify-{}", geteuid()));
     return base / "insonify" / "scenes";
 }
@@ -55,14 +55,14 @@ std::string generatorDigest() {
     return digest;
 }
 
-std::string originOf(const SceneChoice& scene, const std::string& generator) {
+std::string getOrigin(const SceneChoice& scene, const std::string& generator) {
     return fmt::format("recipe {} seed {} generator {}\n", types::sha256OfFile(scene.recipe), scene.seed, generator);
 }
 
 /** Returns the file of a scene, which is made if it does not exist. It is renamed to its final name when complete,
  *  because other processes may make it too. */
 std::string madeFile(const SceneChoice& scene, const std::string& generator) {
-    const fs::path folder = cacheFolder() / types::sha256(originOf(scene, generator)).substr(0, 32);
+    const fs::path folder = cacheFolder() / types::sha256(getOrigin(scene, generator)).substr(0, 32);
     const std::string stem = fmt::format("{}_{}", fs::path(scene.recipe).stem().string(), scene.seed);
     const fs::path file = folder / (stem + ".glb"), passing = folder / fmt::format("{}.{}.glb", stem, getpid());
     if (fs::is_regular_file(file)) return file;
@@ -90,12 +90,12 @@ Sweep withMadeScenes(Sweep sweep) {
     return sweep;
 }
 
-std::string originsOf(const Sweep& sweep) {
+std::string describeOrigins(const Sweep& sweep) {
     if (std::ranges::none_of(sweep.scenes, hasRecipe)) return "";
     const std::string generator = generatorDigest();
     std::string text;
     for (const SceneChoice& scene : sweep.scenes)
-        if (hasRecipe(scene)) text += originOf(scene, generator);
+        if (hasRecipe(scene)) text += getOrigin(scene, generator);
     return text;
 }
 
@@ -116,7 +116,7 @@ constexpr const char* no_budget =
 std::string quoted(const std::string& text) { return console::Json(text).dump(); }
 
 /** Returns the trajectory of a sweep. A file that does not exist is an error at its place in the sweep. */
-pose::Trajectory trajectoryOf(const Sweep& sweep) {
+pose::Trajectory makeTrajectory(const Sweep& sweep) {
     const TrajectoryPoses& asked = *sweep.trajectory;
     try {
         return pose::Trajectory::fromFile(asked.file, false, asked.times, asked.world_frame);
@@ -132,11 +132,11 @@ Sweep seeded(Sweep sweep, std::optional<uint64_t> seed) {
 }
 
 /** Returns the poses of each sample along a trajectory. */
-std::vector<std::vector<TimedPose>> runsOf(const Sweep& sweep) {
+std::vector<std::vector<TimedPose>> getRuns(const Sweep& sweep) {
     std::vector<std::vector<TimedPose>> runs;
     if (!sweep.trajectory) return runs;
     const TrajectoryPoses& asked = *sweep.trajectory;
-    const pose::Trajectory trajectory = trajectoryOf(sweep);
+    const pose::Trajectory trajectory = makeTrajectory(sweep);
     const double first = trajectory.stamps().front().time, last = trajectory.stamps().back().time;
     const double from = asked.from.value_or(std::max(first, 0.0)), to = asked.to.value_or(last);
     const double length = to - from - (sweep.lines ? sweep.lines->duration() : 0);  // where samples begin
@@ -200,10 +200,10 @@ void addFiles(const Sweep& sweep, const fs::path& folder, std::string& text) {
     }
 }
 
-YAML::Node budgetOf(const framework::TaskSpec& task) { return child(child(task.properties, "quality"), "budget_ms"); }
+YAML::Node findBudget(const framework::TaskSpec& task) { return child(child(task.properties, "quality"), "budget_ms"); }
 
 /** Returns the only name; throws if there are several or none. */
-const std::string& onlyOf(const std::vector<std::string>& names, const std::string& file, const char* what) {
+const std::string& findOnly(const std::vector<std::string>& names, const std::string& file, const char* what) {
     if (names.size() == 1) return names.front();
     throw types::ConfigError(file, "connections",
                              fmt::format("has several {}: {}; a data set is of one", what, fmt::join(names, ", ")));
@@ -231,7 +231,7 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
             nodes.insert(nodes.end(), names.begin() + 1, names.end());
         }
     }
-    samples_.emplace(sweep_, runsOf(sweep_), std::move(parts));
+    samples_.emplace(sweep_, getRuns(sweep_), std::move(parts));
     classes_.emplace(sweep_, objects, nodes);
     for (const SceneFile& scene : scenes_) instances_.emplace_back(*classes_, scene.objects);
     selection_ =
@@ -276,7 +276,7 @@ std::vector<std::string> DatasetRun::tasksOfType(const std::string& type) const 
 void DatasetRun::refuseBudgets() const {
     framework::ConfigReader reader(spec_.file, spec_.origins);
     for (const framework::TaskSpec& task : spec_.tasks) {
-        const YAML::Node budget = budgetOf(task);
+        const YAML::Node budget = findBudget(task);
         if (budget.IsDefined()) reader.report(budget, task.path() + ".properties.quality.budget_ms", no_budget);
     }
     if (!reader.diagnostics().empty()) throw types::ConfigError(reader.diagnostics());
@@ -329,7 +329,7 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
     for (const framework::TaskSpec& each : spec.tasks) {
         if (each.type == scene_type && property == each.name + ".file")
             refuse("names the file of " + each.name + ", which sets the objects of the scene; name it under scenes");
-        if (budgetOf(each).IsDefined()) refuse(no_budget);
+        if (findBudget(each).IsDefined()) refuse(no_budget);
     }
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
     const auto [task, name] = splitPort(property);
@@ -350,9 +350,9 @@ DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {
     scene.geometry = std::make_shared<const types::Geometry>();
     if (!file.empty()) scene = scene::readScene(file);  // otherwise there is only the floor of a survey
     SceneFile read{file.empty() ? "bathymetry" : fs::path(file).filename().string(),
-                   partsOf(sweep_, scene),
+                   getParts(sweep_, scene),
                    {},
-                   dataset::digestOf(*scene.geometry)};
+                   dataset::computeDigest(*scene.geometry)};
     read.objects = lineages(scene);
     return read;
 }
@@ -381,14 +381,14 @@ void DatasetRun::computeDigests() {
             text += fmt::format("file {}\n", types::sha256OfFile(folder / file));
     }
     addFiles(sweep_, folder, text);
-    text += originsOf(sweep_);
+    text += describeOrigins(sweep_);
     for (const SceneFile& scene : scenes_) text += fmt::format("scene {} {}\n", scene.name, scene.digest);
     if (sweep_.trajectory) text += fmt::format("trajectory {}\n", types::sha256OfFile(sweep_.trajectory->file));
     origin_ = types::sha256(head + text);
     digest_ = types::sha256(head + seed + text + (changes_.count ? fmt::format("count {}\n", *changes_.count) : ""));
 }
 
-std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {
+std::vector<std::string> DatasetRun::makeOverrides(const Sample& sample) const {
     std::vector<std::string> all = changes_.set;
     const SceneChoice& choice = sweep_.scenes[sample.scene];
     if (!choice.file.empty())
@@ -398,12 +398,13 @@ std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {
     for (const auto& [property, value] : choice.set) all.push_back(property + "=" + value.yaml);
     for (const auto& [property, value] : sample.settings) all.push_back(property + "=" + value);
     if (std::ranges::any_of(sample.objects, [](const PlacedObject& object) { return object.scale != 1; }))
-        for (const std::string& task : tasksOfType(scene_type)) all.push_back(task + ".scale=" + scaleOf(task, sample));
+        for (const std::string& task : tasksOfType(scene_type))
+            all.push_back(task + ".scale=" + getScale(task, sample));
     return all;
 }
 
 /** Returns the scales of a scene's nodes from its task, with those of a sample's objects. */
-std::string DatasetRun::scaleOf(const std::string& task, const Sample& sample) const {
+std::string DatasetRun::getScale(const std::string& task, const Sample& sample) const {
     console::Json scales = console::Json::object();
     const YAML::Node own = child(spec_.task(task)->properties, "scale");
     if (own.IsMap())
@@ -435,9 +436,9 @@ types::ConfigError DatasetRun::placed(types::Diagnostics diagnostics, const Samp
  *  meshes. */
 void DatasetRun::simulate(const Sample& sample) {
     deployer::SimulationOptions options;
-    options.overrides = overridesOf(sample);
+    options.overrides = makeOverrides(sample);
     options.truth = true;
-    options.objects = samples_->objectsOf(sample.scene);
+    options.objects = samples_->getObjects(sample.scene);
     if (simulation_ && options.overrides == overrides_ && sample.scene == scene_) return;
     try {
         before_ = std::exchange(simulation_, std::make_unique<deployer::Simulation>(deployment_, options));
@@ -456,8 +457,8 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
         at[deployer::Simulation::objectPort(object.name)] = object.at;
         std::erase(vehicles, deployer::Simulation::objectPort(object.name));
     }
-    const std::string vehicle = onlyOf(vehicles, deployment_, "vehicles");
-    onlyOf(simulation_->pings(), deployment_, "pings");
+    const std::string vehicle = findOnly(vehicles, deployment_, "vehicles");
+    findOnly(simulation_->pings(), deployment_, "pings");
     const bool is_3d = simulation_->hasRangeImages(0);
     if (sweep_.picture.shape == output::PlainShape::Range && !is_3d)
         throw types::ConfigError(

@@ -18,13 +18,13 @@ namespace insonify::dataset {
 
 /** Returns the parts of a scene that a sweep needs: the nodes to place with their places in the file, the nodes to keep
  *  clear of, and the nodes to place on. Throws types::ConfigError if a node for objects to stand on is absent. */
-SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene);
+SceneParts getParts(const Sweep& sweep, const scene::Scene& scene);
 
 /** Returns the names of each object of a scene, and of the nodes above it. */
 std::vector<Lineage> lineages(const scene::Scene& scene);
 
 /** Returns the SHA-256 of all triangles, objects' places and materials of a scene. */
-std::string digestOf(const types::Geometry& geometry);
+std::string computeDigest(const types::Geometry& geometry);
 
 /** Reads the sweep of a data set. Its paths are resolved against its folder. Throws types::ConfigError with all
  *  diagnostics and their places. */
@@ -37,7 +37,7 @@ Sweep withMadeScenes(Sweep sweep);
 
 /** Returns a text that identifies the origin of the scenes with a recipe, for the hash of a data set; empty if there
  *  are none. */
-std::string originsOf(const Sweep& sweep);
+std::string describeOrigins(const Sweep& sweep);
 
 /** Changes of the files by the command line. */
 struct Changes {
@@ -82,8 +82,8 @@ private:
     void readScenes();
     SceneFile readScene(const std::string& file) const;
     void computeDigests();
-    std::vector<std::string> overridesOf(const Sample& sample) const;
-    std::string scaleOf(const std::string& task, const Sample& sample) const;
+    std::vector<std::string> makeOverrides(const Sample& sample) const;
+    std::string getScale(const std::string& task, const Sample& sample) const;
     std::vector<std::string> tasksOfType(const std::string& type) const;
     types::ConfigError placed(types::Diagnostics diagnostics, const Sample& sample) const;
     void simulate(const Sample& sample);

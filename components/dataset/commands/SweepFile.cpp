@@ -15,7 +15,7 @@ namespace insonify::dataset {
 namespace {
 
 /** Returns the node's objects in the axes of the world, about the node's origin, turned as in the file. */
-Placeable placeableOf(const scene::Scene& scene, const std::vector<scene::Part>& parts, bool tilts) {
+Placeable makePlaceable(const scene::Scene& scene, const std::vector<scene::Part>& parts, bool tilts) {
     const types::Geometry& geometry = *scene.geometry;
     const scene::Part& first = parts.front();
     const glm::dmat4 world_from_body =
@@ -39,17 +39,17 @@ Placeable placeableOf(const scene::Scene& scene, const std::vector<scene::Part>&
     return placeable;
 }
 
-types::Extent boxOf(const scene::Scene& scene, const std::vector<scene::Part>& parts) {
+types::Extent makeBox(const scene::Scene& scene, const std::vector<scene::Part>& parts) {
     types::Extent box;
     for (const scene::Part& part : parts) {
         const types::Object& object = scene.geometry->objects[part.object];
-        box.add(types::extentOf(scene.geometry->meshes[static_cast<size_t>(object.mesh)], object.world_from_object));
+        box.add(types::getExtent(scene.geometry->meshes[static_cast<size_t>(object.mesh)], object.world_from_object));
     }
     return box;
 }
 
 void addTriangles(const scene::Scene& scene, size_t node, std::vector<std::array<glm::dvec3, 3>>& triangles) {
-    for (const scene::Part& part : scene::partsOf(scene, static_cast<int>(node))) {
+    for (const scene::Part& part : scene::getParts(scene, static_cast<int>(node))) {
         const types::Object& object = scene.geometry->objects[part.object];
         const types::Mesh& mesh = scene.geometry->meshes[static_cast<size_t>(object.mesh)];
         const auto corner = [&](size_t i) {
@@ -61,7 +61,7 @@ void addTriangles(const scene::Scene& scene, size_t node, std::vector<std::array
 }
 
 /** Returns the triangles of all nodes that match a pattern. */
-std::vector<std::array<glm::dvec3, 3>> groundOf(const scene::Scene& scene, const std::string& pattern) {
+std::vector<std::array<glm::dvec3, 3>> findGround(const scene::Scene& scene, const std::string& pattern) {
     std::vector<std::array<glm::dvec3, 3>> triangles;
     for (size_t node = 0; node < scene.nodes.size(); ++node)
         if (matches(pattern, scene.nodes[node].name)) addTriangles(scene, node, triangles);
@@ -74,13 +74,13 @@ bool anyMatches(const std::vector<std::string>& patterns, const std::string& nam
 
 void addNode(const Sweep& sweep, const scene::Scene& scene, size_t node, SceneParts& parts) {
     const std::string& name = scene.nodes[node].name;
-    const std::vector<scene::Part> objects = scene::partsOf(scene, static_cast<int>(node));
+    const std::vector<scene::Part> objects = scene::getParts(scene, static_cast<int>(node));
     if (objects.empty()) return;
     for (const ObjectGroup& group : sweep.objects)
-        if (anyMatches(group.avoid, name)) parts.boxes[name] = boxOf(scene, objects);
+        if (anyMatches(group.avoid, name)) parts.boxes[name] = makeBox(scene, objects);
     const bool tilts = std::ranges::any_of(
         sweep.objects, [&](const ObjectGroup& group) { return group.tilts() && anyMatches(group.names, name); });
-    parts.placeables[name] = placeableOf(scene, objects, tilts);
+    parts.placeables[name] = makePlaceable(scene, objects, tilts);
 }
 
 template <class T>
@@ -402,7 +402,7 @@ private:
 
 }  // namespace
 
-SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene) {
+SceneParts getParts(const Sweep& sweep, const scene::Scene& scene) {
     SceneParts parts;
     if (sweep.objects.empty()) return parts;
     for (size_t node = 0; node < scene.nodes.size(); ++node) {
@@ -415,7 +415,7 @@ SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene) {
         const auto isOfGroup = [&](const auto& each) { return anyMatches(group.names, each.first); };
         if (!group.ground || std::ranges::none_of(parts.placeables, isOfGroup)) continue;
         resolve(sweep, {*group.ground}, parts.nodes, path + "ground", group.line, group.column);
-        auto& ground = parts.grounds[*group.ground] = groundOf(scene, *group.ground);
+        auto& ground = parts.grounds[*group.ground] = findGround(scene, *group.ground);
         if (ground.empty())
             throw types::ConfigError({{path + "ground", "is " + *group.ground + ", which has no surface to stand on",
                                        sweep.file, group.line, group.column}});
@@ -434,7 +434,7 @@ std::vector<Lineage> lineages(const scene::Scene& scene) {
     return all;
 }
 
-std::string digestOf(const types::Geometry& geometry) {
+std::string computeDigest(const types::Geometry& geometry) {
     types::Sha256 hash;
     for (const types::Mesh& mesh : geometry.meshes) {
         addBytes(hash, mesh.positions);

@@ -57,7 +57,7 @@ Json property(const TaskSpec* task, std::initializer_list<const char*> path) {
 
 Json orElse(const Json& value, const char* otherwise) { return value.is_null() ? Json(otherwise) : value; }
 
-std::string binsOf(const std::string& model, const std::string& output, bool amplified) {
+std::string getBins(const std::string& model, const std::string& output, bool amplified) {
     const std::string gain = amplified ? ", times the receiver's gain" : "";
     const std::string intensity =
         model == "physical" ? "received intensity of the bin relative to that of the source at 1 m, linear" + gain
@@ -70,7 +70,7 @@ std::string binsOf(const std::string& model, const std::string& output, bool amp
 }
 
 /** Returns the sonar's frequency, else that of its absorption [kHz]; null where neither is given. */
-Json frequencyOf(const TaskSpec* sonar) {
+Json getFrequency(const TaskSpec* sonar) {
     const Json frequency = property(sonar, {"frequency_khz"});
     return frequency.is_null() ? property(sonar, {"absorption", "frequency_khz"}) : frequency;
 }
@@ -82,7 +82,7 @@ Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
     const TaskSpec* scene = upstreamSpec(spec, task, "scene::SceneTask");
     const std::string model = orElse(property(sonar, {"model"}), "physical"),
                       output = orElse(property(receiver, {"output"}), "intensity");
-    return {{"bins", binsOf(model, output, receiver != nullptr)},
+    return {{"bins", getBins(model, output, receiver != nullptr)},
             {"output", output},
             {"model", model},
             {"reference", model == "physical" ? Json("intensity of the source at 1 m") : Json(nullptr)},
@@ -90,7 +90,7 @@ Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
             {"gain_db", property(receiver, {"gain_db"})},
             {"code", property(receiver, {"code"})},
             {"noise", noise ? toJson(noise->properties) : Json(nullptr)},
-            {"frequency_khz", frequencyOf(sonar)},
+            {"frequency_khz", getFrequency(sonar)},
             {"absorption", property(sonar, {"absorption"})},
             {"range_m", "slant range of the middle of each bin, [pings, bins]"},
             {"bin_duration",
@@ -125,7 +125,7 @@ Json poseMeaning() {
 
 /** Returns the meaning of a sample's fields, from the type's description. */
 template <class T>
-Json fieldsOf() {
+Json getFields() {
     Json fields = Json::object();
     const auto report = [&](const types::Field& field, const auto&) {
         const std::string unit = field.unit;
@@ -145,28 +145,28 @@ Json cloudMeaning(const std::optional<types::Datum>& datum) {
 
 }  // namespace
 
-DeploymentSpec deploymentOf(const log::Reader& log) try {
+DeploymentSpec getDeployment(const log::Reader& log) try {
     return DeploymentSpec::parse(log.metadatum("insonify_deployment"), log.path().string());
 } catch (const types::ConfigError&) {
     return {};
 }
 
-Json meaningOf(const log::Reader& log, const log::Stream& stream) {
+Json readMeaning(const log::Reader& log, const log::Stream& stream) {
     Json meaning = {{"stream", stream.name}};
     if (log::holdsPings(stream)) {
-        const DeploymentSpec spec = deploymentOf(log);
-        meaning.update(pingMeaning(spec, writerOf(spec, stream.name)));
+        const DeploymentSpec spec = getDeployment(log);
+        meaning.update(pingMeaning(spec, findWriter(spec, stream.name)));
         addRecorded(stream, meaning);
     } else if (stream.holds<types::Pose>())
         meaning.update(poseMeaning());
     else if (stream.holds<types::SonarTruth>())
-        meaning.update(fieldsOf<types::SonarTruth>());
+        meaning.update(getFields<types::SonarTruth>());
     else if (stream.holds<types::SonarReturns>())
-        meaning.update(fieldsOf<types::SonarReturns>());
+        meaning.update(getFields<types::SonarReturns>());
     else if (stream.holds<types::SonarDetections>())
-        meaning.update(fieldsOf<types::SonarDetections>());
+        meaning.update(getFields<types::SonarDetections>());
     else if (stream.holds<types::SonarElements>())
-        meaning.update(fieldsOf<types::SonarElements>());
+        meaning.update(getFields<types::SonarElements>());
     else if (stream.holds<types::PointCloud>())
         meaning.update(cloudMeaning(replay::recordedDatum(log)));
     else
@@ -177,14 +177,14 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     return meaning;
 }
 
-const log::Stream& pingsOf(const log::Reader& log, const std::string& stream, const char* wanted) {
-    const log::Stream& pings = log.streams()[log.indexOf(stream)];
+const log::Stream& getPings(const log::Reader& log, const std::string& stream, const char* wanted) {
+    const log::Stream& pings = log.streams()[log.findIndex(stream)];
     if (!holdsPings(pings)) throw types::ConfigError(log.path(), pings.name, "holds " + pings.type + "; " + wanted);
     if (pings.count == 0) throw types::ConfigError(log.path(), pings.name, "holds no ping");
     return pings;
 }
 
-double frequencyOf(const Json& meaning) {
+double getFrequency(const Json& meaning) {
     const Json& frequency = meaning["frequency_khz"];
     return frequency.is_number() ? frequency.get<double>() : 0;
 }
@@ -193,7 +193,7 @@ namespace fs = std::filesystem;
 
 output::DisplayConfig displayFor(const log::Reader& log, const log::Stream& stream, const types::Sonar& ping) {
     output::DisplayConfig display;
-    const Json meaning = meaningOf(log, stream);
+    const Json meaning = readMeaning(log, stream);
     if (meaning.value("output", Json()) == "code") {
         display.scale = output::BinScale::Code;
         if (meaning["code"].is_object()) display.code_bits = meaning["code"].value("bits", display.code_bits);
@@ -252,7 +252,7 @@ bool isSideScan(const types::Sonar& ping) {
 types::Sonar firstPing(log::Reader& log, const log::Stream& stream) {
     types::Sonar ping;
     if (log::holdsPings(stream) && stream.count > 0)
-        readPing(log, *std::ranges::find(log.samples(), log.indexOf(stream.name), &log::SampleRef::stream), ping);
+        readPing(log, *std::ranges::find(log.samples(), log.findIndex(stream.name), &log::SampleRef::stream), ping);
     return ping;
 }
 
@@ -262,7 +262,7 @@ class Waterfalls {
 public:
     /** @param altitudes of the lines, which are then shown along the ground; null: in slant range */
     Waterfalls(const output::DisplayConfig& display, const LoggedAltitudes* altitudes, fs::path path)
-        : image_(configOf(display, altitudes != nullptr)), altitudes_(altitudes), path_(std::move(path)) {}
+        : image_(getConfig(display, altitudes != nullptr)), altitudes_(altitudes), path_(std::move(path)) {}
 
     void add(const types::Sonar& ping) {
         const bool is_other = ping.bin_count != last_.bin_count || ping.binStart(1) != last_.binStart(1);
@@ -276,7 +276,7 @@ public:
     }
 
 private:
-    static output::SideScanPictureConfig configOf(const output::DisplayConfig& display, bool along_ground) {
+    static output::SideScanPictureConfig getConfig(const output::DisplayConfig& display, bool along_ground) {
         output::SideScanPictureConfig config;
         static_cast<output::DisplayConfig&>(config) = display;
         if (along_ground) config.ground_range.emplace();
@@ -315,7 +315,7 @@ std::string whyWithoutAltitudes(const log::Reader& log) {
 
 std::vector<fs::path> exportPictures(log::Reader& log, const std::string& stream, const fs::path& path,
                                      bool along_ground) {
-    const log::Stream& exported = log.streams()[log.indexOf(stream)];
+    const log::Stream& exported = log.streams()[log.findIndex(stream)];
     const types::Sonar first = firstPing(log, exported);
     if (along_ground && !isSideScan(first))
         throw types::ConfigError("", "--ground", "is for the lines of a side-scan; " + stream + " has none");
@@ -350,9 +350,9 @@ namespace {
 // -- XTF --------------------------------------------------------------------------------------------------------------
 
 /** Returns the requested stream of poses, or the only one; null: there is none. */
-const log::Stream* posesOf(log::Reader& log, const std::string& asked) {
+const log::Stream* getPoses(log::Reader& log, const std::string& asked) {
     if (!asked.empty()) {
-        const log::Stream& poses = log.streams()[log.indexOf(asked)];
+        const log::Stream& poses = log.streams()[log.findIndex(asked)];
         if (!poses.holds<types::Pose>()) refuse(log, asked, "holds " + poses.type + "; --pose takes poses");
         return &poses;
     }
@@ -377,15 +377,15 @@ void refuseUnlessSideScan(const log::Reader& log, const std::string& stream, con
 }  // namespace
 
 void exportXtf(log::Reader& log, const std::string& stream, const std::string& poses, const fs::path& to) {
-    const log::Stream& pings = pingsOf(log, stream, "an XTF file takes the lines of a side-scan");
-    const Json meaning = meaningOf(log, pings);
+    const log::Stream& pings = getPings(log, stream, "an XTF file takes the lines of a side-scan");
+    const Json meaning = readMeaning(log, pings);
     const bool codes = meaning.value("output", Json()) == "code";
     const recordings::XtfFormat format{codes ? recordings::XtfSamples::Uint16 : recordings::XtfSamples::Float32,
-                                       frequencyOf(meaning), to.filename().string()};
-    const log::Stream* const placed = posesOf(log, poses);
+                                       getFrequency(meaning), to.filename().string()};
+    const log::Stream* const placed = getPoses(log, poses);
     if (!placed)
         console::printDiagnostic("notice: {} holds no poses: the lines have no positions\n", log.path().string());
-    const LoggedTrack track(log, placed, mountOf(meaning));
+    const LoggedTrack track(log, placed, findMount(meaning));
     const LoggedAltitudes altitudes(log);
     types::Sonar ping = firstPing(log, pings);
     refuseUnlessSideScan(log, pings.name, ping);

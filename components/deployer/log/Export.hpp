@@ -14,7 +14,7 @@ namespace insonify::deployer {
 
 /** Returns the deployment that wrote the log, from the metadata of its first stream; empty where it is unknown or
  *  unreadable. */
-framework::DeploymentSpec deploymentOf(const log::Reader& log);
+framework::DeploymentSpec getDeployment(const log::Reader& log);
 
 /** Returns what the numbers of a stream mean, by the deployment in its metadata as written there. Settings from outside
  *  are in the run's properties log.
@@ -24,14 +24,14 @@ framework::DeploymentSpec deploymentOf(const log::Reader& log);
  *  what is not configured is null. Poses: {stream, position, orientation, quaternion_order}. Truth, returns and
  *  elements of pings: {stream, a text for each field; objects: the names of the truth's objects, where known}. Points:
  *  {stream, points, intensity; datum: the world's origin, where known}. Others: {stream, type}. */
-Json meaningOf(const log::Reader& log, const log::Stream& stream);
+Json readMeaning(const log::Reader& log, const log::Stream& stream);
 
 /** Returns the stream if it has at least one ping. Throws types::ConfigError for other streams, with the expectation
  *  `wanted`. */
-const log::Stream& pingsOf(const log::Reader& log, const std::string& stream, const char* wanted);
+const log::Stream& getPings(const log::Reader& log, const std::string& stream, const char* wanted);
 
 /** Returns the frequency in the metadata of a stream of pings [kHz]; 0: unknown. */
-double frequencyOf(const Json& meaning);
+double getFrequency(const Json& meaning);
 
 /** Returns how the pings of a stream are shown, of which `ping` is one. Bins are codes where the log records them as
  *  codes. Otherwise negative bins are levels in dB. */

@@ -61,7 +61,7 @@ public:
     void write(const std::string& stream, const T& sample, const log::Metadata& more = {}) {
         const auto [found, is_new] = streams_.try_emplace(stream);
         if (is_new) {
-            log::Metadata metadata = metadataOf(stream, more);
+            log::Metadata metadata = getMetadata(stream, more);
             log::addSampleMetadata(&sample, metadata);
             found->second = log_->addStream<T>(stream, metadata);
         }
@@ -90,7 +90,7 @@ private:
         }
         properties_->record(deployment.environment().records(), from, run_);
     }
-    log::Metadata metadataOf(const std::string& stream, const log::Metadata& more) const {
+    log::Metadata getMetadata(const std::string& stream, const log::Metadata& more) const {
         log::Metadata all = more;
         all.insert(run_.begin(), run_.end());
         if (const framework::TaskSpec* task = spec_.task(framework::splitPort(stream).first))
@@ -122,7 +122,7 @@ struct RecordedTasks {
 
 /** Returns the first sonar of a type that a receiver hears; null: it hears none. */
 template <class Sonar>
-const Sonar* sonarOf(const receiver::ReceiverTask& receiver, const framework::Deployment& deployment) {
+const Sonar* getSonar(const receiver::ReceiverTask& receiver, const framework::Deployment& deployment) {
     for (const std::string& name : upstream({receiver.name()}, deployment))
         if (const auto* sonar = dynamic_cast<const Sonar*>(deployment.task(name))) return sonar;
     return nullptr;
@@ -133,12 +133,12 @@ template <class Sonar>
 RecordedTasks recordedTasks(const DeploymentSpec& spec, const char* sonar_type) {
     framework::Registry registry = coreTasks();
     const framework::Deployment deployment(spec, registry);
-    const receiver::ReceiverTask* receiver = &codingReceiverOf(deployment, spec.file);
+    const receiver::ReceiverTask* receiver = &findCodingReceiver(deployment, spec.file);
     for (const auto& task : deployment.tasks())
         if (const auto* other = dynamic_cast<const receiver::ReceiverTask*>(task.get()))
-            if (other->config->output == receiver::Output::Code && !sonarOf<Sonar>(*receiver, deployment))
+            if (other->config->output == receiver::Output::Code && !getSonar<Sonar>(*receiver, deployment))
                 receiver = other;
-    const Sonar* const sonar = sonarOf<Sonar>(*receiver, deployment);
+    const Sonar* const sonar = getSonar<Sonar>(*receiver, deployment);
     if (!sonar)
         throw types::ConfigError(spec.file, "tasks." + receiver->name(),
                                  std::string("has no input from a ") + sonar_type + ", whose pings are recorded");

@@ -34,7 +34,7 @@ const log::Stream* posesOfSonar(const log::Reader& log) {
     return all.size() == 1 ? all.front() : nullptr;
 }
 
-types::Mount mountOf(const Json& meaning) {
+types::Mount findMount(const Json& meaning) {
     types::Mount mount;
     const Json& given = meaning["mount"];
     if (!given.is_object()) return mount;

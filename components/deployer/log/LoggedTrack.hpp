@@ -27,7 +27,7 @@ private:
 const log::Stream* posesOfSonar(const log::Reader& log);
 
 /** Returns the mount in the metadata of a stream of pings (Export.hpp). */
-types::Mount mountOf(const Json& meaning);
+types::Mount findMount(const Json& meaning);
 
 /** The sonar's pose in the world over time. */
 class LoggedTrack {

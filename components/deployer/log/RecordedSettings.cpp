@@ -55,7 +55,7 @@ std::optional<Recorded> recordedQuality(const log::Reader& log, const std::strin
     return quality;
 }
 
-std::string textOf(const types::PropertyValue& value) {
+std::string toText(const types::PropertyValue& value) {
     const std::string* const text = std::get_if<std::string>(&value);
     if (!text) return std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
     const bool is_block = text->starts_with('{') || text->starts_with('[');
@@ -68,12 +68,12 @@ const std::string absent_value = "null";
 /** The values of a property, as setters take them, and the time at which the logger received each. */
 using Values = std::vector<std::pair<types::Time, std::string>>;
 
-Values valuesOf(log::Reader& log, const log::Stream& stream) {
+Values readValues(log::Reader& log, const log::Stream& stream) {
     Values values;
     const auto read = [&]<class T>(std::type_identity<T>) {
         if (stream.holds<T>())
             log.forEach<T>(stream.name, [&](const T& sample, const log::SampleRef& at) {
-                values.emplace_back(at.received, textOf(sample));
+                values.emplace_back(at.received, toText(sample));
             });
     };
     read(std::type_identity<bool>{});
@@ -102,14 +102,14 @@ std::map<std::string, types::Time> firstRecords(const log::Reader& properties) {
 }
 
 /** Returns the properties in a property log that belong to `tasks`, by "task.property". */
-std::map<std::string, Values> historiesOf(log::Reader& log, const std::set<std::string>& tasks) {
+std::map<std::string, Values> readHistories(log::Reader& log, const std::set<std::string>& tasks) {
     std::map<std::string, Values> histories;
     const auto first = firstRecords(log);
     for (const log::Stream& stream : log.streams()) {
         const auto [task, property] = splitPort(stream.name);
         const bool is_alias = stream.metadata.contains("insonify_alias_of");  // the log has its target as well
         if (!tasks.contains(task) || is_alias || property.find('.') != std::string::npos) continue;
-        Values values = valuesOf(log, stream);
+        Values values = readValues(log, stream);
         if (values.empty()) continue;
         addAbsence(log, stream.name, values);
         if (values.front().first > first.at(task)) values.insert(values.begin(), {first.at(task), absent_value});
@@ -135,7 +135,7 @@ struct Pings {
 };
 
 /** Returns the history of a property, for pings after `start`. */
-RecordedProperty historyOf(const std::string& property, const Values& values, const Pings& pings, types::Time start) {
+RecordedProperty makeHistory(const std::string& property, const Values& values, const Pings& pings, types::Time start) {
     RecordedProperty found{
         splitPort(property).first, splitPort(property).second, values.front().second, pings.driver, {}};
     for (const auto& [received, value] : values) {
@@ -150,16 +150,16 @@ RecordedProperty historyOf(const std::string& property, const Values& values, co
 }
 
 /** Returns the tasks' present properties, as setters take them, by "task.property". */
-std::map<std::string, std::string> propertiesOf(Deployment& deployment, const std::set<std::string>& tasks) {
+std::map<std::string, std::string> getProperties(Deployment& deployment, const std::set<std::string>& tasks) {
     std::map<std::string, std::string> all;
     for (const types::TaskRecord& task : deployment.environment().records())
         if (tasks.contains(task.name))
-            for (const auto& [name, value] : task.properties) all[task.name + "." + name] = textOf(value);
+            for (const auto& [name, value] : task.properties) all[task.name + "." + name] = toText(value);
     return all;
 }
 
 /** Returns the tasks' properties that may be absent, as "task.property". */
-std::set<std::string> optionalsOf(const Deployment& deployment, const std::set<std::string>& tasks) {
+std::set<std::string> findOptionals(const Deployment& deployment, const std::set<std::string>& tasks) {
     std::set<std::string> optionals;
     for (const auto& task : deployment.tasks())
         for (const auto* const properties : task->properties())
@@ -216,14 +216,14 @@ struct Settings : RecordedSettings {
             return;
         }
         const auto properties = log::openLog(*file);
-        const auto histories = historiesOf(*properties, tasks);
-        const auto present = propertiesOf(deployment, tasks);
+        const auto histories = readHistories(*properties, tasks);
+        const auto present = getProperties(deployment, tasks);
         for (const auto& [property, values] : histories) {
             if (settled.contains(property)) continue;
             const Pings& of_task = pings.at(splitPort(property).first);
             const types::Time begin = stampAt(log, from);
             const types::Time start = of_task.samples.empty() ? begin : std::max(begin, of_task.samples.front().time);
-            const RecordedProperty history = historyOf(property, values, of_task, start);
+            const RecordedProperty history = makeHistory(property, values, of_task, start);
             const auto now = present.find(property);
             if ((now == present.end() ? absent_value : now->second) != history.start)
                 assignments.push_back(property + "=" + history.start);
@@ -234,7 +234,7 @@ struct Settings : RecordedSettings {
     /** Logs without a version were written before each task had its own seed: the default was 1. */
     void addFormerSeeds(const Deployment& deployment, const log::Reader& log, const std::set<std::string>& tasks) {
         if (!log.metadatum("insonify_version").empty() || recordedSeed(log).value_or(1) != 0) return;
-        for (const std::string& property : optionalsOf(deployment, tasks)) {
+        for (const std::string& property : findOptionals(deployment, tasks)) {
             const auto [task, name] = splitPort(property);
             const bool is_written = framework::child(deployment.spec().task(task)->properties, name).IsDefined();
             if (name == "seed" && !is_written && !settled.contains(property)) assignments.push_back(property + "=1");
@@ -245,7 +245,7 @@ struct Settings : RecordedSettings {
                       const std::map<std::string, Values>& histories) {
         std::set<std::string> known;
         for (const auto& history : histories) known.insert(splitPort(history.first).first);
-        for (const std::string& property : optionalsOf(deployment, known))
+        for (const std::string& property : findOptionals(deployment, known))
             if (present.contains(property) && !histories.contains(property) && !settled.contains(property))
                 assignments.push_back(property + "=" + absent_value);
     }
@@ -256,15 +256,15 @@ std::map<std::string, Pings> pingsByTask(const log::Reader& log, const framework
                                          const Deployment& deployment) {
     std::map<std::string, Pings> pings;
     for (const std::string& stream : pingStreams(log, spec))
-        for (const std::string& task : upstream({writerOf(spec, stream)}, deployment))
-            if (!pings.contains(task)) pings.emplace(task, Pings(log, stream, writerOf(spec, stream)));
+        for (const std::string& task : upstream({findWriter(spec, stream)}, deployment))
+            if (!pings.contains(task)) pings.emplace(task, Pings(log, stream, findWriter(spec, stream)));
     return pings;
 }
 
 /** Throws for a task that is of another type than in the log: its recorded properties would be wrong. */
 void refuseOtherTypes(const log::Reader& log, const framework::DeploymentSpec& spec,
                       const std::set<std::string>& tasks) {
-    const framework::DeploymentSpec recorded = deploymentOf(log);
+    const framework::DeploymentSpec recorded = getDeployment(log);
     for (const std::string& task : tasks)
         if (const auto* before = recorded.task(task); before && before->type != spec.task(task)->type)
             throw types::ConfigError(log.path(), task,

@@ -27,7 +27,7 @@ bool isOfPort(const log::Stream& stream) {
 std::set<std::string> loggedTasks(const log::Reader& log, const DeploymentSpec& spec) {
     std::set<std::string> names;
     for (const log::Stream& stream : log.streams())
-        if (const std::string task = writerOf(spec, stream.name); isOfPort(stream) && spec.task(task))
+        if (const std::string task = findWriter(spec, stream.name); isOfPort(stream) && spec.task(task))
             names.insert(task);
     return names;
 }
@@ -65,7 +65,7 @@ std::string freeName(const DeploymentSpec& spec, std::string name) {
     return name;
 }
 
-std::string_view nameOf(types::WorldFrame frame) {
+std::string_view getName(types::WorldFrame frame) {
     return types::EnumNames<types::WorldFrame>::names[static_cast<size_t>(frame)];
 }
 
@@ -77,7 +77,7 @@ TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
     task.properties["file"] = std::filesystem::absolute(options.log).string();
     task.properties["from"] = options.from;
     task.properties["loop"] = options.loop;
-    task.properties["world_frame"] = std::string(nameOf(options.world_frame));
+    task.properties["world_frame"] = std::string(getName(options.world_frame));
     for (const log::PoseSource& source : options.poses) {
         YAML::Node node;
         node["source"] = source.source;
@@ -94,8 +94,8 @@ TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
 }
 
 /** Returns the stream of a port in a log, under its alias or its own name; empty: there is none. */
-std::string streamOf(const log::Reader& log, const DeploymentSpec& spec, const std::string& port) {
-    const std::string alias = spec.aliasOf(port);
+std::string getStream(const log::Reader& log, const DeploymentSpec& spec, const std::string& port) {
+    const std::string alias = spec.getAlias(port);
     return !alias.empty() && log.find(alias) ? alias : log.find(port) ? port : "";
 }
 
@@ -106,7 +106,7 @@ std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::R
     std::vector<ConnectionSpec> connections;
     for (const ConnectionSpec& written : spec.connections) {
         const bool from_log = replaced.contains(splitPort(written.from).first);
-        const std::string stream = from_log ? streamOf(log, spec, written.from) : "";
+        const std::string stream = from_log ? getStream(log, spec, written.from) : "";
         if (replaced.contains(splitPort(written.to).first) || (from_log && stream.empty())) continue;
         connections.push_back(written);
         if (from_log) connections.back().from = replay + "." + stream;
@@ -118,7 +118,7 @@ std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::R
  *  samples. */
 void addDeaf(const DeploymentSpec& spec, const log::Reader& log, std::set<std::string>& replaced) {
     const auto receives = [&](const ConnectionSpec& connection) {
-        return !replaced.contains(splitPort(connection.from).first) || !streamOf(log, spec, connection.from).empty();
+        return !replaced.contains(splitPort(connection.from).first) || !getStream(log, spec, connection.from).empty();
     };
     const auto isDeaf = [&](const TaskSpec& task) {
         bool reads = false, writes = false, has_reader = false;
@@ -163,7 +163,7 @@ void connectAltitudes(DeploymentSpec& spec, const log::Reader& log, const std::s
 void refuseScansFrom(const DeploymentSpec& spec, const log::Reader& log, double from) {
     const auto isDriven = [&](const TaskSpec& task) {
         return std::ranges::any_of(spec.connections, [&](const ConnectionSpec& connection) {
-            return connection.to == task.name + ".settings" && !streamOf(log, spec, connection.from).empty();
+            return connection.to == task.name + ".settings" && !getStream(log, spec, connection.from).empty();
         });
     };
     for (const TaskSpec& task : spec.tasks)
@@ -200,14 +200,14 @@ std::vector<std::string> bodyPorts(const DeploymentSpec& spec) {
         const auto [task, port] = splitPort(connection.to);
         const TaskSpec* const scene = spec.task(task);
         if (!scene || port != "pose" || scene->type != "scene::SceneTask") continue;
-        const std::string alias = spec.aliasOf(connection.from);
+        const std::string alias = spec.getAlias(connection.from);
         const std::string& name = alias.empty() ? connection.from : alias;
         if (std::ranges::find(ports, name) == ports.end()) ports.push_back(name);
     }
     return ports;
 }
 
-bool hasStreamOf(const DeploymentSpec& spec, const log::Reader& log) { return !loggedTasks(log, spec).empty(); }
+bool hasStream(const DeploymentSpec& spec, const log::Reader& log) { return !loggedTasks(log, spec).empty(); }
 
 std::set<std::string> outsideTasks(const DeploymentSpec& spec) {
     framework::Registry registry = coreTasks();
@@ -228,11 +228,11 @@ std::string poseStream(const log::Reader& log, const std::string& sonar) {
 std::vector<std::string> pingStreams(const log::Reader& log, const DeploymentSpec& spec) {
     std::vector<std::string> names;
     for (const log::Stream& stream : log.streams())
-        if (stream.holds<types::Sonar>() && spec.task(writerOf(spec, stream.name))) names.push_back(stream.name);
+        if (stream.holds<types::Sonar>() && spec.task(findWriter(spec, stream.name))) names.push_back(stream.name);
     return names;
 }
 
-std::string writerOf(const DeploymentSpec& spec, const std::string& stream) {
+std::string findWriter(const DeploymentSpec& spec, const std::string& stream) {
     return splitPort(spec.withoutAlias(stream)).first;
 }
 

@@ -35,14 +35,14 @@ framework::DeploymentSpec replaying(framework::DeploymentSpec spec, const log::R
                                     const ReplayOptions& options);
 
 /** Returns the task that writes a stream, whose name may be an alias. */
-std::string writerOf(const framework::DeploymentSpec& spec, const std::string& stream);
+std::string findWriter(const framework::DeploymentSpec& spec, const std::string& stream);
 
 /** Returns the ports whose poses place the bodies of the deployment's sonars: those that lead to `pose` of its scenes,
  *  by their aliases where they have one. */
 std::vector<std::string> bodyPorts(const framework::DeploymentSpec& spec);
 
 /** Whether the log has a stream of a task of the deployment. */
-bool hasStreamOf(const framework::DeploymentSpec& spec, const log::Reader& log);
+bool hasStream(const framework::DeploymentSpec& spec, const log::Reader& log);
 
 /** Returns the log's streams of pings that a task of the deployment writes. */
 std::vector<std::string> pingStreams(const log::Reader& log, const framework::DeploymentSpec& spec);

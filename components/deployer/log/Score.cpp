@@ -51,19 +51,20 @@ std::vector<float> energies(const types::Sonar& ping, output::BinScale scale) {
 
 /** Whether a log states the exact width of a stream's bins. */
 bool statesBins(const log::Reader& log, const std::string& stream) {
-    return !log.streams()[log.indexOf(stream)].metadatum(log::bin_width_key).empty();
+    return !log.streams()[log.findIndex(stream)].metadatum(log::bin_width_key).empty();
 }
 
 /** Returns the samples of a stream by time; of equal times the first. */
 std::map<types::Time, log::SampleRef> byTime(const log::Reader& log, const std::string& stream) {
     std::map<types::Time, log::SampleRef> samples;
-    const size_t index = log.indexOf(stream);
+    const size_t index = log.findIndex(stream);
     for (const log::SampleRef& at : log.samples())
         if (at.stream == index) samples.emplace(at.time, at);
     return samples;
 }
 
-PingScore scoreOf(const types::Sonar& recorded, const types::Sonar& rendered, const output::DisplayConfig& display) {
+PingScore computeScore(const types::Sonar& recorded, const types::Sonar& rendered,
+                       const output::DisplayConfig& display) {
     const std::vector<float> truth = energies(recorded, display.scale);
     const sonar::Layout layout{static_cast<int>(recorded.beam_count), static_cast<int>(recorded.bin_count),
                                recorded.binStart(1), 0};
@@ -95,10 +96,10 @@ StreamScore score(log::Reader& recorded, log::Reader& rendered, const std::strin
             ++result.other_shape;
         } else {
             if (result.pings.empty()) {
-                const log::Stream& shown = recorded.streams()[recorded.indexOf(stream)];
+                const log::Stream& shown = recorded.streams()[recorded.findIndex(stream)];
                 result.display = displayFor(recorded, shown, before);
             }
-            result.pings.push_back(scoreOf(before, after, result.display));
+            result.pings.push_back(computeScore(before, after, result.display));
             result.pings.back().recorded = at;
             result.pings.back().rendered = other->second;
         }

@@ -23,7 +23,7 @@ constexpr int answered = 0, silent = 1;
 using console::Action, console::Json, console::print;
 
 /** Returns the properties of a task that are ports, with their defaults: "port 12345, discovery.port 30303". */
-Json portsOf(const framework::TaskContext& task) {
+Json describePorts(const framework::TaskContext& task) {
     Json ports = Json::object();
     for (const auto* properties : task.properties())
         for (const framework::PropertyInfo& property : properties->list())
@@ -31,7 +31,7 @@ Json portsOf(const framework::TaskContext& task) {
     return ports;
 }
 
-std::string textOf(const Json& ports) {
+std::string toText(const Json& ports) {
     std::string text;
     for (const auto& [name, port] : ports.items())
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, port.dump());
@@ -43,20 +43,20 @@ int listDevices(bool json) {
     framework::Registry registry;
     registerTasks(registry);
     for (const auto& entry : registry.list())
-        devices.push_back({{"type", entry.type}, {"doc", entry.doc}, {"ports", portsOf(*entry.make("device"))}});
+        devices.push_back({{"type", entry.type}, {"doc", entry.doc}, {"ports", describePorts(*entry.make("device"))}});
     if (json) {
         print(devices);
         return 0;
     }
     for (const Json& device : devices)
         console::printResult("{:22} {}\n{:22} {}\n", device["type"].get<std::string>(),
-                             device["doc"].get<std::string>(), "", textOf(device["ports"]));
+                             device["doc"].get<std::string>(), "", toText(device["ports"]));
     console::printResult(
         "\nproperties: insonify describe TYPE; how to start and connect each: components/device/README.md\n");
     return 0;
 }
 
-Json jsonOf(const ProbeOutcome& outcome) {
+Json makeJson(const ProbeOutcome& outcome) {
     return {{"protocol", outcome.protocol},
             {"asked", outcome.asked},
             {"device", outcome.device},
@@ -91,7 +91,7 @@ int probeDevice(const std::string& address, double timeout, bool json) {
     const bool any = std::ranges::any_of(outcomes, answers);
     if (json) {
         Json all = Json::array();
-        for (const ProbeOutcome& outcome : outcomes) all.push_back(jsonOf(outcome));
+        for (const ProbeOutcome& outcome : outcomes) all.push_back(makeJson(outcome));
         print(all);
     } else if (any) {
         printDevices(outcomes);

@@ -14,7 +14,7 @@ namespace insonify::device {
 namespace {
 
 using console::Json;
-using deployer::frequencyOf, deployer::meaningOf, deployer::pingsOf;
+using deployer::getFrequency, deployer::readMeaning, deployer::getPings;
 namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const log::Reader& log, const std::string& stream, const std::string& why) {
@@ -27,7 +27,7 @@ struct Codes {
     double gamma = 1;
 };
 
-Codes codesOf(const log::Reader& log, const std::string& stream, const Json& meaning) {
+Codes readCodes(const log::Reader& log, const std::string& stream, const Json& meaning) {
     const char* const what =
         "an Oculus' recording takes codes of amplitude: of a receiver with output: code and "
         "code: {law: sqrt}";
@@ -43,7 +43,7 @@ Codes codesOf(const log::Reader& log, const std::string& stream, const Json& mea
 }
 
 /** Returns what is common to all pings of a recording. */
-OculusResult settingsOf(const Codes& codes, double frequency_khz) {
+OculusResult getSettings(const Codes& codes, double frequency_khz) {
     OculusResult result;
     result.fire.header.version = 2;
     if (codes.bits > 8) result.fire.flags |= OculusFire::wide_16;  // a code is scaled to the sent width
@@ -63,11 +63,11 @@ void setPing(const types::Sonar& ping, double since_first, OculusResult& result)
 }  // namespace
 
 void exportOculus(log::Reader& log, const std::string& stream, const fs::path& to) {
-    const log::Stream& pings = pingsOf(log, stream, "an Oculus' recording takes pings");
-    const Json meaning = meaningOf(log, pings);
-    const Codes codes = codesOf(log, pings.name, meaning);
+    const log::Stream& pings = getPings(log, stream, "an Oculus' recording takes pings");
+    const Json meaning = readMeaning(log, pings);
+    const Codes codes = readCodes(log, pings.name, meaning);
     OculusEncoder encoder(codes.bits);
-    OculusResult result = settingsOf(codes, frequencyOf(meaning));
+    OculusResult result = getSettings(codes, getFrequency(meaning));
     OculusRecorder recorder(to, {.time = pings.first.seconds()});
     types::Sonar ping;
     log.forEachRef(stream, [&](const log::SampleRef& at) {
@@ -79,7 +79,7 @@ void exportOculus(log::Reader& log, const std::string& stream, const fs::path& t
         encoder.encode(ping, result);
         result.fire.gamma = static_cast<uint8_t>(std::lround(255 * codes.gamma));
         result.settle();
-        recorder.write(ping.time.seconds(), bytesOf(result));
+        recorder.write(ping.time.seconds(), toBytes(result));
         ++result.number;
     });
 }

@@ -136,14 +136,14 @@ void MicronEmulator::askForPing(types::Time now) {
     settings.bearing = types::Angle::fromRad((command_.has(SeaNetControl::inverted) ? 1 : -1) * 2 * std::numbers::pi *
                                              clockwise / seanet_turn);
     if (command_.has(SeaNetControl::silent)) {
-        line_->data = dataOf({});
+        line_->data = getData({});
     } else {
         line_->asked.add(now, line_->whole);
         outlet_.ask(settings);
     }
 }
 
-Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
+Bytes MicronEmulator::getData(const types::Sonar& ping) const {
     const auto level = [&](size_t bin) {  // in 255ths of 80 dB
         const double code = bin < ping.bins.size() ? static_cast<double>(ping.bins[bin]) : 0;
         return std::isfinite(code) ? 255 * std::clamp(code / max_code, 0.0, 1.0) : 0;
@@ -168,7 +168,7 @@ void MicronEmulator::setPing(const types::Sonar& ping) {
     types::Sonar scaled = ping;
     const bool is_other = ping.bin_count == command_.bins &&
                           setBinWidth(listening() * device_.speed_of_sound / 2 / command_.bins, scaled);
-    line_->data = dataOf(is_other ? scaled : ping);
+    line_->data = getData(is_other ? scaled : ping);
 }
 
 void MicronEmulator::finishLine() {

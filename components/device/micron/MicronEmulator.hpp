@@ -91,7 +91,7 @@ private:
     SeaNetAlive alive(types::Time now) const;
     void sendAlive(types::Time now);
     double listening() const;  ///< Two-way travel time to the last bin [s].
-    Bytes dataOf(const types::Sonar& ping) const;
+    Bytes getData(const types::Sonar& ping) const;
 
     MicronDevice device_;
     Outlet outlet_;

@@ -229,7 +229,7 @@ SeaNetMessage seaNetRequest(SeaNetType type) {
     return {type, seanet_computer, seanet_imaging_sonar, Bytes(type == SeaNetType::SendData ? 4 : 0)};
 }
 
-size_t SeaNetReader::sizeOf(std::span<const uint8_t> bytes) const {
+size_t SeaNetReader::getSize(std::span<const uint8_t> bytes) const {
     constexpr size_t with_lengths = 7;
     if (bytes[0] != start) return 0;
     if (bytes.size() < with_lengths) return with_lengths;

@@ -119,7 +119,7 @@ public:
     std::optional<SeaNetMessage> next();
 
 private:
-    size_t sizeOf(std::span<const uint8_t> bytes) const override;
+    size_t getSize(std::span<const uint8_t> bytes) const override;
 };
 
 }  // namespace insonify::device

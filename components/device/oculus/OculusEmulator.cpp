@@ -70,15 +70,15 @@ std::optional<OculusFire> OculusEmulator::possible(OculusFire fire) const {
     return fire;
 }
 
-double OculusEmulator::rangeOf(const OculusFire& fire) const {
+double OculusEmulator::computeRange(const OculusFire& fire) const {
     const bool metres = (fire.flags & OculusFire::range_in_metres) != 0;
     return metres ? fire.range : std::max(mode(fire).range_min, fire.range / 100 * mode(fire).range_max);
 }
 
-types::SonarSettings OculusEmulator::settingsOf(const OculusFire& fire, Time now) const {
+types::SonarSettings OculusEmulator::getSettings(const OculusFire& fire, Time now) const {
     types::SonarSettings settings;
     settings.time = now;
-    settings.range = rangeOf(fire);
+    settings.range = computeRange(fire);
     settings.frequency_khz = mode(fire).frequency_khz;
     settings.speed_of_sound = fire.speed_of_sound != 0 || speed_was_set_ ? fire.speed_of_sound : settings.unset;
     settings.gain_db = std::lerp(config_.gain_min_db, config_.gain_max_db, usedGain(fire) / 100);
@@ -129,7 +129,7 @@ OculusEmulator::Due OculusEmulator::workAt(Time now, Time clock) {
         return due;
     }
     if (isDue(now)) {
-        due.ask = settingsOf(fire_, clock);
+        due.ask = getSettings(fire_, clock);
         asked_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {now, *due.ask, fire_});
         const Time planned = last_ping_ + period(fire_);  // keeps the rate even if a cycle is late
         last_ping_ = now - planned < period(fire_) ? planned : now;
@@ -144,10 +144,10 @@ Bytes OculusEmulator::ping(const types::Sonar& codes) {
     const auto asked = fits ? asked_.take(steady_.steady(codes.time)) : std::nullopt;
     if (!asked) return {};
     if (inStandby()) return {};
-    return bytesOf(resultOf(*asked, codes));
+    return toBytes(makeResult(*asked, codes));
 }
 
-OculusResult OculusEmulator::resultOf(const Asked& asked, const types::Sonar& codes) {
+OculusResult OculusEmulator::makeResult(const Asked& asked, const types::Sonar& codes) {
     OculusResult result;
     result.fire = asked.fire;
     result.fire.header = {.source = static_cast<uint16_t>(config_.serial_number),
@@ -180,7 +180,7 @@ Bytes OculusEmulator::statusBytes() const {
     status.mac = {0x02, 0x4F, 0x53, 0, static_cast<uint8_t>(serial >> 8), static_cast<uint8_t>(serial)};
     status.temperatures.fill(config_.temperature_celsius);
     status.pressure_bar = config_.pressure_bar;
-    return bytesOf(status);
+    return toBytes(status);
 }
 
 }  // namespace insonify::device

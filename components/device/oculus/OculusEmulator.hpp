@@ -108,11 +108,11 @@ private:
     void take(std::span<const uint8_t> message);
     /** Returns the settings clamped to the device's limits; none: they are not numbers. */
     std::optional<OculusFire> possible(OculusFire fire) const;
-    double rangeOf(const OculusFire& fire) const;
-    types::SonarSettings settingsOf(const OculusFire& fire, types::Time now) const;
+    double computeRange(const OculusFire& fire) const;
+    types::SonarSettings getSettings(const OculusFire& fire, types::Time now) const;
     Due workAt(types::Time now, types::Time clock);
     bool isDue(types::Time now);
-    OculusResult resultOf(const Asked& asked, const types::Sonar& codes);
+    OculusResult makeResult(const Asked& asked, const types::Sonar& codes);
     Bytes statusBytes() const;
     const sonars::SonarMode& mode(const OculusFire& fire) const { return oculusMode(figures_, fire.mode); }
 

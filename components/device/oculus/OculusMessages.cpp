@@ -141,7 +141,7 @@ std::optional<OculusFire> oculusFire(std::span<const uint8_t> message) {
     return fire;
 }
 
-Bytes bytesOf(OculusFire fire) {
+Bytes toBytes(OculusFire fire) {
     fire.header.payload_size = static_cast<uint32_t>(fire.size() - OculusHeader::size);
     NumberWriter writer;
     visitFire(fire, writer);
@@ -163,7 +163,7 @@ std::optional<OculusResult> oculusResult(std::span<const uint8_t> message, std::
     return ping;
 }
 
-Bytes bytesOf(const OculusResult& result) {
+Bytes toBytes(const OculusResult& result) {
     NumberWriter writer;
     visitResult(result, writer);
     writer.bytes.reserve(writer.bytes.size() + 2 * result.bearings.size() + result.before_image.size() +
@@ -183,7 +183,7 @@ std::optional<OculusStatus> oculusStatus(std::span<const uint8_t> datagram) {
     return status;
 }
 
-Bytes bytesOf(const OculusStatus& status) {
+Bytes toBytes(const OculusStatus& status) {
     NumberWriter writer;
     visitStatus(status, writer);
     return std::move(writer.bytes);
@@ -198,7 +198,7 @@ std::optional<OculusUserConfig> oculusUserConfig(std::span<const uint8_t> messag
     return config;
 }
 
-Bytes bytesOf(const OculusUserConfig& config) {
+Bytes toBytes(const OculusUserConfig& config) {
     NumberWriter writer;
     visitUserConfig(config, writer);
     return std::move(writer.bytes);
@@ -217,7 +217,7 @@ Bytes oculusLog(uint16_t source, uint16_t part, const std::string& text) {
     return bytes;
 }
 
-size_t OculusFramer::sizeOf(std::span<const uint8_t> bytes) const {
+size_t OculusFramer::getSize(std::span<const uint8_t> bytes) const {
     if (bytes.size() < OculusHeader::size) return OculusHeader::size;
     const auto header = oculusHeader(bytes);
     return header && header->payload_size <= maximum_ ? messageSize(*header) : 0;

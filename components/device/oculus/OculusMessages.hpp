@@ -137,21 +137,21 @@ std::optional<OculusHeader> oculusHeader(std::span<const uint8_t> bytes);
  *  short, or another message. */
 std::optional<OculusFire> oculusFire(std::span<const uint8_t> message);
 /** With the payload size of its version. */
-Bytes bytesOf(OculusFire fire);
+Bytes toBytes(OculusFire fire);
 
 /** Reads a ping with every byte. None if the ping contradicts itself: missing bytes, an image whose size does not match
  *  bins and beams, impossible numbers.
  *  @param diagnostic receives the reason, after "the ping", unless null */
 std::optional<OculusResult> oculusResult(std::span<const uint8_t> message, std::string* diagnostic = nullptr);
 /** Writes what oculusResult has read, byte for byte. */
-Bytes bytesOf(const OculusResult& result);
+Bytes toBytes(const OculusResult& result);
 
 /** None unless these are 142 bytes of an Oculus. */
 std::optional<OculusStatus> oculusStatus(std::span<const uint8_t> datagram);
-Bytes bytesOf(const OculusStatus& status);
+Bytes toBytes(const OculusStatus& status);
 
 std::optional<OculusUserConfig> oculusUserConfig(std::span<const uint8_t> message);
-Bytes bytesOf(const OculusUserConfig& config);
+Bytes toBytes(const OculusUserConfig& config);
 
 /** A header alone, sent in standby instead of pings. */
 Bytes oculusDummy(uint16_t source, uint16_t part);
@@ -172,7 +172,7 @@ public:
     bool giveUp();
 
 private:
-    size_t sizeOf(std::span<const uint8_t> bytes) const override;
+    size_t getSize(std::span<const uint8_t> bytes) const override;
 
     size_t maximum_;
 };

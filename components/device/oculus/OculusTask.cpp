@@ -65,7 +65,7 @@ void OculusTask::openRecord() {
     } catch (const types::ConfigError&) {
         throw NetworkError("record", "is " + file.string() + ", which cannot be written");
     }
-    const Bytes header = bytesOf(OculusFileHeader{.time = now().seconds()});
+    const Bytes header = toBytes(OculusFileHeader{.time = now().seconds()});
     recorded_->append({header.begin(), header.end()});
 }
 
@@ -92,7 +92,7 @@ void OculusTask::record(const Bytes& message) {
     if (!config->record || message.empty()) return;
     if (!recorded_) return countUnrecorded("");
     try {
-        const Bytes item = bytesOf(itemOf(now().seconds(), message));
+        const Bytes item = toBytes(getItem(now().seconds(), message));
         const std::vector<char> bytes(item.begin(), item.end());
         if (!environment().mayLose()) return recorded_->append(bytes);
         if (recorded_->tryAppend(bytes)) return;

@@ -53,7 +53,7 @@ public:
     void check(types::Diagnostics& diagnostics) const override;
     types::Notices notices() const override;
     /** The listening port; 0 before it is configured. */
-    uint16_t port() const { return portOf(0); }
+    uint16_t port() const { return getPort(0); }
 
 private:
     void listen(Network& network) override;

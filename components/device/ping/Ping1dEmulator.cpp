@@ -52,7 +52,7 @@ template <class Message, class Value>
 void Ping1dEmulator::set(PingClient client, const PingFrame& frame, const char* name, uint32_t min, uint32_t max,
                          Value& value) {
     with<Message>(client, frame, [&](const Message& asked) {
-        const std::string why = diagnosticOf({{name, asked.value, min, max}});
+        const std::string why = findDiagnostic({{name, asked.value, min, max}});
         if (!why.empty()) return refuse(client, frame.message, why);
         value = asked.value;
         acknowledge(client, frame.message);
@@ -85,8 +85,8 @@ void Ping1dEmulator::setRange(PingClient client, const Ping1dSetRange& asked) {
     const auto end = static_cast<uint32_t>(std::lround(1000 * config_.max_range));
     if (mode_auto_ != 0)
         return refuse(client, asked.message, "mode_auto is 1, so the device sets the range; set mode_auto to 0");
-    std::string why = diagnosticOf({{"scan_start", asked.start, 0, end - shortest_scan}});
-    if (why.empty()) why = diagnosticOf({{"scan_length", asked.length, shortest_scan, end - asked.start}});
+    std::string why = findDiagnostic({{"scan_start", asked.start, 0, end - shortest_scan}});
+    if (why.empty()) why = findDiagnostic({{"scan_length", asked.length, shortest_scan, end - asked.start}});
     if (!why.empty()) return refuse(client, asked.message, why);
     start_ = asked.start;
     length_ = asked.length;

@@ -17,31 +17,31 @@ constexpr double boot_seconds = 5;
 Ping360DeviceData atBoot() { return {1, 0, {0, 32, 80, 740, 1024}, {}}; }
 
 std::string whyNot(uint8_t mode, const Ping360Acoustics& a) {
-    return diagnosticOf({{"mode", mode, 0, 1},  // drivers also send 0
-                         {"gain_setting", a.gain, 0, 2},
-                         {"transmit_duration", a.transmit_duration, 1, 1000},
-                         {"sample_period", a.sample_period, 80, 40000},
-                         {"transmit_frequency", a.frequency_khz, 500, 1000},
-                         {"number_of_samples", a.samples, 200, 1200}});
+    return findDiagnostic({{"mode", mode, 0, 1},  // drivers also send 0
+                           {"gain_setting", a.gain, 0, 2},
+                           {"transmit_duration", a.transmit_duration, 1, 1000},
+                           {"sample_period", a.sample_period, 80, 40000},
+                           {"transmit_frequency", a.frequency_khz, 500, 1000},
+                           {"number_of_samples", a.samples, 200, 1200}});
 }
 
 std::string whyNot(const Ping360Transducer& asked) {
     const std::string why = whyNot(asked.mode, asked.acoustics);
     if (!why.empty()) return why;
-    return diagnosticOf({{"angle", asked.angle, 0, turn - 1}, {"transmit", asked.transmit, 0, 1}});
+    return findDiagnostic({{"angle", asked.angle, 0, turn - 1}, {"transmit", asked.transmit, 0, 1}});
 }
 
 std::string whyNot(const Ping360AutoTransmit& asked) {
     const std::string why = whyNot(asked.mode, asked.acoustics);
     if (!why.empty()) return why;
-    return diagnosticOf({{"start_angle", asked.sector.start, 0, turn - 1},
-                         {"stop_angle", asked.sector.stop, 0, turn - 1},
-                         {"num_steps", asked.sector.steps, 1, 10},
-                         {"delay", asked.sector.delay_ms, 0, 100}});
+    return findDiagnostic({{"start_angle", asked.sector.start, 0, turn - 1},
+                           {"stop_angle", asked.sector.stop, 0, turn - 1},
+                           {"num_steps", asked.sector.steps, 1, 10},
+                           {"delay", asked.sector.delay_ms, 0, 100}});
 }
 
 /** Returns the shorter difference of two angles. */
-int wayBetween(int a, int b) {
+int distanceBetween(int a, int b) {
     const int way = std::abs(a - b) % turn;
     return std::min(way, turn - way);
 }
@@ -150,7 +150,7 @@ void Ping360Emulator::reset(bool bootloader, types::Time now) {
 }
 
 void Ping360Emulator::turnTo(const Ping360Transducer& asked, types::Time now) {
-    const double seconds = config_.seconds_per_gradian * wayBetween(state_.angle, asked.angle);
+    const double seconds = config_.seconds_per_gradian * distanceBetween(state_.angle, asked.angle);
     state_.angle = asked.angle;
     state_.acoustics = asked.acoustics;
     ready_ = now + types::Time::fromSeconds(seconds);

@@ -10,7 +10,7 @@ namespace insonify::device {
 namespace {
 
 /** Parses "02-00-00-00-03-60"; none for other texts. */
-std::optional<std::array<uint8_t, 6>> macOf(const std::string& text) {
+std::optional<std::array<uint8_t, 6>> readMac(const std::string& text) {
     std::array<uint8_t, 6> parts{};
     const char* at = text.c_str();
     for (size_t i = 0; i < parts.size(); ++i) {
@@ -28,11 +28,11 @@ std::optional<std::array<uint8_t, 6>> macOf(const std::string& text) {
 
 void Ping360Discovery::check(types::Diagnostics& diagnostics) const {
     if (!ipv4(ip)) diagnostics.push_back({"ip", "is '" + ip + "'; write it as 192.168.2.10"});
-    if (!macOf(mac)) diagnostics.push_back({"mac", "is '" + mac + "'; write it as 02-00-00-00-03-60"});
+    if (!readMac(mac)) diagnostics.push_back({"mac", "is '" + mac + "'; write it as 02-00-00-00-03-60"});
 }
 
 std::string Ping360Discovery::answer() const {
-    return ping360Discovery(macOf(mac).value_or(std::array<uint8_t, 6>{}), ipv4(ip).value_or(Ipv4{}));
+    return ping360Discovery(readMac(mac).value_or(std::array<uint8_t, 6>{}), ipv4(ip).value_or(Ipv4{}));
 }
 
 void Ping360Task::listen(Network& network) {

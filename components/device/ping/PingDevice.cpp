@@ -16,7 +16,7 @@ types::Time after(types::Time now, double seconds) { return now + types::Time::f
 
 }  // namespace
 
-std::string diagnosticOf(std::initializer_list<PingBound> bounds) {
+std::string findDiagnostic(std::initializer_list<PingBound> bounds) {
     for (const PingBound& bound : bounds)
         if (bound.value < bound.min || bound.value > bound.max)
             return fmt::format("{} is {}; must be {} to {}", bound.name, bound.value, bound.min, bound.max);
@@ -157,7 +157,8 @@ void PingDevice::add(PingOutgoing out) {
 }
 
 void PingDevice::setId(PingClient client, uint16_t message, uint8_t id, uint8_t min) {
-    if (const std::string why = diagnosticOf({{"id", id, min, 254}}); !why.empty()) return refuse(client, message, why);
+    if (const std::string why = findDiagnostic({{"id", id, min, 254}}); !why.empty())
+        return refuse(client, message, why);
     id_ = id;
     acknowledge(client, message);
 }

@@ -30,7 +30,7 @@ struct PingBound {
 };
 
 /** Returns a diagnostic of the first value out of bounds: "angle is 400; must be 0 to 399"; empty: none. */
-std::string diagnosticOf(std::initializer_list<PingBound> bounds);
+std::string findDiagnostic(std::initializer_list<PingBound> bounds);
 
 /** Converts a ping's codes to 8 bits. @param max_code the max code of the receiver */
 Bytes bytesOfCodes(std::span<const float> codes, double max_code);

@@ -11,11 +11,11 @@ void PingDeviceTask::listen(Network& network) {
 }
 
 void PingDeviceTask::received(Client client, std::span<const uint8_t> bytes) {
-    device_->receive(numberOf(client), bytes, client.end == udp, now());
+    device_->receive(getNumber(client), bytes, client.end == udp, now());
     sendWhatIsWanted();
 }
 
-void PingDeviceTask::closed(Client client) { device_->close(numberOf(client)); }
+void PingDeviceTask::closed(Client client) { device_->close(getNumber(client)); }
 
 void PingDeviceTask::readPings() {
     for (types::SonarPtr sample; ping.readNew(sample);) device_->setPing(sample, now());
@@ -35,7 +35,7 @@ void PingDeviceTask::send(Client client, PingOutgoing out) {
 }
 
 void PingDeviceTask::sendWhatIsWanted() {
-    for (PingOutgoing& out : device_->consumeOutgoing()) send(clientOf(out.client), std::move(out));
+    for (PingOutgoing& out : device_->consumeOutgoing()) send(getClient(out.client), std::move(out));
     if (const auto asked = device_->consumeRequest()) settings.write(*asked);
     for (const std::string& warning : device_->consumeWarnings()) warn(warning);
 }

@@ -48,8 +48,8 @@ protected:
     std::optional<types::Time> tick(types::Time now) override;
 
 private:
-    PingClient numberOf(Client client) const { return client.number << 8 | client.end; }
-    Client clientOf(PingClient number) const { return {number & 0xff, number >> 8}; }
+    PingClient getNumber(Client client) const { return client.number << 8 | client.end; }
+    Client getClient(PingClient number) const { return {number & 0xff, number >> 8}; }
     void send(Client client, PingOutgoing out);
     void sendWhatIsWanted();
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t header_size = 8, sum_size = 2;
 
-uint16_t sumOf(std::span<const uint8_t> bytes) {
+uint16_t computeSum(std::span<const uint8_t> bytes) {
     return static_cast<uint16_t>(std::accumulate(bytes.begin(), bytes.end(), uint32_t{0}));
 }
 
@@ -24,18 +24,18 @@ Bytes PingFrame::bytes() const {
     append(bytes, source);
     append(bytes, destination);
     bytes.insert(bytes.end(), payload.begin(), payload.end());
-    append(bytes, sumOf(bytes));
+    append(bytes, computeSum(bytes));
     return bytes;
 }
 
-size_t PingFrameReader::sizeOf(std::span<const uint8_t> bytes) const {
+size_t PingFrameReader::getSize(std::span<const uint8_t> bytes) const {
     constexpr size_t with_length = 4;
     if (bytes[0] != 'B' || (bytes.size() > 1 && bytes[1] != 'R')) return 0;
     if (bytes.size() < with_length) return with_length;
     const size_t payload = read<uint16_t>(bytes, 2), size = header_size + payload + sum_size;
     if (payload > max_payload_) return 0;
     if (size > bytes.size()) return size;
-    return read<uint16_t>(bytes, size - sum_size) == sumOf(bytes.first(size - sum_size)) ? size : 0;
+    return read<uint16_t>(bytes, size - sum_size) == computeSum(bytes.first(size - sum_size)) ? size : 0;
 }
 
 std::optional<PingFrame> PingFrameReader::next() {

@@ -32,7 +32,7 @@ public:
     std::optional<PingFrame> next();
 
 private:
-    size_t sizeOf(std::span<const uint8_t> bytes) const override;
+    size_t getSize(std::span<const uint8_t> bytes) const override;
 
     size_t max_payload_;
 };

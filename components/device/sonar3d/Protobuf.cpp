@@ -86,10 +86,10 @@ std::optional<ProtobufField> ProtobufReader::next() {
     if (!tag) return std::nullopt;
     ProtobufField field;
     field.number = static_cast<uint32_t>(*tag >> 3);
-    return payloadOf(field, static_cast<uint32_t>(*tag & 7));
+    return readPayload(field, static_cast<uint32_t>(*tag & 7));
 }
 
-std::optional<ProtobufField> ProtobufReader::payloadOf(ProtobufField field, uint32_t wire_type) {
+std::optional<ProtobufField> ProtobufReader::readPayload(ProtobufField field, uint32_t wire_type) {
     using Kind = ProtobufField::Kind;
     if (wire_type == varint_type || wire_type == bytes_type) {
         const auto value = varint();

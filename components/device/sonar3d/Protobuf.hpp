@@ -51,7 +51,7 @@ public:
 private:
     /** Reads `count` bytes, if they are present. */
     std::optional<std::span<const uint8_t>> take(uint64_t count);
-    std::optional<ProtobufField> payloadOf(ProtobufField field, uint32_t wire_type);
+    std::optional<ProtobufField> readPayload(ProtobufField field, uint32_t wire_type);
 
     std::span<const uint8_t> rest_;
     bool broken_ = false;

@@ -32,7 +32,7 @@ uint32_t crc(std::span<const uint8_t> bytes) {
     return static_cast<uint32_t>(crc32(0, bytes.data(), static_cast<uInt>(bytes.size())));
 }
 
-Bytes headerOf(const RipImage& image) {
+Bytes makeHeader(const RipImage& image) {
     const int64_t seconds = image.time.microseconds / 1'000'000;
     ProtobufWriter stamp, header;
     stamp.number(1, static_cast<uint64_t>(seconds));
@@ -44,7 +44,7 @@ Bytes headerOf(const RipImage& image) {
 
 ProtobufWriter beginImage(const RipImage& image, const Fields& fields, uint32_t type) {
     ProtobufWriter message;
-    message.bytes(header_field, headerOf(image));
+    message.bytes(header_field, makeHeader(image));
     message.real(speed_field, image.speed_of_sound);
     message.real(range_field, image.range);
     message.number(frequency_field, image.frequency_hz);
@@ -175,7 +175,7 @@ RipMessage messageIn(std::span<const uint8_t> any) {
 }
 
 /** Returns the uncompressed contents of a packet. */
-std::string payloadOf(std::span<const uint8_t> packet) {
+std::string readPayload(std::span<const uint8_t> packet) {
     const auto* begin = reinterpret_cast<const char*>(packet.data()) + packet_header_size;
     const size_t size = packet.size() - packet_header_size - crc_size;
     if (packet[3] == '1') return {begin, size};
@@ -192,7 +192,7 @@ RipMessage readPacket(std::span<const uint8_t> rest, size_t length) {
     const auto packet = rest.first(length);
     if (read<uint32_t>(packet, length - crc_size) != crc(packet.first(length - crc_size)))
         throw BadPacket("has a wrong checksum");
-    const std::string payload = payloadOf(packet);
+    const std::string payload = readPayload(packet);
     ProtobufReader reader({reinterpret_cast<const uint8_t*>(payload.data()), payload.size()});
     while (const auto field = reader.next())
         if (field->number == 1) return messageIn(field->bytes);
@@ -205,7 +205,7 @@ bool beginsPacket(std::span<const uint8_t> bytes) {
 }
 
 /** Returns the length of the packet at the beginning of the bytes. */
-size_t lengthOf(std::span<const uint8_t> bytes) {
+size_t computeLength(std::span<const uint8_t> bytes) {
     if (bytes.size() < packet_header_size) throw BadPacket(fmt::format("is cut off after {} bytes", bytes.size()));
     const size_t length = read<uint32_t>(bytes, 4);
     if (length < packet_header_size + crc_size || length > max_rip_packet)
@@ -238,7 +238,7 @@ std::vector<RipMessage> ripMessages(std::span<const uint8_t> bytes, std::vector<
             continue;
         }
         try {
-            const size_t length = lengthOf(rest);
+            const size_t length = computeLength(rest);
             messages.push_back(readPacket(rest, length));
             at += length;
         } catch (const BadPacket& error) {

@@ -316,7 +316,7 @@ types::Time Sonar3dEmulator::workAt(types::Time now) {
     return now + types::Time::fromSeconds(period());
 }
 
-RipImage Sonar3dEmulator::frameOf(const types::DepthMap& map, const Sonar3dState& asked) const {
+RipImage Sonar3dEmulator::getFrame(const types::DepthMap& map, const Sonar3dState& asked) const {
     RipImage image;
     image.time = deviceTime(map.time);
     image.sequence = sequence_;
@@ -347,7 +347,7 @@ void Sonar3dEmulator::setPing(const types::DepthMap& map) {
 void Sonar3dEmulator::sendImages(const types::DepthMap& map, const Sonar3dState& asked) {
     RangePixels ranges;
     StrengthPixels strengths;
-    static_cast<RipImage&>(ranges) = static_cast<RipImage&>(strengths) = frameOf(map, asked);
+    static_cast<RipImage&>(ranges) = static_cast<RipImage&>(strengths) = getFrame(map, asked);
     ranges.pixel_scale = static_cast<float>(std::max(millimetre, asked.range_max / UINT16_MAX));
     const auto loudest = map.remissions.empty() ? map.remissions.end() : std::ranges::max_element(map.remissions);
     for (size_t row = map.vertical_size; row-- > 0;)  // the lowest first

@@ -99,7 +99,7 @@ private:
     double frequencyKhz(const Sonar3dState& state) const {
         return state.high_frequency ? device_.high_frequency_khz : device_.low_frequency_khz;
     }
-    RipImage frameOf(const types::DepthMap& map, const Sonar3dState& asked) const;
+    RipImage getFrame(const types::DepthMap& map, const Sonar3dState& asked) const;
     void sendImages(const types::DepthMap& map, const Sonar3dState& asked);
     void send(const Bytes& packet);
 

@@ -29,13 +29,13 @@ protected:
 
     /** Returns the size of the frame at the beginning of the bytes; 0: there is none. If the frame is incomplete,
      *  returns the min size that it may have [B]. */
-    virtual size_t sizeOf(std::span<const uint8_t> bytes) const = 0;
+    virtual size_t getSize(std::span<const uint8_t> bytes) const = 0;
     /** Returns the next complete frame, valid until bytes are added; empty: there is none yet. */
     std::span<const uint8_t> nextFrame() {
         std::optional<size_t> cut_off;
         for (size_t at = begin_; at < bytes_.size(); ++at) {
             const auto rest = std::span<const uint8_t>(bytes_).subspan(at);
-            const size_t size = sizeOf(rest);
+            const size_t size = getSize(rest);
             if (size > 0 && size <= rest.size()) {
                 skip(at - begin_);
                 begin_ += size;

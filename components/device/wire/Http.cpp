@@ -23,7 +23,7 @@ namespace {
 constexpr uint32_t max_header = 16 << 10;  // [bytes]
 constexpr unsigned version = 11;           // 1.1
 
-Bytes bytesOf(const std::ostringstream& stream) {
+Bytes toBytes(const std::ostringstream& stream) {
     const std::string text = stream.str();
     return {text.begin(), text.end()};
 }
@@ -32,7 +32,7 @@ Bytes serialised(auto& message) {
     message.prepare_payload();
     std::ostringstream stream;
     stream << message;
-    return bytesOf(stream);
+    return toBytes(stream);
 }
 
 std::string text(boost::beast::string_view view) { return {view.data(), view.size()}; }

@@ -30,12 +30,12 @@ using Udp = asio::ip::udp;
 
 namespace {
 
-std::string textOf(const auto& endpoint) {
+std::string toText(const auto& endpoint) {
     return endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
 }
 
 template <class Protocol>
-typename Protocol::endpoint endpointOf(const std::string& address, uint16_t port) {
+typename Protocol::endpoint makeEndpoint(const std::string& address, uint16_t port) {
     error_code error;
     const asio::ip::address parsed = asio::ip::make_address(address, error);
     if (error) throw NetworkError("address", "is " + address + ", which is no address; write one as 127.0.0.1 or ::1");
@@ -50,7 +50,7 @@ void bindTo(Socket& socket, const Endpoint& endpoint) {
     if constexpr (std::is_same_v<Endpoint, Tcp::endpoint>)  // not UDP: two processes could share a port
         if (!error) socket.set_option(asio::socket_base::reuse_address(true), error);
     if (!error) socket.bind(endpoint, error);
-    if (error) throw NetworkError("port", "is " + textOf(endpoint) + ", where it cannot listen: " + error.message());
+    if (error) throw NetworkError("port", "is " + toText(endpoint) + ", where it cannot listen: " + error.message());
     fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
 }
 
@@ -303,9 +303,9 @@ public:
         bindTo(acceptor_, at);
         error_code error;
         acceptor_.listen(asio::socket_base::max_listen_connections, error);
-        if (error) throw NetworkError("port", "is " + textOf(at) + ", where it cannot listen: " + error.message());
+        if (error) throw NetworkError("port", "is " + toText(at) + ", where it cannot listen: " + error.message());
         port = acceptor_.local_endpoint().port();
-        name = "TCP " + textOf(acceptor_.local_endpoint());
+        name = "TCP " + toText(acceptor_.local_endpoint());
         accept();
     }
     void send(uint64_t client, Bytes bytes, Network::Kind kind) override {
@@ -362,7 +362,7 @@ private:
             std::make_shared<TcpSession>(core_, std::move(socket), Client{end_, number},
                                          TcpSession::Ended{[this, number] { sessions_.erase(number); }});
         sessions_[number] = session;
-        core_.report({NetworkEvent::Kind::Opened, {end_, number}, {}, textOf(peer)});
+        core_.report({NetworkEvent::Kind::Opened, {end_, number}, {}, toText(peer)});
         session->read();
     }
 
@@ -391,7 +391,7 @@ public:
         bindTo(socket_, at);
         socket_.non_blocking(true);
         port = socket_.local_endpoint().port();
-        name = "UDP " + textOf(socket_.local_endpoint());
+        name = "UDP " + toText(socket_.local_endpoint());
         read();
     }
     void send(uint64_t client, Bytes bytes, Network::Kind /*kind*/) override {
@@ -430,11 +430,11 @@ private:
             ++core_.dropped;
             return;
         }
-        const Client client{end_, numberOf(from_)};
+        const Client client{end_, getNumber(from_)};
         const auto begin = buffer_.begin();
         core_.report({NetworkEvent::Kind::Received, client, {begin, begin + static_cast<std::ptrdiff_t>(count)}, ""});
     }
-    uint64_t numberOf(const Udp::endpoint& peer) {
+    uint64_t getNumber(const Udp::endpoint& peer) {
         for (auto& [number, known] : clients_)
             if (known.endpoint == peer) {
                 known.last_message = ++last_message_;
@@ -445,7 +445,7 @@ private:
                       return each.second.last_message;
                   })->first);
         clients_[next_] = {peer, ++last_message_};
-        core_.report({NetworkEvent::Kind::Opened, {end_, next_}, {}, textOf(peer)});
+        core_.report({NetworkEvent::Kind::Opened, {end_, next_}, {}, toText(peer)});
         return next_++;
     }
 
@@ -537,16 +537,16 @@ Network::Network(std::function<void()> wake) : core_(std::make_unique<Core>(std:
 Network::~Network() = default;
 
 End Network::listenTcp(const std::string& address, uint16_t port) {
-    return core_->add<TcpEnd>(endpointOf<Tcp>(address, port));
+    return core_->add<TcpEnd>(makeEndpoint<Tcp>(address, port));
 }
 
 End Network::listenUdp(const std::string& address, uint16_t port) {
-    return core_->add<UdpEnd>(endpointOf<Udp>(address, port));
+    return core_->add<UdpEnd>(makeEndpoint<Udp>(address, port));
 }
 
 End Network::openSerial(const std::filesystem::path& link) { return core_->add<SerialEnd>(link); }
 
-uint16_t Network::portOf(End end) const { return core_->ends[end]->port; }
+uint16_t Network::getPort(End end) const { return core_->ends[end]->port; }
 
 std::vector<std::string> Network::names() const {
     std::vector<std::string> all;
@@ -563,7 +563,7 @@ void Network::send(Client client, Bytes bytes, Kind kind) {
 }
 
 void Network::sendTo(const std::string& address, uint16_t port, Bytes bytes) {
-    asio::post(core_->io, [core = core_.get(), to = endpointOf<Udp>(address, port), sent = std::move(bytes)] {
+    asio::post(core_->io, [core = core_.get(), to = makeEndpoint<Udp>(address, port), sent = std::move(bytes)] {
         core->sendTo(to, sent);
     });
 }

@@ -70,7 +70,7 @@ public:
      *  `max_line` here, in addition to the terminal's own buffer (about 16 KiB). Beyond that, the oldest bytes of both
      *  are lost, which may cut a packet. A driver that opens the line reads these few old bytes before the newest. */
     End openSerial(const std::filesystem::path& link);
-    uint16_t portOf(End end) const;  ///< 0: the end has no port.
+    uint16_t getPort(End end) const;  ///< 0: the end has no port.
     /** Returns every end, as "TCP 127.0.0.1:52100" or "serial line /tmp/sonar". */
     std::vector<std::string> names() const;
 

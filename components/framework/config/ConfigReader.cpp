@@ -76,7 +76,7 @@ bool consumeNumber(std::string_view& text, double& number) {
 
 }  // namespace
 
-std::optional<Unit> unitOf(std::string_view name) {
+std::optional<Unit> findUnit(std::string_view name) {
     if (name == "1") return Unit{};
     if (name == "degC") return Unit{1, 273.15, {0, 0, 0, 1, 0}};
     const size_t slash = name.find('/');
@@ -125,7 +125,7 @@ bool parseDouble(std::string_view text, double& value) {
 }
 
 /** Returns a number with a unit, "20.deg", also from one of Rock's blocks: {rad: 0.3}, {rad: 20.deg}, {kelvin: 280}. */
-std::optional<Quantity> quantityOf(const YAML::Node& node) {
+std::optional<Quantity> readQuantity(const YAML::Node& node) {
     if (!node.IsDefined()) return std::nullopt;
     if (node.IsScalar()) return Quantity::parse(node.Scalar());
     static constexpr std::pair<const char*, const char*> blocks[] = {
@@ -135,7 +135,7 @@ std::optional<Quantity> quantityOf(const YAML::Node& node) {
         const YAML::Node inner = child(node, key);
         double number = 0;
         if (!inner.IsDefined() || !inner.IsScalar()) continue;
-        if (parseDouble(inner.Scalar(), number) && std::isfinite(number)) return Quantity{number, *unitOf(unit)};
+        if (parseDouble(inner.Scalar(), number) && std::isfinite(number)) return Quantity{number, *findUnit(unit)};
         return Quantity::parse(inner.Scalar());
     }
     return std::nullopt;
@@ -144,7 +144,7 @@ std::optional<Quantity> quantityOf(const YAML::Node& node) {
 /** Returns the node's value, for messages. */
 std::string shown(const YAML::Node& node) {
     if (!node.IsDefined() || node.IsNull()) return "empty";
-    if (quantityOf(node) && node.IsMap())
+    if (readQuantity(node) && node.IsMap())
         return "{" + node.begin()->first.Scalar() + ": " + node.begin()->second.Scalar() + "}";
     if (node.IsMap()) return "a block";
     if (node.IsSequence()) return "a list";
@@ -201,7 +201,7 @@ std::string unitHint(const YAML::Node& node, const types::Field& field) {
     if (unit.starts_with(',') && areDigits(unit.substr(1))) return "write " + number + "." + unit.substr(1) + "; ";
     unit.erase(0, unit.find_first_not_of(" \t"));
     if (unit == field.unit && quantityText(number, unit).empty()) return "write " + number + "; ";
-    const auto written = unitOf(unit), wanted = unitOf(field.unit);
+    const auto written = findUnit(unit), wanted = findUnit(field.unit);
     const auto converted = written && wanted ? Quantity{read, *written, 0}.in(*wanted) : std::nullopt;
     if (!converted) return "";
     const std::string quantity = quantityText(number, unit);
@@ -310,8 +310,8 @@ bool ConfigReader::readText(const std::string& yaml, const std::string& path, co
 bool ConfigReader::number(const YAML::Node& node, const std::string& path, const types::Field& field, double& value,
                           const char* wanted) {
     double read = 0;
-    if (const auto quantity = quantityOf(node)) {
-        const auto unit = unitOf(field.unit);
+    if (const auto quantity = readQuantity(node)) {
+        const auto unit = findUnit(field.unit);
         const auto converted = unit ? quantity->in(*unit) : std::nullopt;
         if (!converted) return report(node, path, "is " + shown(node) + "; " + wantedUnit(field)), false;
         read = *converted;
@@ -335,7 +335,7 @@ bool ConfigReader::whole(const YAML::Node& node, const std::string& path, const 
         report(node, path, "is " + shown(node) + "; must be a whole number", types::Diagnostic::Kind::NotWhole);
         return false;
     }
-    std::string_view digits = quantityOf(node) ? std::string_view("0.") : node.Scalar();
+    std::string_view digits = readQuantity(node) ? std::string_view("0.") : node.Scalar();
     negative = wide < 0;
     if (digits.starts_with('-') || digits.starts_with('+')) digits.remove_prefix(1);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), magnitude);

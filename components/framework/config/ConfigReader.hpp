@@ -27,7 +27,7 @@ struct Unit {
 };
 
 /** Returns the unit of a property: "m", "m/s", "deg", "kHz", "degC", "1"...; none for levels (dB) and unknown units. */
-std::optional<Unit> unitOf(std::string_view name);
+std::optional<Unit> findUnit(std::string_view name);
 
 /** A number with its unit, as in Rock's configuration files. */
 struct Quantity {
@@ -74,16 +74,16 @@ public:
      *  any diagnostic. */
     template <types::Described T>
     bool read(const YAML::Node& node, const std::string& path, T& value) {
-        return readBlock(*this, node, path, blockOf<T>(), &value);
+        return readBlock(*this, node, path, getBlock<T>(), &value);
     }
     template <class T>
     bool readValue(const YAML::Node& node, const std::string& path, const types::Field& field, T& value) {
-        return typeOf<T>().read(*this, node, path, field, &value);
+        return getType<T>().read(*this, node, path, field, &value);
     }
     /** Reads a value from a separate piece of YAML: an argument, a `--set`. */
     template <class T>
     bool readText(const std::string& yaml, const std::string& path, T& value) {
-        return readText(yaml, path, typeOf<T>(), &value);
+        return readText(yaml, path, getType<T>(), &value);
     }
     bool readText(const std::string& yaml, const std::string& path, const ValueType& type, void* value);
 
@@ -120,7 +120,7 @@ std::string suggestion(std::string_view wrong, const std::vector<std::string>& k
 
 /** Returns the names of ports or operations. */
 template <class Named>
-std::vector<std::string> namesOf(const std::vector<Named*>& all) {
+std::vector<std::string> getNames(const std::vector<Named*>& all) {
     std::vector<std::string> names;
     for (const Named* one : all) names.push_back(one->name());
     return names;

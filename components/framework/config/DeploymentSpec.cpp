@@ -144,7 +144,7 @@ struct DocumentKeys {
     }
 };
 
-YAML::Node documentOf(const std::string& text, const std::string& file) {
+YAML::Node readDocument(const std::string& text, const std::string& file) {
     const std::vector<YAML::Node> documents = parseYaml(text, file);
     if (documents.empty() || documents[0].IsNull())
         throw types::ConfigError(file, "", "is empty; a deployment needs tasks");
@@ -234,7 +234,7 @@ DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string&
     DeploymentSpec spec;
     spec.file = file;
     spec.text = text;
-    const YAML::Node document = documentOf(text, file);
+    const YAML::Node document = readDocument(text, file);
     ConfigReader reader(file);
     DocumentKeys keys;
     reader.read(document, "", keys);
@@ -282,7 +282,7 @@ std::string DeploymentSpec::withoutAlias(const std::string& path) const {
     return owner && alias != owner->aliases.end() ? alias->second : path;
 }
 
-std::string DeploymentSpec::aliasOf(const std::string& path) const {
+std::string DeploymentSpec::getAlias(const std::string& path) const {
     for (const TaskSpec& owner : tasks)
         for (const auto& [name, target] : owner.aliases)
             if (target == path) return owner.name + "." + name;

@@ -58,7 +58,7 @@ struct DeploymentSpec {
     std::string text;  ///< The YAML as read.
     bool lockstep = true;
     double start_time = 1;               ///< Start of simulated time [s].
-    uint64_t seed = 1;                   ///< Source of the seeds of tasks without their own `seed`, see seedOf.
+    uint64_t seed = 1;                   ///< Source of the seeds of tasks without their own `seed`, see computeSeed.
     std::optional<types::Datum> datum;   ///< Of the world, also of tasks without their own; NaN: misread.
     double watchdog = 10;                ///< In realtime, the max duration of a cycle before it is reported [s].
     bool lock_memory = false;            ///< In realtime, keeps all memory resident.
@@ -80,7 +80,7 @@ struct DeploymentSpec {
     /** Returns the target of "task.port" if the task has an alias of that name, else the path itself. */
     std::string withoutAlias(const std::string& path) const;
     /** Returns the first "task.alias" of "task.port" or "task.property"; empty: no alias. */
-    std::string aliasOf(const std::string& path) const;
+    std::string getAlias(const std::string& path) const;
     /** Returns what is written but unused under this schedule, one line per task and for the whole; empty: nothing. */
     std::vector<std::string> unused() const;
     /** Sets `task.property.path=value`, with the value in YAML, over the file. In a block, only the named values

@@ -21,9 +21,9 @@ public:
     virtual ~StandIn() = default;
 
     /** Returns the stream "task.port" that a port replaces. */
-    virtual std::string streamOf(const std::string& port) const = 0;
+    virtual std::string getStream(const std::string& port) const = 0;
     /** Returns the kind of the task whose port is replaced; empty: unknown. */
-    virtual std::string modelOf(const std::string& port) const = 0;
+    virtual std::string getModel(const std::string& port) const = 0;
 };
 
 /** Returns the name of the stream that the port replaces; else the first alias of the port, else its own name. */

@@ -53,7 +53,7 @@ protected:
 /** The ValueType of T: a number, boolean, text, vector of three, enum with EnumNames, block, or an optional, a
  *  std::vector or a map by name of these. */
 template <class T>
-const ValueType& typeOf();
+const ValueType& getType();
 
 class OptionalType : public ValueType {
 public:
@@ -217,7 +217,7 @@ private:
         const BlockType::Visit& each;
         template <class Member>
         void operator()(const types::Field& field, Member& member) {
-            each(field, typeOf<Member>(), &member);
+            each(field, getType<Member>(), &member);
         }
     };
 };
@@ -225,7 +225,7 @@ private:
 template <class T>
 class TypeOfOptional final : public TypeOf<std::optional<T>, OptionalType> {
 public:
-    const ValueType& inner() const override { return typeOf<T>(); }
+    const ValueType& inner() const override { return getType<T>(); }
     const void* get(const void* value) const override { return this->of(value) ? &*this->of(value) : nullptr; }
     void* getOrMake(void* value) const override {
         return this->of(value) ? &*this->of(value) : &this->of(value).emplace();
@@ -235,7 +235,7 @@ public:
 template <class T>
 class TypeOfList final : public TypeOf<std::vector<T>, ListType> {
 public:
-    const ValueType& inner() const override { return typeOf<T>(); }
+    const ValueType& inner() const override { return getType<T>(); }
     size_t size(const void* value) const override { return this->of(value).size(); }
     const void* at(const void* value, size_t i) const override { return &this->of(value)[i]; }
     void renew(void* value, size_t size) const override { this->of(value).assign(size, T{}); }
@@ -244,7 +244,7 @@ public:
 template <class T>
 class TypeOfMap final : public TypeOf<std::map<std::string, T>, MapType> {
 public:
-    const ValueType& inner() const override { return typeOf<T>(); }
+    const ValueType& inner() const override { return getType<T>(); }
     void clear(void* value) const override { this->of(value).clear(); }
     void erase(void* value, const std::string& key) const override { this->of(value).erase(key); }
     void* getOrMake(void* value, const std::string& key) const override { return &this->of(value)[key]; }
@@ -278,7 +278,7 @@ struct TypeFor<std::map<std::string, T>> {
 };
 
 template <class T>
-const ValueType& typeOf() {
+const ValueType& getType() {
     if constexpr (Plain<T>)
         return plainType<T>();
     else
@@ -286,18 +286,18 @@ const ValueType& typeOf() {
 }
 
 template <types::Described T>
-const BlockType& blockOf() {
+const BlockType& getBlock() {
     return TypeFor<T>::type;
 }
 
 template <class T>
 std::string flowYaml(const T& value) {
-    return flowYaml(typeOf<T>(), &value);
+    return flowYaml(getType<T>(), &value);
 }
 
 template <types::Described Config>
 std::vector<PropertyInfo> listProperties(const Config& defaults) {
-    return listFields(blockOf<Config>(), &defaults);
+    return listFields(getBlock<Config>(), &defaults);
 }
 
 }  // namespace insonify::framework

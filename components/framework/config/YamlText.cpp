@@ -42,14 +42,14 @@ bool isText(std::string_view bytes) {
 
 namespace {
 
-std::vector<std::string> linesOf(const std::string& text) {
+std::vector<std::string> getLines(const std::string& text) {
     std::vector<std::string> lines;
     std::string line;
     for (std::istringstream stream(text); std::getline(stream, line);) lines.push_back(line);
     return lines;
 }
 
-size_t indentOf(const std::string& line) { return std::min(line.find_first_not_of(' '), line.size()); }
+size_t getIndent(const std::string& line) { return std::min(line.find_first_not_of(' '), line.size()); }
 
 bool isBlank(const std::string& line) {
     const size_t first = line.find_first_not_of(" \t\r");
@@ -66,8 +66,8 @@ bool isIndentedByTab(const std::string& line) {
 std::vector<size_t> openIndents(const std::vector<std::string>& lines, size_t line) {
     std::vector<size_t> indents;
     for (size_t i = line; i-- > 0;)
-        if (!isBlank(lines[i]) && (indents.empty() || indentOf(lines[i]) < indents.front()))
-            indents.insert(indents.begin(), indentOf(lines[i]));
+        if (!isBlank(lines[i]) && (indents.empty() || getIndent(lines[i]) < indents.front()))
+            indents.insert(indents.begin(), getIndent(lines[i]));
     return indents;
 }
 
@@ -83,7 +83,7 @@ std::string indentDiagnostic(const std::vector<std::string>& lines, size_t line)
     if (line >= lines.size() || isBlank(lines[line])) return "";
     if (isIndentedByTab(lines[line])) return "is indented with a tab; indent with spaces";
     const std::vector<size_t> open = openIndents(lines, line);
-    const size_t indent = indentOf(lines[line]);
+    const size_t indent = getIndent(lines[line]);
     if (open.empty() || std::ranges::count(open, indent) > 0) return "";
     if (indent > open.back() && opensBlock(lines, line)) return "";
     std::string may_be;
@@ -96,7 +96,7 @@ std::string yamlDiagnostic(const std::string& text, const YAML::Exception& error
     if (error.msg.find("map flow") != std::string::npos) return "is not YAML: a { has no } to close it";
     if (error.msg.find("sequence flow") != std::string::npos) return "is not YAML: a [ has no ] to close it";
     const std::string indent =
-        error.mark.line < 0 ? "" : indentDiagnostic(linesOf(text), static_cast<size_t>(error.mark.line));
+        error.mark.line < 0 ? "" : indentDiagnostic(getLines(text), static_cast<size_t>(error.mark.line));
     if (!indent.empty()) return indent;
     if (error.msg == "illegal map value")
         return "is not YAML: has a colon where no key can be; put a text with \": \" in quotes";

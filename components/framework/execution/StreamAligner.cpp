@@ -20,7 +20,7 @@ AlignedPortBase::AlignedPortBase(StreamAligner& aligner, const InputPortBase& po
     aligner.enlist(this);
 }
 
-AlignedMoment AlignedPortBase::momentOf(types::Time time) const {
+AlignedMoment AlignedPortBase::alignMoment(types::Time time) const {
     if (last_.time == before_all) return {aligner_.handedOver().round, time};
     const bool is_back = time < last_.time && outlasts(last_.time, time, types::max_lateness + types::Time{1});
     return {is_back ? std::max(last_.round + 1, aligner_.handedOver().round) : last_.round, time};
@@ -28,7 +28,7 @@ AlignedMoment AlignedPortBase::momentOf(types::Time time) const {
 
 bool AlignedPortBase::accepts(types::Time time) {
     ++counts_.received;
-    AlignedMoment moment = momentOf(time);
+    AlignedMoment moment = alignMoment(time);
     if (moment.round < aligner_.handedOver().round) {
         if (!behind_since_ || time < *behind_since_) behind_since_ = time;
         if (outlasts(time, *behind_since_, aligner_.timeout())) moment.round = aligner_.handedOver().round;

@@ -61,7 +61,7 @@ protected:
     uint64_t round() const { return last_.round; }  ///< Of the sample that was accepted last.
 
 private:
-    AlignedMoment momentOf(types::Time time) const;
+    AlignedMoment alignMoment(types::Time time) const;
 
     StreamAligner& aligner_;
     const InputPortBase& port_;
@@ -124,7 +124,7 @@ public:
     const T* next() const { return count_ > 0 ? &ring_[first_].sample : nullptr; }
 
 private:
-    static types::Time timeOf(const T& sample) {
+    static types::Time getTime(const T& sample) {
         if constexpr (requires { sample->time; })
             return sample->time;
         else
@@ -132,11 +132,11 @@ private:
     }
     bool empty() const override { return count_ == 0; }
     bool full() const override { return count_ == ring_.size(); }
-    AlignedMoment first() const override { return {ring_[first_].round, timeOf(ring_[first_].sample)}; }
+    AlignedMoment first() const override { return {ring_[first_].round, getTime(ring_[first_].sample)}; }
     bool fill() override {
         bool any = false;
         for (; !full() && input_.readNew(sample_); any = true)
-            if (accepts(timeOf(sample_))) ring_[(first_ + count_++) % ring_.size()] = {std::move(sample_), round()};
+            if (accepts(getTime(sample_))) ring_[(first_ + count_++) % ring_.size()] = {std::move(sample_), round()};
         return any;
     }
     void handOver() override {

@@ -41,7 +41,7 @@ uint64_t statedSize(const char* header) {
 
 /** Returns the address of a file for SQLite. A database in the state of write-ahead logging is read as unchanging where
  *  it has no log: SQLite would make one next to it. */
-std::string addressOf(const std::filesystem::path& path, bool logs_ahead) {
+std::string findAddress(const std::filesystem::path& path, bool logs_ahead) {
     std::string address = "file:";
     for (const char c : std::filesystem::absolute(path).string()) {
         const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -89,7 +89,7 @@ void Reader::open() {
         throw types::ConfigError(
             path(), "", damaged + " (it has " + std::to_string(bytes()) + " bytes of " + std::to_string(stated) + ")");
     sqlite3* opened = nullptr;
-    const int code = sqlite3_open_v2(addressOf(path(), header[18] == 2).c_str(), &opened,
+    const int code = sqlite3_open_v2(findAddress(path(), header[18] == 2).c_str(), &opened,
                                      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
     database_.reset(opened);
     if (code != SQLITE_OK) fail();
@@ -118,8 +118,8 @@ void Reader::readTopics(types::WorldFrame foreign) {
     while (step(row.get())) {
         const DeclaredTopic topic{textAt(row.get(), 1), textAt(row.get(), 2), textAt(row.get(), 3), &no_texts, foreign};
         topics_.push_back(sqlite3_column_int64(row.get(), 0));
-        streams_.push_back(streamOf(topic));
-        decoders_.push_back(decoderOf(topic));
+        streams_.push_back(getStream(topic));
+        decoders_.push_back(makeDecoder(topic));
         layouts_.push_back(definitions[topic.type]);
     }
 }
@@ -159,9 +159,9 @@ void Reader::fail() const {
     throw types::ConfigError(path(), "", "cannot be read as a bag of ros2 bag" + reason);
 }
 
-std::string Reader::placeOf(const SampleRef& at) const { return "of id " + std::to_string(at.position); }
+std::string Reader::getPlace(const SampleRef& at) const { return "of id " + std::to_string(at.position); }
 
-std::span<const char> Reader::bytesOf(const SampleRef& at) try {
+std::span<const char> Reader::toBytes(const SampleRef& at) try {
     sqlite3_bind_int64(message_.get(), 1, static_cast<int64_t>(at.position));
     if (!step(message_.get())) failSample(at, "is no longer there");
     const auto* const data = static_cast<const char*>(sqlite3_column_blob(message_.get(), 0));
@@ -176,6 +176,6 @@ std::span<const char> Reader::bytesOf(const SampleRef& at) try {
     failSample(at, error.what());
 }
 
-void Reader::decode(const SampleRef& at, types::SampleRoom room) { decoders_[at.stream]->decode(bytesOf(at), room); }
+void Reader::decode(const SampleRef& at, types::SampleRoom room) { decoders_[at.stream]->decode(toBytes(at), room); }
 
 }  // namespace insonify::log::db3

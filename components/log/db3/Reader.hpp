@@ -25,7 +25,7 @@ public:
     ~Reader() override;
 
     uint64_t bytes() const override { return file_.size(); }
-    std::span<const char> bytesOf(const SampleRef& at) override;
+    std::span<const char> toBytes(const SampleRef& at) override;
     const std::string& layout(size_t stream) const override { return layouts_[stream]; }
 
 private:
@@ -43,7 +43,7 @@ private:
     bool step(sqlite3_stmt* statement) const;
     /** Throws the reason for which SQLite cannot read. */
     [[noreturn]] void fail() const;
-    std::string placeOf(const SampleRef& at) const override;
+    std::string getPlace(const SampleRef& at) const override;
     void decode(const SampleRef& at, types::SampleRoom room) override;
 
     InputFile file_;

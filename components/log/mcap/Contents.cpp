@@ -289,7 +289,7 @@ private:
         const size_t messages = found_.messages.size();
         try {
             const uint64_t inside = chunk.records_at - record.start - record_header_size;
-            records(recordsOf(chunk, record.content.subspan(inside), unpacked_));
+            records(getRecords(chunk, record.content.subspan(inside), unpacked_));
         } catch (const FormatError&) {
             found_.messages.resize(messages);
             found_.chunks.pop_back();
@@ -370,7 +370,7 @@ void File::read(const MessageRef& at, std::vector<char>& to) {
         unpacked_.reset();
         const Record chunk = record(at.position);
         const ChunkInfo info = chunkInfo(chunk);
-        recordsOf(info, chunk.content.subspan(info.records_at - chunk.start - record_header_size), records_);
+        getRecords(info, chunk.content.subspan(info.records_at - chunk.start - record_header_size), records_);
         unpacked_ = at.position;
     }
     if (at.offset + uint64_t{at.size} > records_.size()) throw FormatError(at.position, "the chunk has changed");

@@ -101,7 +101,7 @@ ChunkInfo chunkInfo(const File::Record& record);
 
 /** Returns the records of a chunk, decompressed if necessary and checked against their size and checksum. Throws
  *  FormatError for damaged records and for an unsupported compression. */
-std::span<const char> recordsOf(const ChunkInfo& chunk, std::span<const char> stored, std::vector<char>& room);
+std::span<const char> getRecords(const ChunkInfo& chunk, std::span<const char> stored, std::vector<char>& room);
 
 /** Compares the summary and footer behind the data with the data. Throws FormatError at a difference. */
 void checkSummary(File& file, const Contents& contents);

@@ -18,7 +18,7 @@
 namespace insonify::log::mcap {
 namespace {
 
-types::Time timeOf(uint64_t ns) { return {static_cast<int64_t>(ns / 1000)}; }
+types::Time getTime(uint64_t ns) { return {static_cast<int64_t>(ns / 1000)}; }
 
 }  // namespace
 
@@ -32,7 +32,7 @@ std::string quoted(const std::string& text) {
 }
 
 /** Returns the first file in a bag's metadata; empty: there is none. */
-std::string firstFileOf(const fs::path& metadata) try {
+std::string findFirstFile(const fs::path& metadata) try {
     return YAML::LoadFile(metadata)["rosbag2_bagfile_information"]["relative_file_paths"][0].as<std::string>("");
 } catch (const YAML::Exception&) {
     return {};
@@ -50,7 +50,7 @@ struct Span {
     uint64_t first = 0, length = 0;
 };
 
-Span spanOf(const FileSummary& file) { return {file.first_ns, file.last_ns - file.first_ns}; }
+Span getSpan(const FileSummary& file) { return {file.first_ns, file.last_ns - file.first_ns}; }
 
 }  // namespace
 
@@ -64,9 +64,9 @@ const std::string qos_profile =
 Bag::Bag(const fs::path& first_file, bool is_written)
     : path_(first_file.parent_path() / "metadata.yaml"), is_written_(is_written) {
     if (!is_written || !fs::exists(path_)) return;
-    const std::string other = firstFileOf(path_), own = first_file.filename().string();
-    const auto nameOf = [](const fs::path& file) { return file.stem().stem(); };
-    const bool is_sequel = sequenceNumber(other) && sequenceNumber(own) && nameOf(other) == nameOf(own);
+    const std::string other = findFirstFile(path_), own = first_file.filename().string();
+    const auto getName = [](const fs::path& file) { return file.stem().stem(); };
+    const bool is_sequel = sequenceNumber(other) && sequenceNumber(own) && getName(other) == getName(own);
     if (other != own && !is_sequel)
         throw types::ConfigError(path_, "",
                                  "describes another bag, of " + (other.empty() ? "no file" : quoted(other)) +
@@ -106,8 +106,8 @@ std::string Bag::text(const ChunkWriter& present) const {
     out << "  compression_format: \"\"\n  compression_mode: \"\"\n  files:\n";
     for (const FileSummary& file : files)
         out << "    - path: " << quoted(file.path.filename().string())
-            << "\n      starting_time:\n        nanoseconds_since_epoch: " << spanOf(file).first
-            << "\n      duration:\n        nanoseconds: " << spanOf(file).length
+            << "\n      starting_time:\n        nanoseconds_since_epoch: " << getSpan(file).first
+            << "\n      duration:\n        nanoseconds: " << getSpan(file).length
             << "\n      message_count: " << file.messages << '\n';
     return out.str();
 }
@@ -151,7 +151,7 @@ Reader::Reader(const std::filesystem::path& path, AtDamage at_damage, types::Wor
         addStream(channel, own_place, foreign);
     }
     for (const MessageRef& message : contents_.messages)
-        addSample(numbers.at(message.channel), timeOf(message.log_ns), timeOf(message.publish_ns), message.position);
+        addSample(numbers.at(message.channel), getTime(message.log_ns), getTime(message.publish_ns), message.position);
 }
 
 void Reader::addStream(const Channel& channel, size_t place, types::WorldFrame foreign) {
@@ -159,8 +159,8 @@ void Reader::addStream(const Channel& channel, size_t place, types::WorldFrame f
     const auto schema = contents.schemas.find(channel.schema);
     const DeclaredTopic topic{channel.topic, schema == contents.schemas.end() ? "" : schema->second.name,
                               channel.encoding, &channel.metadata, foreign};
-    Stream& stream = streams_.emplace_back(streamOf(topic));
-    decoders_.push_back(decoderOf(topic));
+    Stream& stream = streams_.emplace_back(getStream(topic));
+    decoders_.push_back(makeDecoder(topic));
     for (const Contents::Metadata& metadata : contents.metadata)
         if (metadata.name == "insonify" && metadata.channels_before <= place) stream.metadata = metadata.texts;
     if (streams_.size() > 1 && streams_.front().metadata.contains("insonify_deployment"))
@@ -182,13 +182,13 @@ const std::string& Reader::layout(size_t stream) const {
 
 const Channel& Reader::channel(size_t stream) const { return contents_.channels.at(channels_[stream]); }
 
-std::span<const char> Reader::bytesOf(const SampleRef& at) try {
+std::span<const char> Reader::toBytes(const SampleRef& at) try {
     file_.read(message(at), bytes_);
     return bytes_;
 } catch (const FormatError& error) {
     failSample(at, error.what());
 }
 
-void Reader::decode(const SampleRef& at, types::SampleRoom room) { decoders_[at.stream]->decode(bytesOf(at), room); }
+void Reader::decode(const SampleRef& at, types::SampleRoom room) { decoders_[at.stream]->decode(toBytes(at), room); }
 
 }  // namespace insonify::log::mcap

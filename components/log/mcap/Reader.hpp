@@ -50,7 +50,7 @@ public:
                     types::WorldFrame foreign = types::WorldFrame::Enu);
 
     uint64_t bytes() const override { return file_.size(); }
-    std::span<const char> bytesOf(const SampleRef& at) override;
+    std::span<const char> toBytes(const SampleRef& at) override;
 
     const std::string& layout(size_t stream) const override;
     /** The schema of a stream's messages; null: it has none. */

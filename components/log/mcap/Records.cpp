@@ -39,7 +39,7 @@ uint32_t checksum(std::span<const char> bytes, uint32_t before) {
     return static_cast<uint32_t>(crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-std::span<const char> recordsOf(const ChunkInfo& chunk, std::span<const char> stored, std::vector<char>& room) {
+std::span<const char> getRecords(const ChunkInfo& chunk, std::span<const char> stored, std::vector<char>& room) {
     std::span<const char> records = stored;
     if (!chunk.compression.empty()) {
         if (chunk.compression != "lz4" && chunk.compression != "zstd")

@@ -48,14 +48,14 @@ void addDifferences(const Metadata& shared, const Metadata& metadata, Texts& cha
 }
 
 template <class E>
-std::string nameOf(E value) {
+std::string getName(E value) {
     return std::string(types::EnumNames<E>::names[static_cast<size_t>(value)]);
 }
 
 /** Returns "/auv/sonar" for a topic with or without its slash. */
 std::string rooted(const std::string& topic) { return "/" + topic.substr(topic.starts_with('/')); }
 
-std::set<std::string> topicsOf(const McapConfig& config) {
+std::set<std::string> getTopics(const McapConfig& config) {
     std::set<std::string> topics;
     for (const auto& [name, stream] : config.streams)
         if (stream.topic) topics.insert(rooted(config.names.topic(*stream.topic)));
@@ -64,13 +64,13 @@ std::set<std::string> topicsOf(const McapConfig& config) {
 
 }  // namespace
 
-std::string SampleWriter::topicOf(const std::string& stream) const {
+std::string SampleWriter::getTopic(const std::string& stream) const {
     const auto given = config_.streams.find(stream);
     if (given == config_.streams.end() || !given->second.topic) return config_.names.ros_namespace + usualTopic(stream);
     return rooted(config_.names.topic(*given->second.topic));
 }
 
-SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const Metadata& metadata) const {
+SampleWriter::Options SampleWriter::getOptions(const std::string& stream, const Metadata& metadata) const {
     Options options{config_, {}, {}};
     const auto frequency = metadata.find("insonify_frequency_khz");
     if (options.frequency_khz == 0 && frequency != metadata.end())
@@ -86,7 +86,7 @@ SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const M
 }
 
 SampleWriter::SampleWriter(std::filesystem::path path, const McapConfig& config)
-    : config_(config), bag_(path, config.is_bag), out_(std::move(path)), transforms_(out_, topicsOf(config)) {}
+    : config_(config), bag_(path, config.is_bag), out_(std::move(path)), transforms_(out_, getTopics(config)) {}
 
 SampleWriter::~SampleWriter() {
     if (out_.isEmpty()) return;
@@ -98,7 +98,7 @@ SampleWriter::~SampleWriter() {
 }
 
 void SampleWriter::checkTopic(const std::string& stream) const {
-    const std::string topic = topicOf(stream);
+    const std::string topic = getTopic(stream);
     for (const Channel& other : out_.channels())
         if (other.topic == topic)
             throw types::ConfigError(
@@ -112,18 +112,18 @@ size_t SampleWriter::add(size_t sample, const std::string& name, const Metadata&
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (types::sampleIndex<T>() != sample) return;
         using Message = ros::LoggedMessage<T>;
-        const Schema schema{Message::type_name, "ros2msg", ros::schemaOf<Message>()};
+        const Schema schema{Message::type_name, "ros2msg", ros::describeSchema<Message>()};
         Texts texts = {{"offered_qos_profiles", qos_profile},
                        {"topic_type_hash", ros::typeHash<Message>()},
                        {"insonify_stream", name},
                        {"insonify_type", cxxName<typename ros::MessagesOf<T>::read_as>()},
-                       {"insonify_order", nameOf(config_.order)},
-                       {"insonify_frame", nameOf(config_.frame)},
-                       {"insonify_world_frame", nameOf(config_.world_frame)}};
-        const Options options = optionsOf(name, metadata);
+                       {"insonify_order", getName(config_.order)},
+                       {"insonify_frame", getName(config_.frame)},
+                       {"insonify_world_frame", getName(config_.world_frame)}};
+        const Options options = getOptions(name, metadata);
         if (std::is_same_v<Message, ros::ProjectedSonarImage> || std::is_same_v<Message, ros::SonarDetections>)
             texts.emplace(frame_id_key, options.frame_id);
-        number = declare(&schema, {0, topicOf(name), "cdr", std::move(texts)}, metadata);
+        number = declare(&schema, {0, getTopic(name), "cdr", std::move(texts)}, metadata);
         options_.resize(number + 1);
         options_[number] = options;
         if (config_.transforms) transforms_.follow(channels_[number], metadata);
@@ -161,7 +161,7 @@ size_t SampleWriter::addLike(const log::Reader& log, size_t number, const Metada
     Schema schema{stream.message, "ros2msg", log.layout(number)};
     if (schema.text.empty())
         ros::forEachMessage([&]<class Message>(std::type_identity<Message>) {
-            if (stream.message == Message::type_name) schema.text = ros::schemaOf<Message>();
+            if (stream.message == Message::type_name) schema.text = ros::describeSchema<Message>();
         });
     return declare(&schema, {0, stream.topic, "cdr", {{"offered_qos_profiles", qos_profile}}}, all);
 }
@@ -203,9 +203,9 @@ void SampleWriter::writeMessage(size_t stream, uint64_t log_ns, uint64_t publish
 void SampleWriter::copy(size_t stream, log::Reader& log, const SampleRef& at) {
     const auto* const same = dynamic_cast<const Reader*>(&log);
     if (!same && log.streams()[at.stream].sample) return put(stream, at.received, at.time, log.sampleAt(at));
-    if (!same) return writeMessage(stream, nanoseconds(at.received), nanoseconds(at.time), log.bytesOf(at));
+    if (!same) return writeMessage(stream, nanoseconds(at.received), nanoseconds(at.time), log.toBytes(at));
     const MessageRef& message = same->message(at);
-    writeMessage(stream, message.log_ns, message.publish_ns, log.bytesOf(at));
+    writeMessage(stream, message.log_ns, message.publish_ns, log.toBytes(at));
 }
 
 void SampleWriter::fail(size_t stream, const std::string& why) const {

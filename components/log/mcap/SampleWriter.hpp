@@ -49,8 +49,8 @@ private:
     struct Options : ros::MessageOptions {
         std::optional<std::string> world_frame_id, child_frame_id;  ///< Instead of a sample's frames.
     };
-    Options optionsOf(const std::string& stream, const Metadata& metadata) const;
-    std::string topicOf(const std::string& stream) const;
+    Options getOptions(const std::string& stream, const Metadata& metadata) const;
+    std::string getTopic(const std::string& stream) const;
     void checkTopic(const std::string& stream) const;
 
     McapConfig config_;

@@ -16,26 +16,26 @@
 namespace insonify::log::mcap {
 namespace {
 
-ros::Time stampOf(uint64_t ns) {
+ros::Time getStamp(uint64_t ns) {
     return {static_cast<int32_t>(ns / 1'000'000'000), static_cast<uint32_t>(ns % 1'000'000'000)};
 }
 
 template <class E>
-E enumOf(const Texts& texts, const char* key, E otherwise) {
+E getEnum(const Texts& texts, const char* key, E otherwise) {
     const auto found = texts.find(key);
     const auto& names = types::EnumNames<E>::names;
     const auto name = found == texts.end() ? std::end(names) : std::ranges::find(names, found->second);
     return name == std::end(names) ? otherwise : static_cast<E>(name - std::begin(names));
 }
 
-std::string textOf(const Metadata& metadata, const char* key) {
+std::string toText(const Metadata& metadata, const char* key) {
     const auto found = metadata.find(key);
     return found == metadata.end() ? "" : found->second;
 }
 
 /** None: the text is missing or damaged. */
-std::optional<types::Mount> mountOf(const Metadata& stream) try {
-    const YAML::Node node = YAML::Load(textOf(stream, "insonify_mount"));
+std::optional<types::Mount> findMount(const Metadata& stream) try {
+    const YAML::Node node = YAML::Load(toText(stream, "insonify_mount"));
     if (!node.IsMap()) return std::nullopt;
     types::Mount mount;
     for (int i = 0; i < 3; ++i) mount.position[i] = node["position"][i].as<double>();
@@ -47,11 +47,11 @@ std::optional<types::Mount> mountOf(const Metadata& stream) try {
     return std::nullopt;
 }
 
-glm::dquat rotationOf(const ros::Quaternion& q) { return {q.w, q.x, q.y, q.z}; }
+glm::dquat toRotation(const ros::Quaternion& q) { return {q.w, q.x, q.y, q.z}; }
 
 /** False: listeners of transforms would refuse it. */
 bool normalise(ros::Transform& transform) {
-    const glm::dquat q = rotationOf(transform.rotation);
+    const glm::dquat q = toRotation(transform.rotation);
     const double length = glm::length(q);
     const auto& [x, y, z] = transform.translation;
     if (!std::isfinite(x + y + z) || !std::isfinite(length) || length < 1e-6) return false;
@@ -71,14 +71,14 @@ void Transforms::follow(uint16_t channel, const Metadata& stream) {
     const Channel& declared = out_.channels()[channel];
     if (declared.schema == 0) return;
     const std::string& schema = out_.schemas()[declared.schema - 1u].name;
-    if (schema == ros::Odometry::type_name) poses_[channel].name = textOf(declared.metadata, "insonify_stream");
+    if (schema == ros::Odometry::type_name) poses_[channel].name = toText(declared.metadata, "insonify_stream");
     if (schema != ros::ProjectedSonarImage::type_name && schema != ros::SonarDetections::type_name) return;
     Pings& pings = pings_[channel];
-    pings.frame = textOf(declared.metadata, frame_id_key);
-    pings.body = textOf(stream, "insonify_body");
-    pings.axes = enumOf(declared.metadata, "insonify_frame", pings.axes);
-    pings.world = enumOf(declared.metadata, "insonify_world_frame", pings.world);
-    if (!pings.frame.empty()) pings.mount = mountOf(stream);
+    pings.frame = toText(declared.metadata, frame_id_key);
+    pings.body = toText(stream, "insonify_body");
+    pings.axes = getEnum(declared.metadata, "insonify_frame", pings.axes);
+    pings.world = getEnum(declared.metadata, "insonify_world_frame", pings.world);
+    if (!pings.frame.empty()) pings.mount = findMount(stream);
 }
 
 void Transforms::before(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes) {
@@ -89,7 +89,7 @@ void Transforms::before(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, 
     constexpr auto lateness_ns = static_cast<uint64_t>(1000 * types::max_lateness.microseconds);
     if (!clock_ns_ || publish_ns > *clock_ns_ || *clock_ns_ - publish_ns > lateness_ns) {  // or the clock was set back
         clock_ns_ = publish_ns;
-        write("/clock", log_ns, publish_ns, ros::Clock{stampOf(publish_ns)});
+        write("/clock", log_ns, publish_ns, ros::Clock{getStamp(publish_ns)});
     }
     if (poses != poses_.end()) addPose(channel, poses->second, log_ns, publish_ns, bytes);
     placeMounts(log_ns, AtEnd::No);
@@ -117,15 +117,15 @@ void Transforms::addPose(uint16_t channel, Poses& poses, uint64_t log_ns, uint64
 bool Transforms::turnToPings(ros::TransformStamped& placed) const {
     for (const auto& [channel, pings] : pings_) {
         if (pings.frame != placed.child_frame_id) continue;
-        const glm::dquat own = rotationOf(ros::toTransform({}, pings.world, pings.axes).rotation),
-                         turned = rotationOf(placed.transform.rotation) * own;
+        const glm::dquat own = toRotation(ros::toTransform({}, pings.world, pings.axes).rotation),
+                         turned = toRotation(placed.transform.rotation) * own;
         placed.transform.rotation = {turned.x, turned.y, turned.z, turned.w};
         return true;
     }
     return false;
 }
 
-std::string Transforms::bodyOf(const Pings& pings, AtEnd at_end) const {
+std::string Transforms::getBody(const Pings& pings, AtEnd at_end) const {
     const auto isKnown = [](const auto& each) { return !each.second.child.empty(); };
     const auto own = std::ranges::find_if(poses_, [&](const auto& each) { return each.second.name == pings.body; });
     if (own != poses_.end()) return own->second.child;
@@ -139,12 +139,12 @@ void Transforms::placeMounts(uint64_t log_ns, AtEnd at_end) {
     const size_t before = mounts_.transforms.size();
     for (auto& [channel, pings] : pings_) {
         if (!pings.mount) continue;
-        const std::string body = bodyOf(pings, at_end);
+        const std::string body = getBody(pings, at_end);
         if (body.empty()) continue;
         const types::Mount mount = *std::exchange(pings.mount, {});
         if (owners_.emplace(pings.frame, channel).second)
             mounts_.transforms.push_back(
-                {{stampOf(log_ns), body}, pings.frame, ros::toTransform(mount, pings.world, pings.axes)});
+                {{getStamp(log_ns), body}, pings.frame, ros::toTransform(mount, pings.world, pings.axes)});
     }
     if (mounts_.transforms.size() > before) writeMounts(log_ns);
 }
@@ -173,7 +173,7 @@ void Transforms::write(const std::string& topic, uint64_t log_ns, uint64_t publi
             return;
         }
         uint16_t& schema = schemas_[Message::type_name];
-        if (schema == 0) schema = out_.addSchema({Message::type_name, "ros2msg", ros::schemaOf<Message>()});
+        if (schema == 0) schema = out_.addSchema({Message::type_name, "ros2msg", ros::describeSchema<Message>()});
         const std::string profile = topic == "/tf_static" ? latchedProfile() : qos_profile;
         Texts texts{
             {"offered_qos_profiles", profile}, {"topic_type_hash", ros::typeHash<Message>()}, {derived_key, "yes"}};

@@ -59,7 +59,7 @@ private:
     /** Turns the pose of a sonar to the axes of its pings. False: the frame is not that of pings. */
     bool turnToPings(ros::TransformStamped& placed) const;
     /** Returns the frame that carries a sonar; empty: unknown so far. */
-    std::string bodyOf(const Pings& pings, AtEnd at_end) const;
+    std::string getBody(const Pings& pings, AtEnd at_end) const;
     /** Writes the mounts whose bodies are known and whose frames have no parent. */
     void placeMounts(uint64_t log_ns, AtEnd at_end);
     void writeMounts(uint64_t log_ns);

@@ -98,7 +98,7 @@ private:
             throw FormatError(stream.registry_at, fmt::format("the registry of {} must be typelib's XML with {} in it",
                                                               stream.name, stream.type));
         metadata(stream);
-        const auto sample = sampleOf(stream.type);
+        const auto sample = findSample(stream.type);
         streams_.push_back({{stream.name, stream.type, sample}, {.declaration = block}, {}});
     }
 
@@ -165,7 +165,7 @@ private:
     void sample(size_t type, std::span<const char> bytes) {
         const types::SampleRoom room = roomFor(type, samples_);
         decode(bytes, room);
-        const auto diagnostic = [](auto* held) { return types::diagnosticOf(*held); };
+        const auto diagnostic = [](auto* held) { return types::findDiagnostic(*held); };
         if (const char* what = std::visit(diagnostic, room)) throw FormatError(0, what);
     }
 

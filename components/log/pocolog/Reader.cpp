@@ -32,7 +32,7 @@ std::string inQuotes(std::string_view value) {
     return text + '"';
 }
 
-size_t byteOf(const YAML::Mark& mark) { return mark.is_null() ? 0 : static_cast<size_t>(mark.pos); }
+size_t findByte(const YAML::Mark& mark) { return mark.is_null() ? 0 : static_cast<size_t>(mark.pos); }
 
 constexpr std::string_view index_magic = "POCOSIM_INDEX";
 constexpr uint32_t index_version = 3;
@@ -48,7 +48,7 @@ void put(std::vector<char>& bytes, types::Time time) { put(bytes, static_cast<ui
 
 /** Returns the earliest and latest time, 0 without samples. The earliest need not be the first sample's: the clock may
  *  have been set back, and offsets from it are not negative. */
-std::pair<types::Time, types::Time> spanOf(const StreamIndex& stream) {
+std::pair<types::Time, types::Time> getSpan(const StreamIndex& stream) {
     if (stream.samples.empty()) return {};
     const auto [first, last] = std::ranges::minmax_element(stream.samples, {}, &StreamIndex::Entry::time);
     return {first->time, last->time};
@@ -56,7 +56,7 @@ std::pair<types::Time, types::Time> spanOf(const StreamIndex& stream) {
 
 void putStream(std::vector<char>& bytes, const StreamIndex& stream, uint64_t data_position) {
     put(bytes, stream.declaration);
-    const auto [first, last] = spanOf(stream);
+    const auto [first, last] = getSpan(stream);
     put(bytes, data_position);
     put(bytes, first);
     put(bytes, stream.samples.size());
@@ -205,16 +205,16 @@ Metadata metadataFromYaml(std::string_view yaml) try {
 
 std::optional<size_t> findNotFlat(std::string_view yaml) try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(std::string(yaml));
-    if (documents.size() > 1) return byteOf(documents[1].Mark());
+    if (documents.size() > 1) return findByte(documents[1].Mark());
     if (documents.empty() || documents[0].IsNull()) return {};
     const YAML::Node& map = documents[0];
-    if (!map.IsMap()) return byteOf(map.Mark());
+    if (!map.IsMap()) return findByte(map.Mark());
     for (const auto& entry : map)
         for (const YAML::Node& node : {YAML::Node(entry.first), YAML::Node(entry.second)})
-            if (node.IsMap() || node.IsSequence()) return byteOf(node.Mark());
+            if (node.IsMap() || node.IsSequence()) return findByte(node.Mark());
     return {};
 } catch (const YAML::Exception& error) {
-    return byteOf(error.mark);
+    return findByte(error.mark);
 }
 
 std::filesystem::path indexPath(const std::filesystem::path& log) {
@@ -235,7 +235,7 @@ std::vector<char> indexBytes(const std::vector<StreamIndex>& streams, uint64_t l
         data_position += stream.samples.size() * sample_entry_size;
     }
     for (const StreamIndex& stream : streams) {
-        const types::Time first = spanOf(stream).first;
+        const types::Time first = getSpan(stream).first;
         for (const StreamIndex::Entry& sample : stream.samples) {
             put(bytes, sample.position);
             put(bytes, sample.time - first);
@@ -255,7 +255,7 @@ void writeIndex(const std::filesystem::path& log, const std::vector<StreamIndex>
     if (!file) std::filesystem::remove(indexPath(log));
 }
 
-std::optional<size_t> sampleOf(const std::string& type) {
+std::optional<size_t> findSample(const std::string& type) {
     std::optional<size_t> sample;
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (type == typelibName<T>() || type == cxxName<T>()) sample = types::sampleIndex<T>();
@@ -269,7 +269,7 @@ void decode(std::span<const char> bytes, types::SampleRoom room) {
 
 Reader::Reader(const std::filesystem::path& path, AtDamage at_damage) : log::Reader(path), file_(path) {
     const auto declare = [this](Declaration declared) {
-        streams_.push_back({declared.name, declared.type, sampleOf(declared.type), metadataFromYaml(declared.yaml)});
+        streams_.push_back({declared.name, declared.type, findSample(declared.type), metadataFromYaml(declared.yaml)});
         registries_.push_back(std::move(declared.registry));
         yamls_.push_back(std::move(declared.yaml));
     };
@@ -280,7 +280,7 @@ Reader::Reader(const std::filesystem::path& path, AtDamage at_damage) : log::Rea
     scan(file_, path, at_damage, {declare, add, gaps_});
 }
 
-std::span<const char> Reader::bytesOf(const SampleRef& at) {
+std::span<const char> Reader::toBytes(const SampleRef& at) {
     const Stored& stored = stored_[at.number];
     buffer_.resize(stored.size);
     if (!file_.read(at.position, buffer_.data(), stored.size)) failSample(at, "cannot be read any more");
@@ -293,6 +293,6 @@ std::span<const char> Reader::bytesOf(const SampleRef& at) {
     return inflated_;
 }
 
-void Reader::decode(const SampleRef& at, types::SampleRoom room) { pocolog::decode(bytesOf(at), room); }
+void Reader::decode(const SampleRef& at, types::SampleRoom room) { pocolog::decode(toBytes(at), room); }
 
 }  // namespace insonify::log::pocolog

@@ -53,7 +53,7 @@ public:
     explicit Reader(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop);
 
     uint64_t bytes() const override { return file_.size(); }
-    std::span<const char> bytesOf(const SampleRef& at) override;
+    std::span<const char> toBytes(const SampleRef& at) override;
     const std::string& layout(size_t stream) const override { return registries_[stream]; }
     /** Its metadata as written. */
     const std::string& yaml(size_t stream) const { return yamls_[stream]; }
@@ -73,7 +73,7 @@ private:
 };
 
 /** Returns the index in types::SampleTypes of the type with this name in typelib or Rock's C++; none: unknown. */
-std::optional<size_t> sampleOf(const std::string& type);
+std::optional<size_t> findSample(const std::string& type);
 
 /** Fills a sample from its bytes as typelib marshals them. Throws FormatError for invalid bytes. */
 void decode(std::span<const char> bytes, types::SampleRoom room);

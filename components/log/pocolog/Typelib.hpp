@@ -30,18 +30,18 @@ struct Extent {
 };
 
 template <class T>
-Extent extentOf();
+Extent getExtent();
 
 template <types::Described T>
 Extent extentOfFields() {
     Extent extent;
-    forEachField<T>([&]<class F>(const types::Field&, F&) { extent.append(extentOf<F>()); });
+    forEachField<T>([&]<class F>(const types::Field&, F&) { extent.append(getExtent<F>()); });
     extent.size = extent.stride();
     return extent;
 }
 
 template <class T>
-Extent extentOf() {
+Extent getExtent() {
     if constexpr (Text<T>)
         return {32, 8};
     else if constexpr (Vector<T>)
@@ -109,7 +109,7 @@ private:
         forEachField<T>([&]<class F>(const types::Field& field, F&) {
             add<F>();
             const bool is_stamp = std::is_same_v<F, types::Time> && std::string_view(field.name) == "time";
-            members.push_back({field.name, typelibName<F>(), extent.append(extentOf<F>()), is_stamp});
+            members.push_back({field.name, typelibName<F>(), extent.append(getExtent<F>()), is_stamp});
         });
         addCompound(name, extent.stride(), members);
     }
@@ -124,7 +124,7 @@ private:
 
 /** Returns the registry that a stream of T declares. */
 template <class T>
-std::string registryOf() {
+std::string makeRegistry() {
     RegistryXml registry;
     registry.add<T>();
     return registry.text();

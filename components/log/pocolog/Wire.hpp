@@ -130,7 +130,7 @@ private:
         Extent extent;
         auto visit = [&](const types::Field&, auto& field) {
             const size_t end = extent.size;
-            padding_ += extent.append(extentOf<std::remove_cvref_t<decltype(field)>>()) - end;
+            padding_ += extent.append(getExtent<std::remove_cvref_t<decltype(field)>>()) - end;
             value(field);
         };
         Plain::describe(item, visit);

@@ -66,7 +66,7 @@ size_t Writer::add(size_t sample, const std::string& name, const Metadata& metad
         Metadata all = metadata;
         if constexpr (types::Stamped<T>) all.emplace("rock_timestamp_field", "time");
         all.merge(standardMetadata(name, cxxName<T>()));
-        number = declare(name, typelibName<T>(), registryOf<T>(), all);
+        number = declare(name, typelibName<T>(), makeRegistry<T>(), all);
     });
     return number;
 }
@@ -131,7 +131,7 @@ size_t Writer::addLike(const log::Reader& log, size_t number, const Metadata& mo
 }
 
 void Writer::copy(size_t number, log::Reader& log, const SampleRef& at) {
-    if (dynamic_cast<const Reader*>(&log)) return write(number, at.received, at.time, log.bytesOf(at));
+    if (dynamic_cast<const Reader*>(&log)) return write(number, at.received, at.time, log.toBytes(at));
     put(number, at.received, at.time, log.sampleAt(at));
 }
 

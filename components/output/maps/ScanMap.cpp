@@ -15,7 +15,7 @@ constexpr double farthest = 1e9;  ///< [m]
 constexpr double edge_on = 0.02;  ///< Min share of the sonar's plane seen from above; below it no ping is shown.
 
 /** Returns the axes of the sonar's plane as seen from above. */
-glm::dmat2 planeOf(const types::Pose& sonar) { return glm::dmat2(glm::mat3_cast(glm::normalize(sonar.orientation))); }
+glm::dmat2 makePlane(const types::Pose& sonar) { return glm::dmat2(glm::mat3_cast(glm::normalize(sonar.orientation))); }
 
 glm::dvec2 towards(double bearing) { return {std::cos(bearing), std::sin(bearing)}; }
 
@@ -27,17 +27,17 @@ ScanMap::ScanMap(int radius, double range) : radius_(radius), range_(range), cel
     cells_.copyTo(scratch_);
 }
 
-cv::Point2d ScanMap::cellOf(const glm::dvec2& place) const {
+cv::Point2d ScanMap::findCell(const glm::dvec2& place) const {
     return {radius_ - (place.y - middle_.y) / cell_, radius_ - (place.x - middle_.x) / cell_};
 }
 
 bool ScanMap::shows(const types::Pose& sonar) {
     return types::isUsable(sonar) && glm::length(sonar.position) <= farthest &&
-           std::abs(glm::determinant(planeOf(sonar))) >= edge_on;
+           std::abs(glm::determinant(makePlane(sonar))) >= edge_on;
 }
 
 void ScanMap::lay(const types::Sonar& ping, const types::Pose& sonar) {
-    world_from_plane_ = planeOf(sonar);
+    world_from_plane_ = makePlane(sonar);
     sonar_ = sonar.position;
     moveTo(sonar_);
     arc_.take(ping);
@@ -77,12 +77,12 @@ double ScanMap::halfWidth(const types::Sonar& ping, double bearing) {
 }
 
 cv::Rect ScanMap::reach(double bearing, double half_width) const {
-    const cv::Point2d origin = cellOf(sonar_);
+    const cv::Point2d origin = findCell(sonar_);
     cv::Point2d low = origin, high = origin;
     const int steps = 1 + static_cast<int>(2 * half_width / 0.1);
     for (int i = 0; i <= steps; ++i) {
         const double angle = bearing + half_width * (2.0 * i / steps - 1);
-        const cv::Point2d end = cellOf(sonar_ + world_from_plane_ * towards(angle) * range_);
+        const cv::Point2d end = findCell(sonar_ + world_from_plane_ * towards(angle) * range_);
         low = {std::min(low.x, end.x), std::min(low.y, end.y)};
         high = {std::max(high.x, end.x), std::max(high.y, end.y)};
     }

@@ -30,7 +30,7 @@ public:
     /** Echoes of the pings, 32-bit floats; NaN where there was no ping. */
     const cv::Mat& cells() const { return cells_; }
     /** Returns column and row of a place in the world; whole numbers are the middles of cells. */
-    cv::Point2d cellOf(const glm::dvec2& place) const;
+    cv::Point2d findCell(const glm::dvec2& place) const;
 
 private:
     void moveTo(const glm::dvec2& place);

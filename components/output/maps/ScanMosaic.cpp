@@ -17,7 +17,7 @@ DisplayConfig halved(DisplayConfig config) {
 }  // namespace
 
 ScanMosaic::ScanMosaic(const DisplayConfig& config)
-    : half_(halved(config)), disc_(half_), palette_(paletteOf(config.colour_map)), scale_(config) {}
+    : half_(halved(config)), disc_(half_), palette_(getPalette(config.colour_map)), scale_(config) {}
 
 bool ScanMosaic::place(const std::optional<types::Pose>& sonar) {
     sonar_ = sonar && ScanMap::shows(*sonar) ? sonar : std::nullopt;
@@ -57,7 +57,7 @@ void ScanMosaic::build(const types::Sonar& ping) {
 }
 
 cv::Point2d ScanMosaic::pixel(const glm::dvec2& place) const {
-    const cv::Point2d cell = map_->cellOf(place);
+    const cv::Point2d cell = map_->findCell(place);
     const double edge = layout_->radius();
     return layout_->origin() + cell - cv::Point2d(edge, edge) + cv::Point2d(layout_->size().width, 0);
 }

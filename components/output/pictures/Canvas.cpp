@@ -46,7 +46,7 @@ Palette fromOpenCv(int map) {
 
 }  // namespace
 
-Palette paletteOf(ColourMap map) {
+Palette getPalette(ColourMap map) {
     switch (map) {
         case ColourMap::Amber: return interpolated(amber);
         case ColourMap::Copper: return interpolated(copper);
@@ -140,7 +140,7 @@ void sideBySide(const Captioned& left, const Captioned& right, types::Image& pic
 const cv::Point Chart::colour_bar{10, FanLayout::title_height + 24};
 
 Chart::Chart(uint32_t width, ColourMap colour_map)
-    : width_(static_cast<int>(width + width % 2)), palette_(paletteOf(colour_map)) {}
+    : width_(static_cast<int>(width + width % 2)), palette_(getPalette(colour_map)) {}
 
 int Chart::rowsFor(double rows, double tallest) const {
     return static_cast<int>(std::clamp(rows, colour_bar_size.height + 40.0, tallest * columns()));

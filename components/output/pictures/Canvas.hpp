@@ -13,7 +13,7 @@ namespace insonify::output {
 
 /** Blue, green and red of each of the 256 levels. */
 using Palette = std::array<cv::Vec3b, 256>;
-Palette paletteOf(ColourMap map);
+Palette getPalette(ColourMap map);
 
 inline const cv::Scalar background{26, 19, 14};  ///< The background's blue, green, red.
 inline const cv::Scalar title_ground{44, 33, 25};

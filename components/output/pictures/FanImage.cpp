@@ -17,7 +17,7 @@ bool sameAngle(types::Angle a, types::Angle b) { return a.rad == b.rad || (a.isU
 }  // namespace
 
 FanImage::FanImage(const DisplayConfig& config)
-    : config_(config), palette_(paletteOf(config.colour_map)), scale_(config) {}
+    : config_(config), palette_(getPalette(config.colour_map)), scale_(config) {}
 
 void FanImage::paint(const types::Sonar& ping, types::Image& picture) {
     cv::Mat canvas = draw(ping, picture);
@@ -118,7 +118,7 @@ constexpr double sector_width = full_turn / DiscImage::sectors;
 constexpr int sub_pixel_bits = 4;
 
 /** Returns the centre of a sector, counted from astern over starboard, ahead and port to astern again [rad]. */
-double bearingOf(uint32_t sector) { return (sector + 0.5) * sector_width - std::numbers::pi; }
+double computeBearing(uint32_t sector) { return (sector + 0.5) * sector_width - std::numbers::pi; }
 
 void drawHead(cv::Mat& canvas, const FanLayout& layout, double bearing) {
     const auto subPixel = [](cv::Point2d at) { return cv::Point(at * (1 << sub_pixel_bits)); };
@@ -148,7 +148,7 @@ void DiscImage::clear(const types::Sonar& ping) {
     disc_.beam_count = sectors;
     disc_.beam_width.rad = sector_width;
     disc_.bearings.resize(sectors);
-    for (uint32_t sector = 0; sector < sectors; ++sector) disc_.bearings[sector].rad = bearingOf(sector);
+    for (uint32_t sector = 0; sector < sectors; ++sector) disc_.bearings[sector].rad = computeBearing(sector);
     disc_.bins.assign(size_t{sectors} * ping.bin_count, std::numeric_limits<float>::quiet_NaN());
 }
 

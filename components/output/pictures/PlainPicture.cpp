@@ -171,7 +171,7 @@ void PlainPicture::buildWaterfall(const types::Sonar& ping) {
     cell_of_.assign(size_t{width_} * height_, -1);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
         for (uint32_t cell = 0; cell < cells_; ++cell) {
-            const cv::Point at = pixelOf(beam, cell);
+            const cv::Point at = findPixel(beam, cell);
             cell_of_[static_cast<size_t>(at.y) * width_ + static_cast<size_t>(at.x)] =
                 static_cast<int32_t>(beam * cells_ + cell);
         }
@@ -183,7 +183,7 @@ void PlainPicture::findLevels(const types::Sonar& ping) {
     shown.reserve(size_t{ping.beam_count} * cells_);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
         for (uint32_t cell = 0; cell < cells_; ++cell) {
-            const double mean = meanOf(ping, beam, cell);
+            const double mean = computeMean(ping, beam, cell);
             shown.push_back(!linear ? mean : mean > 0 ? 10 * std::log10(mean) : nothing);
         }
     reference_db_ = codes ? 0 : config_.reference_db.value_or(strongLevel(shown));
@@ -195,14 +195,14 @@ void PlainPicture::findLevels(const types::Sonar& ping) {
                                         : 0);
 }
 
-double PlainPicture::meanOf(const types::Sonar& ping, uint32_t beam, uint32_t cell) const {
+double PlainPicture::computeMean(const types::Sonar& ping, uint32_t beam, uint32_t cell) const {
     const uint32_t first = cell * bins_per_cell_, last = std::min(first + bins_per_cell_, ping.bin_count);
     double sum = 0;
     for (uint32_t k = first; k < last; ++k) sum += static_cast<double>(ping.bins[size_t{beam} * ping.bin_count + k]);
     return sum / (last - first);
 }
 
-cv::Point PlainPicture::pixelOf(uint32_t beam, uint32_t cell) const {
+cv::Point PlainPicture::findPixel(uint32_t beam, uint32_t cell) const {
     if (config_.shape == PlainShape::Range) return {static_cast<int>(beam % width_), static_cast<int>(beam / width_)};
     if (config_.shape == PlainShape::Polar)
         return {static_cast<int>(column_of_[beam]), static_cast<int>(cells_ - 1 - cell)};
@@ -215,7 +215,7 @@ cv::Point PlainPicture::pixelOf(uint32_t beam, uint32_t cell) const {
     return {std::clamp(x, 0, static_cast<int>(width_) - 1), std::clamp(y, 0, static_cast<int>(height_) - 1)};
 }
 
-std::vector<int32_t> PlainPicture::groupsOf(const std::vector<uint8_t>& chosen) const {
+std::vector<int32_t> PlainPicture::groupBy(const std::vector<uint8_t>& chosen) const {
     std::vector<uint32_t> order(bearing_of_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::erase_if(order, [&](uint32_t beam) { return std::isnan(bearing_of_[beam]); });
@@ -256,7 +256,7 @@ namespace {
 constexpr double white = 255;
 
 /** Returns the levels of 8 bits as 64-bit floats; neighbouring rows are neighbouring beams. */
-cv::Mat levelsOf(const types::Sonar& ping, LevelScale& scale) {
+cv::Mat computeLevels(const types::Sonar& ping, LevelScale& scale) {
     const cv::Mat bins(static_cast<int>(ping.beam_count), static_cast<int>(ping.bin_count), CV_32F,
                        const_cast<float*>(ping.bins.data()));
     cv::Mat rows(0, bins.cols, CV_32F), levels;
@@ -276,17 +276,17 @@ cv::Mat blurred(const cv::Mat& picture) {
 
 double referenceLevel(const types::Sonar& ping, const DisplayConfig& display) {
     LevelScale scale(display);
-    levelsOf(ping, scale);
+    computeLevels(ping, scale);
     return scale.referenceDb();
 }
 
 double structuralSimilarity(const types::Sonar& reference, const types::Sonar& other, DisplayConfig display) {
     const double c1 = std::pow(0.01 * white, 2), c2 = std::pow(0.03 * white, 2);
     LevelScale scale(display);
-    const cv::Mat x = levelsOf(reference, scale);
+    const cv::Mat x = computeLevels(reference, scale);
     display.reference_db = scale.referenceDb();
     LevelScale same_scale(display);
-    const cv::Mat y = levelsOf(other, same_scale);
+    const cv::Mat y = computeLevels(other, same_scale);
     const cv::Mat mean_x = blurred(x), mean_y = blurred(y);
     const cv::Mat means = mean_x.mul(mean_y), squares = mean_x.mul(mean_x) + mean_y.mul(mean_y);
     const cv::Mat covariance = blurred(x.mul(y)) - means;

@@ -72,12 +72,12 @@ public:
     /** Returns the bearing of a beam on that arc, which exceeds pi across +-180 degrees; NaN: unknown [rad]. */
     double bearing(uint32_t beam) const { return bearing_of_[beam]; }
     /** Returns the pixel nearest to the middle of a cell, {column, row}; inside the picture. */
-    cv::Point pixelOf(uint32_t beam, uint32_t cell) const;
+    cv::Point findPixel(uint32_t beam, uint32_t cell) const;
     /** Returns the group of each cell: chosen cells that touch, in one beam or in neighbouring beams of the picture,
      *  also at corners. Groups are numbered from 1; 0 is a cell that is not chosen. Independent of the order of beams
      *  in the ping.
      *  @param chosen one number for each cell, 0: not chosen */
-    std::vector<int32_t> groupsOf(const std::vector<uint8_t>& chosen) const;
+    std::vector<int32_t> groupBy(const std::vector<uint8_t>& chosen) const;
     /** Returns the level of white [dB]; 0 if bins are codes. */
     double referenceDb() const { return reference_db_; }
     types::Image image() const;
@@ -87,7 +87,7 @@ private:
     void buildPolar();
     void buildWaterfall(const types::Sonar& ping);
     void findLevels(const types::Sonar& ping);
-    double meanOf(const types::Sonar& ping, uint32_t beam, uint32_t cell) const;
+    double computeMean(const types::Sonar& ping, uint32_t beam, uint32_t cell) const;
 
     PlainConfig config_;
     FanShape shape_;

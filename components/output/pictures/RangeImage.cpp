@@ -12,7 +12,7 @@
 
 namespace insonify::output {
 
-RangeImage::Span RangeImage::spanOf(const types::DepthMap& map) const {
+RangeImage::Span RangeImage::getSpan(const types::DepthMap& map) const {
     Span span{std::numeric_limits<float>::infinity(), 0};
     for (const float distance : map.distances)
         if (std::isfinite(distance)) span = {std::min(span.nearest, distance), std::max(span.farthest, distance)};
@@ -25,7 +25,7 @@ void RangeImage::paint(types::Image& picture) {
     if (const char* const diagnostic = map.diagnostic()) throw std::runtime_error(std::string("a map ") + diagnostic);
     const double rows =
         map.horizontal_size > 0 ? chart_.columns() * static_cast<double>(map.vertical_size) / map.horizontal_size : 0;
-    const Span span = spanOf(map);
+    const Span span = getSpan(map);
     cv::Mat canvas = chart_.open(picture, map.time, chart_.rowsFor(cvRound(rows), 2));
     if (!map.distances.empty()) drawCells(canvas, map, span);
     drawLabels(canvas, map, span);

@@ -30,7 +30,7 @@ private:
     struct Span {
         float nearest = 0, farthest = 0;
     };
-    Span spanOf(const types::DepthMap& map) const;
+    Span getSpan(const types::DepthMap& map) const;
     void drawCells(cv::Mat& canvas, const types::DepthMap& map, const Span& span) const;
     void drawLabels(cv::Mat& canvas, const types::DepthMap& map, const Span& span) const;
 

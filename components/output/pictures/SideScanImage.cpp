@@ -14,13 +14,13 @@ namespace {
 constexpr float blank = std::numeric_limits<float>::quiet_NaN();
 
 /** Returns the bins of the first beam on a side, +1 for port; null if there is none. */
-const float* binsOf(const types::Sonar& ping, int side) {
+const float* getBins(const types::Sonar& ping, int side) {
     const auto beam = types::firstBeamOn(ping, side);
     return beam ? ping.bins.data() + size_t{*beam} * ping.bin_count : nullptr;
 }
 
 /** Returns the mean of the bins between two places, counted in bins; at least the bin at `from`. */
-float meanOf(const float* bins, uint32_t count, double from, double to) {
+float computeMean(const float* bins, uint32_t count, double from, double to) {
     const auto first = static_cast<uint32_t>(std::clamp(from, 0.0, count - 1.0));
     const auto last = static_cast<uint32_t>(std::clamp(std::ceil(to), first + 1.0, static_cast<double>(count)));
     float sum = 0;
@@ -33,7 +33,7 @@ float meanOf(const float* bins, uint32_t count, double from, double to) {
 SideScanImage::SideScanImage(const SideScanPictureConfig& config)
     : WaterfallImage(config), ground_range_(config.ground_range), is_decibel_(config.scale == BinScale::Decibel) {}
 
-double SideScanImage::altitudeOf(const types::Sonar& ping) {
+double SideScanImage::computeAltitude(const types::Sonar& ping) {
     if (!ground_range_) return 0;
     if (ground_range_->altitude) return *ground_range_->altitude;
     if (std::isfinite(altitude_)) return altitude_;
@@ -52,14 +52,14 @@ double SideScanImage::altitudeOf(const types::Sonar& ping) {
 }
 
 void SideScanImage::fillRow(const types::Sonar& ping, cv::Mat& row) {
-    const double range = ping.binStart(ping.bin_count), bin = ping.binStart(1), altitude = altitudeOf(ping);
+    const double range = ping.binStart(ping.bin_count), bin = ping.binStart(1), altitude = computeAltitude(ping);
     const double half = row.cols / 2.0;
     for (int column = 0; column < row.cols; ++column) {
         const double offset = half - column - 0.5;  // positive to port
         const double from = (std::abs(offset) - 0.5) / half * range, to = (std::abs(offset) + 0.5) / half * range;
         const double r1 = std::hypot(from, altitude), r2 = std::hypot(to, altitude);
-        const float* const bins = binsOf(ping, offset > 0 ? 1 : -1);
-        row.at<float>(column) = bins && r1 < range ? meanOf(bins, ping.bin_count, r1 / bin, r2 / bin) : blank;
+        const float* const bins = getBins(ping, offset > 0 ? 1 : -1);
+        row.at<float>(column) = bins && r1 < range ? computeMean(bins, ping.bin_count, r1 / bin, r2 / bin) : blank;
     }
 }
 

@@ -49,7 +49,7 @@ public:
 private:
     void fillRow(const types::Sonar& ping, cv::Mat& row) override;
     void addRanges(Overlay& overlay, double range) const override;
-    double altitudeOf(const types::Sonar& ping);
+    double computeAltitude(const types::Sonar& ping);
 
     std::optional<GroundRangeConfig> ground_range_;
     bool is_decibel_;

@@ -32,7 +32,7 @@ uint8_t brightest(const cv::Vec3b& pixel) { return std::max({pixel[0], pixel[1],
 
 }  // namespace
 
-cv::Vec3b TruthImage::colourOf(int32_t object) {
+cv::Vec3b TruthImage::getColour(int32_t object) {
     constexpr double golden = 0.6180339887498949;  // hues of neighbouring numbers differ strongly, and none repeats
     const double hue = std::fmod(0.08 + golden * object, 1.0), pale = object % 3 == 2 ? 0.45 : 0.12;
     const auto level = [&](double offset) {
@@ -82,7 +82,7 @@ cv::Vec3b TruthImage::colourAt(size_t bin, const cv::Vec3b& echo) const {
     const int32_t object = truth_->object[bin];
     if (object == types::SonarTruth::no_object) return echo;
     const double brightness = dimmest + (1 - dimmest) * brightest(echo) / 255.0;
-    return colourOf(object) * brightness;
+    return getColour(object) * brightness;
 }
 
 void TruthImage::colour(const cv::Mat& fan, cv::Mat& canvas) const {
@@ -123,7 +123,7 @@ void TruthImage::addLegend(cv::Mat& canvas) const {
     canvas(cv::Rect(0, FanLayout::title_height, bar_width, bar_height) & cv::Rect({}, canvas.size())).setTo(background);
     int row = top;
     for (size_t i = 0; i < count; ++i, row += line_height)
-        addLine(canvas, row, truth_->objects[static_cast<size_t>(shown_[i].object)], colourOf(shown_[i].object));
+        addLine(canvas, row, truth_->objects[static_cast<size_t>(shown_[i].object)], getColour(shown_[i].object));
     if (!all && room > 0) addLine(canvas, row, fmt::format("and {} more", shown_.size() - count), {90, 90, 90});
 }
 

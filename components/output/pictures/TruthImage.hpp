@@ -22,7 +22,7 @@ public:
     void paint(const types::Sonar& ping, types::Image& picture) override;
 
     /** Returns an object's colour at full brightness: blue, green, red. */
-    static cv::Vec3b colourOf(int32_t object);
+    static cv::Vec3b getColour(int32_t object);
     static constexpr int shadow_blue = 60;
     /** Returns the layout of the left half; the right half follows it. A picture must have been drawn. */
     const FanLayout& layout() const { return fan_.layout(); }

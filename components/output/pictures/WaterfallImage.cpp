@@ -21,7 +21,7 @@ const cv::Point colour_bar{10, FanLayout::title_height + WaterfallImage::history
 WaterfallImage::WaterfallImage(const DisplayConfig& config)
     : config_(config),
       width_(static_cast<int>(config.width + config.width % 2)),
-      palette_(paletteOf(config.colour_map)),
+      palette_(getPalette(config.colour_map)),
       scale_(config) {}
 
 cv::Rect WaterfallImage::water() const {

@@ -106,9 +106,9 @@ private:
         const tinygltf::Node& from = gltf_.model.nodes[static_cast<size_t>(visit.node)];
         Node node;
         node.parent = visit.parent;
-        node.name = names_.add(nameOf(from, visit.node));
-        const NodeShape shape = shapeOf(from, path);
-        node.parent_from_node = from.matrix.empty() ? shape.matrix() : matrixOf(from, path);
+        node.name = names_.add(getName(from, visit.node));
+        const NodeShape shape = getShape(from, path);
+        node.parent_from_node = from.matrix.empty() ? shape.matrix() : toMatrix(from, path);
         node.scale = shape.scale;
         node_in_scene_[static_cast<size_t>(visit.node)] = static_cast<int>(scene_.nodes.size());
         const glm::dmat4 world_from_node = visit.world_from_parent * node.parent_from_node;
@@ -123,7 +123,7 @@ private:
         return world_from_node;
     }
 
-    std::string nameOf(const tinygltf::Node& node, int index) const {
+    std::string getName(const tinygltf::Node& node, int index) const {
         if (!node.name.empty()) return node.name;
         const auto mesh = static_cast<size_t>(node.mesh);
         if (node.mesh >= 0 && mesh < gltf_.model.meshes.size() && !gltf_.model.meshes[mesh].name.empty())
@@ -138,7 +138,7 @@ private:
         return !values.empty();
     }
 
-    glm::dmat4 matrixOf(const tinygltf::Node& node, const std::string& path) const {
+    glm::dmat4 toMatrix(const tinygltf::Node& node, const std::string& path) const {
         has(node.matrix, 16, path + ".matrix");
         glm::dmat4 matrix;
         for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
@@ -147,7 +147,7 @@ private:
     }
 
     /** Neutral for a node with a matrix. */
-    NodeShape shapeOf(const tinygltf::Node& node, const std::string& path) const {
+    NodeShape getShape(const tinygltf::Node& node, const std::string& path) const {
         NodeShape shape;
         if (!node.matrix.empty()) return shape;
         if (has(node.translation, 3, path + ".translation"))
@@ -299,7 +299,7 @@ private:
             if (const int node = node_in_scene_[i]; moved.contains(node))
                 animations->nodes.push_back(
                     {node, scene_.nodes[static_cast<size_t>(node)].parent < 0 ? z_up_from_y_up : glm::dmat4(1),
-                     shapeOf(gltf_.model.nodes[i], fmt::format("nodes[{}]", i))});
+                     getShape(gltf_.model.nodes[i], fmt::format("nodes[{}]", i))});
         std::ranges::sort(animations->nodes, {}, &AnimatedNode::node);
         if (!animations->empty()) scene_.animations = std::move(animations);
     }

@@ -28,7 +28,7 @@ std::vector<T> reordered(const std::vector<T>& list, const std::vector<uint32_t>
     return result;
 }
 
-std::optional<AnimatedPath> pathOf(const std::string& name) {
+std::optional<AnimatedPath> getPath(const std::string& name) {
     static const std::map<std::string, AnimatedPath> paths{{"translation", AnimatedPath::Translation},
                                                            {"rotation", AnimatedPath::Rotation},
                                                            {"scale", AnimatedPath::Scale},
@@ -57,7 +57,7 @@ public:
 
 private:
     void addChannel(const tinygltf::AnimationChannel& channel, const std::string& path) {
-        const auto property = pathOf(channel.target_path);
+        const auto property = getPath(channel.target_path);
         if (!property) return void(++to_.other_paths);
         if (channel.sampler < 0 || static_cast<size_t>(channel.sampler) >= from_.samplers.size())
             fail(path + ".sampler",
@@ -69,12 +69,12 @@ private:
             fail(path + ".target.node", fmt::format("is {}; the file has {} nodes", number, nodes.size()));
         size_t width = *property == AnimatedPath::Rotation ? 4 : 3;
         if (*property == AnimatedPath::Weights)
-            width = weightsOf(nodes[number], path, number);
+            width = getWeights(nodes[number], path, number);
         else if (!nodes[number].matrix.empty())
             fail(path + ".target.node", fmt::format("is nodes[{}], which has a matrix; an animated node must have "
                                                     "translation, rotation and scale in its place",
                                                     number));
-        const KeyFrames keys = keysOf(channel.sampler, *property, width);
+        const KeyFrames keys = getKeys(channel.sampler, *property, width);
         const int node = node_in_scene_[number];
         if (node < 0) return void(++to_.outside_scene);
         const auto is_same = [&](const Channel& one) { return one.node == node && one.path == *property; };
@@ -84,7 +84,7 @@ private:
         animation_.keys.push_back(keys);
     }
 
-    size_t weightsOf(const tinygltf::Node& node, const std::string& path, size_t number) const {
+    size_t getWeights(const tinygltf::Node& node, const std::string& path, size_t number) const {
         const bool has_mesh = node.mesh >= 0 && static_cast<size_t>(node.mesh) < gltf_.model.meshes.size();
         const size_t count = has_mesh ? targetCount(gltf_, static_cast<size_t>(node.mesh)) : 0;
         if (count == 0)
@@ -92,7 +92,7 @@ private:
         return count;
     }
 
-    KeyFrames keysOf(int number, AnimatedPath property, size_t width) const {
+    KeyFrames getKeys(int number, AnimatedPath property, size_t width) const {
         const tinygltf::AnimationSampler& sampler = from_.samplers[static_cast<size_t>(number)];
         const std::string path = fmt::format("{}.samplers[{}]", here_, number);
         KeyFrames keys;
@@ -105,7 +105,7 @@ private:
         else if (sampler.interpolation != "LINEAR" && !sampler.interpolation.empty())
             fail(path + ".interpolation",
                  fmt::format("is \"{}\"; may be LINEAR, STEP or CUBICSPLINE", sampler.interpolation));
-        keys.times = timesOf(sampler.input, path + ".input");
+        keys.times = getTimes(sampler.input, path + ".input");
         const size_t per_key = keys.interpolation == Interpolation::CubicSpline ? 3 : 1;
         const size_t per_element = property == AnimatedPath::Weights ? 1 : width;
         accessors_.componentType(sampler.output);  // refuses an accessor that does not exist
@@ -114,12 +114,12 @@ private:
             fail(path + ".output",
                  fmt::format("has {} elements; {} keys of {} values need {}", count, keys.times.size(), per_key,
                              keys.times.size() * per_key * width / per_element));
-        keys.values = valuesOf(sampler.output, property, path + ".output");
+        keys.values = readValues(sampler.output, property, path + ".output");
         if (keys.is_rotation) normaliseRotations(keys, path + ".output");
         return keys;
     }
 
-    std::vector<double> timesOf(int accessor, const std::string& path) const {
+    std::vector<double> getTimes(int accessor, const std::string& path) const {
         if (accessors_.componentType(accessor) != TINYGLTF_COMPONENT_TYPE_FLOAT)
             fail(path, "is not of componentType 5126; times must be floats");
         const std::vector<float> read = accessors_.numbers(accessor, TINYGLTF_TYPE_SCALAR);
@@ -135,7 +135,7 @@ private:
         return times;
     }
 
-    std::vector<double> valuesOf(int accessor, AnimatedPath property, const std::string& path) const {
+    std::vector<double> readValues(int accessor, AnimatedPath property, const std::string& path) const {
         const bool may_be_whole = property == AnimatedPath::Rotation || property == AnimatedPath::Weights;
         const int component = accessors_.componentType(accessor);
         const bool is_scaled = gltf_.model.accessors[static_cast<size_t>(accessor)].normalized &&

@@ -210,7 +210,7 @@ bool parse(GltfFile& gltf, const std::string& given, NamedFiles& files, std::str
                                              reinterpret_cast<const unsigned char*>(bytes.data()), size, files.folder)
                : loader.LoadASCIIFromString(&gltf.model, &errors, &warnings, bytes.data(), size, files.folder);
 } catch (const std::exception& failure) {
-    errors += types::reasonOf(failure);
+    errors += types::getReason(failure);
     return false;
 }
 

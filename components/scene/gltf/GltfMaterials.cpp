@@ -91,7 +91,7 @@ Pixels decode(std::pair<const uint8_t*, const uint8_t*> encoded, int channels, b
 
 /** Returns an item of a list of the file. */
 template <class T>
-const T& itemOf(const GltfFile& gltf, const std::vector<T>& items, int index, const char* what) {
+const T& getItem(const GltfFile& gltf, const std::vector<T>& items, int index, const char* what) {
     if (index < 0 || static_cast<size_t>(index) >= items.size())
         throw types::ConfigError(gltf.name, fmt::format("{}[{}]", what, index),
                                  fmt::format("does not exist; the file has {}", items.size()));
@@ -101,12 +101,12 @@ const T& itemOf(const GltfFile& gltf, const std::vector<T>& items, int index, co
 /** Returns the image of a texture, and sets whether it repeats. */
 Pixels readTexture(const GltfFile& gltf, const GltfAccessors& accessors, int index, int channels, bool wide,
                    bool& repeat_u, bool& repeat_v) {
-    const tinygltf::Texture& texture = itemOf(gltf, gltf.model.textures, index, "textures");
+    const tinygltf::Texture& texture = getItem(gltf, gltf.model.textures, index, "textures");
     if (texture.source < 0) throw std::runtime_error("its texture has no PNG or JPEG image");
     Pixels pixels = decode(
-        encoded(itemOf(gltf, gltf.model.images, texture.source, "images"), texture.source, accessors), channels, wide);
+        encoded(getItem(gltf, gltf.model.images, texture.source, "images"), texture.source, accessors), channels, wide);
     if (texture.sampler >= 0) {
-        const tinygltf::Sampler& sampler = itemOf(gltf, gltf.model.samplers, texture.sampler, "samplers");
+        const tinygltf::Sampler& sampler = getItem(gltf, gltf.model.samplers, texture.sampler, "samplers");
         repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
         repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     }
@@ -149,7 +149,7 @@ private:
     std::map<int, int> indices_;
 };
 
-glm::vec2 pairOf(const tinygltf::Value& object, const char* key, glm::vec2 otherwise) {
+glm::vec2 readPair(const tinygltf::Value& object, const char* key, glm::vec2 otherwise) {
     if (!object.Has(key) || object.Get(key).ArrayLen() != 2) return otherwise;
     const tinygltf::Value& array = object.Get(key);
     return {static_cast<float>(array.Get(0).GetNumberAsDouble()), static_cast<float>(array.Get(1).GetNumberAsDouble())};
@@ -165,8 +165,8 @@ NormalMapping mapping(const auto& texture) {
     if (json.Has("texCoord") && json.Get("texCoord").IsInt()) result.uv_set = json.Get("texCoord").GetNumberAsInt();
     const double angle = json.Has("rotation") ? json.Get("rotation").GetNumberAsDouble() : 0;
     const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
-    const glm::vec2 scale = pairOf(json, "scale", glm::vec2(1));
-    result.transform = {scale.x * glm::vec2(c, -s), scale.y * glm::vec2(s, c), pairOf(json, "offset", glm::vec2(0))};
+    const glm::vec2 scale = readPair(json, "scale", glm::vec2(1));
+    result.transform = {scale.x * glm::vec2(c, -s), scale.y * glm::vec2(s, c), readPair(json, "offset", glm::vec2(0))};
     return result;
 }
 
@@ -184,9 +184,9 @@ public:
         if (!acoustics.IsObject() || !acoustics.Has("map")) return;
         path_ = fmt::format("materials[{}].extras.acoustics.map", material);
         const size_t found = diagnostics_.size();
-        const MapValues meaning = valuesOf(acoustics.Get("map"));
+        const MapValues meaning = readValues(acoustics.Get("map"));
         if (diagnostics_.size() > found) return;
-        std::vector<int> classes = materialsOf(meaning, path_ + ".classes", geometry_, diagnostics_);
+        std::vector<int> classes = getMaterials(meaning, path_ + ".classes", geometry_, diagnostics_);
         for (size_t i = found; i < diagnostics_.size(); ++i) diagnostics_[i].file = gltf_.name;
         if (diagnostics_.size() > found) return;
         try {
@@ -204,7 +204,7 @@ private:
     void refuse(const std::string& key, const std::string& why) {
         diagnostics_.push_back({path_ + (key.empty() ? "" : "." + key), why, gltf_.name});
     }
-    std::vector<double> numbersOf(const tinygltf::Value& map, const char* key, std::vector<double> otherwise) {
+    std::vector<double> getNumbers(const tinygltf::Value& map, const char* key, std::vector<double> otherwise) {
         if (!map.Has(key)) return otherwise;
         const tinygltf::Value& list = map.Get(key);
         std::vector<double> numbers;
@@ -214,7 +214,7 @@ private:
             refuse(key, "must be two numbers, as in [-30, 0]");
         return numbers;
     }
-    MapValues valuesOf(const tinygltf::Value& map) {
+    MapValues readValues(const tinygltf::Value& map) {
         static const std::vector<std::string> keys = {"image", "texcoord", "decibels", "values", "classes"};
         MapValues meaning;
         if (!map.IsObject()) {
@@ -225,8 +225,8 @@ private:
             if (std::ranges::find(keys, key) == keys.end())
                 refuse(key,
                        fmt::format("is not known; {}may be {}", types::didYouMean(key, keys), fmt::join(keys, ", ")));
-        meaning.decibels = numbersOf(map, "decibels", {});
-        meaning.values = numbersOf(map, "values", meaning.values);
+        meaning.decibels = getNumbers(map, "decibels", {});
+        meaning.values = getNumbers(map, "values", meaning.values);
         for (const double each : meaning.decibels)
             if (!(each >= -200 && each <= MapValues::max_db))
                 refuse("decibels", fmt::format("has {:g}; may be -200 to {:g} dB", each, MapValues::max_db));
@@ -305,7 +305,7 @@ private:
 };
 
 /** Returns the alpha of a material's base colour as far as it is drawn: a texture can only lower it. */
-float opacityOf(const tinygltf::Material& from) {
+float getOpacity(const tinygltf::Material& from) {
     const std::vector<double>& colour = from.pbrMetallicRoughness.baseColorFactor;
     const double alpha = colour.size() == 4 ? colour[3] : 1;
     if (from.alphaMode == "BLEND") return static_cast<float>(std::clamp(alpha, 0.0, 1.0));
@@ -337,7 +337,7 @@ std::vector<MaterialMaps> readMaterials(const GltfFile& gltf, const GltfAccessor
             material.normal_scale = std::isfinite(scale) ? scale : 1;
         }
         MaterialMaps& own = all.emplace_back();
-        own.opacity = opacityOf(from);
+        own.opacity = getOpacity(from);
         if (material.normal_map >= 0) own.normals = mapping(from.normalTexture);
         geometry.materials.push_back(std::move(material));
     }

@@ -43,7 +43,7 @@ glm::vec3 unitOr(glm::vec3 vector, glm::vec3 otherwise) {
     return std::isfinite(length) && length > 1e-12f ? vector / length : otherwise;
 }
 
-int modeOf(const tinygltf::Primitive& primitive) {
+int getMode(const tinygltf::Primitive& primitive) {
     return primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
 }
 
@@ -83,7 +83,7 @@ int GltfMeshes::material(const tinygltf::Primitive& primitive, const std::string
 float GltfMeshes::opacityOfMesh(size_t mesh) const {
     const auto& primitives = gltf_.model.meshes[mesh].primitives;
     float opacity = primitives.empty() ? 1 : 0;
-    for (const tinygltf::Primitive& primitive : primitives) opacity = std::max(opacity, opacityOf(primitive.material));
+    for (const tinygltf::Primitive& primitive : primitives) opacity = std::max(opacity, getOpacity(primitive.material));
     return opacity;
 }
 
@@ -137,21 +137,21 @@ struct GltfMeshes::Attributes {
 void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string& path, types::Mesh& mesh) {
     const auto positions = primitive.attributes.find("POSITION");
     if (positions == primitive.attributes.end()) return;
-    const int mode = modeOf(primitive);
+    const int mode = getMode(primitive);
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN) fail(path + ".mode", fmt::format("is {}; may be 0 to 6", mode));
     if (mode < TINYGLTF_MODE_TRIANGLES) return void(++omissions_.other_primitives);
     const int drawn = material(primitive, path);
-    if (opacityOf(drawn) == 0 && !geometry_.materials[static_cast<size_t>(drawn)].has_acoustics)
+    if (getOpacity(drawn) == 0 && !geometry_.materials[static_cast<size_t>(drawn)].has_acoustics)
         return void(omissions_.invisible.insert(drawn));
 
-    Surface surface = surfaceOf(primitive, positions->second, path);
+    Surface surface = getSurface(primitive, positions->second, path);
     if (surface.indices.empty()) return;
     const int material = mapped(primitive, path, surface, mesh);
     numbers_.insert(numbers_.end(), surface.numbers.begin(), surface.numbers.end());
     appendSurface(surface, material, mesh);
 }
 
-Surface GltfMeshes::surfaceOf(const tinygltf::Primitive& primitive, int positions, const std::string& path) {
+Surface GltfMeshes::getSurface(const tinygltf::Primitive& primitive, int positions, const std::string& path) {
     Surface surface;
     surface.positions = accessors_.vectors<glm::vec3>(positions);
     const size_t count = surface.positions.size();
@@ -165,7 +165,7 @@ Surface GltfMeshes::surfaceOf(const tinygltf::Primitive& primitive, int position
     constexpr uint32_t no_restart = ~0u;
     std::vector<uint32_t> corners;
     uint32_t restart = no_restart;
-    const int mode = modeOf(primitive);
+    const int mode = getMode(primitive);
     if (primitive.indices >= 0) {
         corners = accessors_.indices(primitive.indices);
         if (mode != TINYGLTF_MODE_TRIANGLES) restart = accessors_.restartIndex(primitive.indices);
@@ -185,7 +185,7 @@ Surface GltfMeshes::surfaceOf(const tinygltf::Primitive& primitive, int position
 int GltfMeshes::mapped(const tinygltf::Primitive& primitive, const std::string& path, Surface& surface,
                        types::Mesh& mesh) {
     int index = material(primitive, path);
-    const MaterialMaps* const maps = mapsOf(index);
+    const MaterialMaps* const maps = getMaps(index);
     if (!maps || (!maps->surface && !maps->normals)) return index;
     const Attributes attributes{primitive, *this, path, surface.positions.size()};
     if (maps->surface) surface.map_uvs = attributes.uvs(maps->on_surface);

@@ -64,15 +64,15 @@ public:
 private:
     void append(const tinygltf::Primitive& primitive, const std::string& path, types::Mesh& mesh);
     int material(const tinygltf::Primitive& primitive, const std::string& path);
-    Surface surfaceOf(const tinygltf::Primitive& primitive, int positions, const std::string& path);
+    Surface getSurface(const tinygltf::Primitive& primitive, int positions, const std::string& path);
     /** Adds what the maps of a primitive's material need to the surface, and the map to the mesh. Returns the
      *  material. */
     int mapped(const tinygltf::Primitive& primitive, const std::string& path, Surface& surface, types::Mesh& mesh);
     int withoutMap(int material, bool of_surface);
-    const MaterialMaps* mapsOf(int material) const {
+    const MaterialMaps* getMaps(int material) const {
         return static_cast<size_t>(material) < maps_.size() ? &maps_[static_cast<size_t>(material)] : nullptr;
     }
-    float opacityOf(int material) const { return mapsOf(material) ? mapsOf(material)->opacity : 1; }
+    float getOpacity(int material) const { return getMaps(material) ? getMaps(material)->opacity : 1; }
     void charge(size_t vertices, const std::string& path);
     struct Attributes;
     [[noreturn]] void fail(const std::string& path, const std::string& message) const;

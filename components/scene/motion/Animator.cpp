@@ -23,7 +23,7 @@ double looped(double time, double duration) {
 }
 
 glm::dquat quaternion(const std::vector<double>& xyzw) { return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]}; }
-glm::dvec3 vectorOf(const std::vector<double>& xyz) { return {xyz[0], xyz[1], xyz[2]}; }
+glm::dvec3 toVector(const std::vector<double>& xyz) { return {xyz[0], xyz[1], xyz[2]}; }
 
 glm::dquat scaledBy(const glm::dquat& q, double factor) {
     return {q.w * factor, q.x * factor, q.y * factor, q.z * factor};
@@ -81,7 +81,7 @@ Animator::Animator(std::shared_ptr<const Scene> scene, const AnimationConfigs& c
     rate_.reserve(widest);
 }
 
-AnimationConfig Animator::configOf(const std::string& name, const AnimationConfigs& configs) const {
+AnimationConfig Animator::getConfig(const std::string& name, const AnimationConfigs& configs) const {
     if (const auto own = configs.find(name); own != configs.end()) return own->second;
     const auto all = configs.find("*");
     return all == configs.end() ? AnimationConfig{} : all->second;
@@ -97,7 +97,7 @@ void Animator::addTracks(const AnimationConfigs& configs) {
     std::set<std::pair<int, AnimatedPath>> taken;
     std::vector<std::string> played, still, hindered;
     for (const Animation* animation : order) {
-        const AnimationConfig config = configOf(animation->name, configs);
+        const AnimationConfig config = getConfig(animation->name, configs);
         if (!config.play) {
             still.push_back(animation->name);
             continue;
@@ -166,7 +166,7 @@ std::vector<int> Animator::movers(int node) const {
 /** An object keeps its shape where its mesh and all of its joints move alike. */
 void Animator::findLive() {
     for (const DeformingObject& object : scene_->animations->objects) {
-        const int node = nodeOf(object);
+        const int node = getNode(object);
         const std::vector<int> with_mesh = movers(node);
         const bool bends = std::ranges::any_of(object.joints, [&](int joint) { return movers(joint) != with_mesh; });
         const bool morphs = std::ranges::any_of(
@@ -198,17 +198,17 @@ void Animator::applyTracks(double seconds) {
         track.keys->at(time, value_, rate_);
         if (track.path == AnimatedPath::Weights) {
             for (Live& live : live_)
-                for (size_t i = 0; nodeOf(*live.object) == track.node && i < live.morphs.size(); ++i)
+                for (size_t i = 0; getNode(*live.object) == track.node && i < live.morphs.size(); ++i)
                     live.morphs[i] = {value_[i], rate_[i] * per_second};
             continue;
         }
         NodeShape& shape = shapes_[track.slot];
         if (track.path == AnimatedPath::Translation) {
-            shape.translation = vectorOf(value_);
-            shape.translation_rate = per_second * vectorOf(rate_);
+            shape.translation = toVector(value_);
+            shape.translation_rate = per_second * toVector(rate_);
         } else if (track.path == AnimatedPath::Scale) {
-            shape.scale = vectorOf(value_);
-            shape.scale_rate = per_second * vectorOf(rate_);
+            shape.scale = toVector(value_);
+            shape.scale_rate = per_second * toVector(rate_);
         } else {
             shape.rotation = quaternion(value_);
             shape.rotation_rate = scaledBy(quaternion(rate_), per_second);
@@ -256,7 +256,7 @@ void Animator::take(double seconds, const std::vector<DrivenNode>& driven) {
     applyNodes(driven);
 }
 
-glm::dvec3 Animator::placeOf(int node, const glm::dvec3& point) const {
+glm::dvec3 Animator::getPlace(int node, const glm::dvec3& point) const {
     return placeIn(*scene_, node, places_.world_from_node[static_cast<size_t>(node)], point);
 }
 
@@ -282,7 +282,7 @@ void Animator::addDeformed(types::Snapshot& snapshot) const {
         snapshot.deformed.push_back({static_cast<uint32_t>(live.object->object),
                                      static_cast<uint32_t>(snapshot.joints.size()),
                                      static_cast<uint32_t>(snapshot.morphs.size())});
-        appendJoints(*live.object, nodeOf(*live.object), places_, snapshot.joints);
+        appendJoints(*live.object, getNode(*live.object), places_, snapshot.joints);
         snapshot.morphs.insert(snapshot.morphs.end(), live.morphs.begin(), live.morphs.end());
     }
 }

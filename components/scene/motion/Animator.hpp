@@ -77,8 +77,8 @@ public:
 
     /** Returns whether an animation moves the node itself, or a node above it with no driven node between. */
     bool isAnimated(int node) const { return animated_[static_cast<size_t>(node)]; }
-    /** Returns the place of a point of a node in the world, like placeOf() [m]. */
-    glm::dvec3 placeOf(int node, const glm::dvec3& point) const;
+    /** Returns the place of a point of a node in the world, like getPlace() [m]. */
+    glm::dvec3 getPlace(int node, const glm::dvec3& point) const;
     /** Adds the objects that animations move; replaces entries for the same objects. */
     void addMoved(std::vector<types::MovedObject>& moved) const;
     /** Adds the objects that are deformed. */
@@ -105,14 +105,14 @@ private:
         const DeformingObject* object;
         std::vector<types::MorphPose> morphs;
     };
-    AnimationConfig configOf(const std::string& name, const AnimationConfigs& configs) const;
+    AnimationConfig getConfig(const std::string& name, const AnimationConfigs& configs) const;
     void addTracks(const AnimationConfigs& configs);
     void findMovers(const std::vector<int>& driven);
     void findLive();
     std::vector<int> movers(int node) const;
     void applyTracks(double seconds);
     void applyNodes(const std::vector<DrivenNode>& driven);
-    int nodeOf(const DeformingObject& object) const { return scene_->object_nodes[object.object]; }
+    int getNode(const DeformingObject& object) const { return scene_->object_nodes[object.object]; }
 
     std::shared_ptr<const Scene> scene_;
     std::vector<Playing> playing_;

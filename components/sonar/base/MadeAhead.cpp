@@ -9,7 +9,7 @@
 namespace insonify::sonar {
 namespace {
 
-std::shared_ptr<const void> madeOf(const MadeAhead::Item& item, const std::atomic<bool>& quits) try {
+std::shared_ptr<const void> makeAhead(const MadeAhead::Item& item, const std::atomic<bool>& quits) try {
     return item.make(quits);
 } catch (const std::exception&) {
     return nullptr;
@@ -95,7 +95,7 @@ void MadeAhead::work() {
         std::vector<Made> made;
         for (size_t i = 0; i < items->size() && !quits_ && !next_; ++i) {
             lock.unlock();
-            made.emplace_back((*items)[i].key, madeOf((*items)[i], quits_));
+            made.emplace_back((*items)[i].key, makeAhead((*items)[i], quits_));
             lock.lock();
         }
         for (Made& old : made_)

@@ -16,7 +16,7 @@ inline uint32_t mixed(uint32_t x) {
 }
 
 /** Returns the number of a square or cube of a lattice at any place; it wraps round after 2^32. */
-inline uint32_t squareOf(double whole) {
+inline uint32_t makeSquare(double whole) {
     return static_cast<uint32_t>(static_cast<int64_t>(std::fmod(whole, 4294967296.0)));
 }
 
@@ -34,7 +34,7 @@ inline float logarithm(float x) {
 }
 
 /** Return sine and cosine of turns within [-1/2, 1/2]; polynomials at Chebyshev's points, within 1e-6. */
-inline float sineOf(float turns) {
+inline float computeSine(float turns) {
     const float s = turns * turns;
     float sum = 3.19933885f;
     sum = sum * s + -14.8683228f;
@@ -44,7 +44,7 @@ inline float sineOf(float turns) {
     sum = sum * s + -41.341697f;
     return turns * (sum * s + 6.28318527f);
 }
-inline float cosineOf(float turns) {
+inline float computeCosine(float turns) {
     const float s = turns * turns;
     float sum = 6.52865816f;
     sum = sum * s + -25.9675992f;

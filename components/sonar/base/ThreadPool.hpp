@@ -73,7 +73,7 @@ public:
      *  always does the same part. Returns when all are done. Throws what a part threw, the caller's first. */
     template <class Job>
     void run(const Job& job) {
-        const Lease team(*this, &callOf<Job>, &job);
+        const Lease team(*this, &invoke<Job>, &job);
         std::exception_ptr thrown = caught([&] { job(0, size()); });
         for (int part = 1; part < size() && !team; ++part)
             if (std::exception_ptr other = caught([&] { job(part, size()); }); !thrown) thrown = other;
@@ -85,7 +85,7 @@ public:
      *  own number. It is for jobs that the available threads share. Does not wait for workers that have not begun. */
     template <class Job>
     void share(const Job& job) {
-        const Lease team(*this, &callOf<Job>, &job);
+        const Lease team(*this, &invoke<Job>, &job);
         std::exception_ptr thrown = caught([&] { job(0, size()); });
         if (team) team->dismiss();
         std::exception_ptr other = team ? team->wait() : nullptr;
@@ -109,7 +109,7 @@ private:
         WorkerTeam* team_ = nullptr;
     };
     template <class Job>
-    static void callOf(const void* context, int part, int parts) {
+    static void invoke(const void* context, int part, int parts) {
         (*static_cast<const Job*>(context))(part, parts);
     }
     static std::exception_ptr caught(const auto& work) {

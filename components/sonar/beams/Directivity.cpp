@@ -23,17 +23,17 @@ constexpr size_t far_cells = 16;  ///< Cells that are merged where only sidelobe
 constexpr int max_cells = 16384;
 constexpr double reach_step = types::radians(0.05);
 
-std::optional<acoustics::BeamPattern> patternOf(const std::optional<acoustics::BeamLaw>& law,
-                                                const std::optional<double>& wavelength) {
+std::optional<acoustics::BeamPattern> findPattern(const std::optional<acoustics::BeamLaw>& law,
+                                                  const std::optional<double>& wavelength) {
     if (!law) return {};
     return acoustics::BeamPattern(*law, wavelength);
 }
 
-double powerOf(const std::optional<acoustics::BeamPattern>& law, double angle, double axis = 0) {
+double computePower(const std::optional<acoustics::BeamPattern>& law, double angle, double axis = 0) {
     return law ? law->power(angle, axis) : 1;
 }
 
-double amplitudeOf(const std::optional<acoustics::BeamPattern>& law, double angle, double axis = 0) {
+double computeAmplitude(const std::optional<acoustics::BeamPattern>& law, double angle, double axis = 0) {
     return law ? law->amplitude(angle, axis) : 1;
 }
 
@@ -91,7 +91,7 @@ size_t receivingElements(const SonarConfig& config) {
     std::optional<double> wavelength;
     if (config.frequency_khz) wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
     const double aperture = acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture();
-    if (config.elements && wavelength) return config.elements->arrayOf(aperture * *wavelength, *wavelength).count;
+    if (config.elements && wavelength) return config.elements->makeArray(aperture * *wavelength, *wavelength).count;
     return std::clamp<size_t>(static_cast<size_t>(std::lround(2 * aperture)), 2, 4096);
 }
 
@@ -101,10 +101,10 @@ Directivity::Directivity(const SonarConfig& config)
       floor_(std::pow(10, config.beam_pattern->floor_db / 10)) {
     std::optional<double> wavelength;
     if (config.frequency_khz) wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
-    transmit_azimuth_ = patternOf(config.beam_pattern->transmit.azimuth, wavelength);
-    receive_azimuth_ = patternOf(config.beam_pattern->receive.azimuth, wavelength);
-    transmit_elevation_ = patternOf(config.beam_pattern->transmit.elevation, wavelength);
-    receive_elevation_ = patternOf(config.beam_pattern->receive.elevation, wavelength);
+    transmit_azimuth_ = findPattern(config.beam_pattern->transmit.azimuth, wavelength);
+    receive_azimuth_ = findPattern(config.beam_pattern->receive.azimuth, wavelength);
+    transmit_elevation_ = findPattern(config.beam_pattern->transmit.elevation, wavelength);
+    receive_elevation_ = findPattern(config.beam_pattern->receive.elevation, wavelength);
     if (config.imperfections && receive_azimuth_) makeZones(config, wavelength);
 }
 
@@ -148,7 +148,7 @@ double Directivity::nearAzimuth(size_t zone) const {
 }
 
 double Directivity::sentAzimuth(double azimuth) const {
-    return powerOf(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
+    return computePower(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
 }
 
 double Directivity::receivedAzimuth(double azimuth, double bearing, size_t zone) const {
@@ -157,8 +157,8 @@ double Directivity::receivedAzimuth(double azimuth, double bearing, size_t zone)
         const double off = conical_ ? azimuth - bearing : wrapped(azimuth - bearing);
         return off >= -half_box_ && off < half_box_ ? 1 : 0;
     }
-    return conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
-                    : powerOf(receive_azimuth_, wrapped(azimuth - bearing));
+    return conical_ ? computePower(receive_azimuth_, azimuth, bearing)
+                    : computePower(receive_azimuth_, wrapped(azimuth - bearing));
 }
 
 double Directivity::azimuth(double azimuth, double bearing, size_t zone) const {
@@ -167,17 +167,17 @@ double Directivity::azimuth(double azimuth, double bearing, size_t zone) const {
 
 double Directivity::idealAzimuth(double azimuth, double bearing) const {
     if (hasBoxes()) return this->azimuth(azimuth, bearing, 0);
-    return sentAzimuth(azimuth) * (conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
-                                            : powerOf(receive_azimuth_, wrapped(azimuth - bearing)));
+    return sentAzimuth(azimuth) * (conical_ ? computePower(receive_azimuth_, azimuth, bearing)
+                                            : computePower(receive_azimuth_, wrapped(azimuth - bearing)));
 }
 
 double Directivity::sentAmplitude(double azimuth) const {
-    return amplitudeOf(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
+    return computeAmplitude(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
 }
 
 std::complex<double> Directivity::receivedField(double azimuth, double bearing, size_t zone) const {
     const double angle = conical_ ? azimuth : wrapped(azimuth - bearing), axis = conical_ ? bearing : 0;
-    const double ideal = amplitudeOf(receive_azimuth_, angle, axis);
+    const double ideal = computeAmplitude(receive_azimuth_, angle, axis);
     if (zones_.empty() || std::abs(angle) > pi / 2) return ideal;
     // A steered straight array is foreshortened, and so is the path to its ends.
     const double foreshortened = std::cos(axis) * std::cos(axis);
@@ -185,9 +185,9 @@ std::complex<double> Directivity::receivedField(double azimuth, double bearing, 
     return ideal + own.added.at(receive_azimuth_->aperture() * (std::sin(angle) - std::sin(axis)));
 }
 
-double Directivity::sentElevation(double angle) const { return powerOf(transmit_elevation_, angle); }
+double Directivity::sentElevation(double angle) const { return computePower(transmit_elevation_, angle); }
 
-double Directivity::receivedElevation(double angle) const { return powerOf(receive_elevation_, angle); }
+double Directivity::receivedElevation(double angle) const { return computePower(receive_elevation_, angle); }
 
 double Directivity::elevation(double angle) const { return sentElevation(angle) * receivedElevation(angle); }
 

@@ -94,7 +94,7 @@ double Fan::minSpacing() const {
     return minimum;
 }
 
-std::vector<double> Fan::halfways() const {
+std::vector<double> Fan::midpoints() const {
     if (size() == 1) return {front().low, front().high};
     std::vector<double> edges{0};
     for (size_t k = 1; k < size(); ++k) edges.push_back((beams_[k - 1].centre + beams_[k].centre) / 2);

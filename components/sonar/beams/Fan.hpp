@@ -56,7 +56,7 @@ public:
     double minSpacing() const;
     /** Returns the bearings halfway between neighbours, size() + 1 values. The outermost are equally far beyond the
      *  outermost beams, or halfway across the seam of a round fan. A single beam has its own limits [rad]. */
-    std::vector<double> halfways() const;
+    std::vector<double> midpoints() const;
     /** Calls use(k) for each beam that holds an azimuth: low <= azimuth < high, turned by whole turns [rad]. */
     void eachAt(double azimuth, const auto& use) const;
 

@@ -31,15 +31,15 @@ double meanOver(const Beamformer::Rules& rules, const Beam& whole, double bearin
     return std::copysign(std::sqrt(share * (low * low + 4 * middle * middle + high * high) / 6), middle);
 }
 
-double widthOf(const Beam& cell) { return cell.high - cell.low; }
+double computeWidth(const Beam& cell) { return cell.high - cell.low; }
 
 /** Returns the first cell of each group, and the number of cells. */
-std::vector<size_t> groupsOf(const Fan& cells) {
-    const double narrow = 1.5 * widthOf(*std::ranges::min_element(cells, {}, widthOf));
+std::vector<size_t> groupBy(const Fan& cells) {
+    const double narrow = 1.5 * computeWidth(*std::ranges::min_element(cells, {}, computeWidth));
     std::vector<size_t> starts{0};
     for (size_t i = 1; i < cells.size(); ++i)
-        if (i - starts.back() == Beamformer::group_cells || widthOf(cells[i]) > narrow ||
-            widthOf(cells[i - 1]) > narrow)
+        if (i - starts.back() == Beamformer::group_cells || computeWidth(cells[i]) > narrow ||
+            computeWidth(cells[i - 1]) > narrow)
             starts.push_back(i);
     starts.push_back(cells.size());
     return starts;
@@ -72,19 +72,19 @@ INSONIFY_VECTOR_CLONES void addRows(const float* rows, size_t stride, std::span<
 }  // namespace
 
 Beamformer::Beamformer(const Fan& beams, const Fan& cells, size_t bin_count, const Rules& rules)
-    : groups_(groupsOf(cells)), bin_count_(bin_count), grouped_(groupCount() * bin_count) {
+    : groups_(groupBy(cells)), bin_count_(bin_count), grouped_(groupCount() * bin_count) {
     const auto addBands = [&](size_t end, const Rules& own) {
         BandsTo& bands = bands_.emplace_back(BandsTo{end, {}});
-        for (const Beam& beam : beams) bands.of_beams.push_back(bandOf(beam, cells, own));
+        for (const Beam& beam : beams) bands.of_beams.push_back(computeBand(beam, cells, own));
     };
     for (const Zone& zone : rules.nearer)
         addBands(zone.end, {zone.pattern, zone.near, rules.floor, rules.of_fields, rules.half_box});
     addBands(bin_count, rules);
 }
 
-Beamformer::Band Beamformer::bandOf(const Beam& beam, const Fan& cells, const Rules& rules) const {
-    const auto weightOf = [&](size_t cell) { return meanOver(rules, cells[cell], beam.centre); };
-    const double narrow = widthOf(*std::ranges::min_element(cells, {}, widthOf));
+Beamformer::Band Beamformer::computeBand(const Beam& beam, const Fan& cells, const Rules& rules) const {
+    const auto computeWeight = [&](size_t cell) { return meanOver(rules, cells[cell], beam.centre); };
+    const double narrow = computeWidth(*std::ranges::min_element(cells, {}, computeWidth));
     const auto addGroup = [&](size_t group, Run& run) {
         const Beam &first = cells[groups_[group]], &last = cells[groups_[group + 1] - 1];
         const auto parts = static_cast<size_t>((last.high - first.low) / narrow + 0.5);
@@ -111,7 +111,8 @@ Beamformer::Band Beamformer::bandOf(const Beam& beam, const Fan& cells, const Ru
     Band band;
     const auto addCells = [&](size_t first, size_t last, Run& run) {
         run.first = groups_[first];
-        for (size_t c = groups_[first]; c < groups_[last]; ++c) run.weights.push_back(static_cast<float>(weightOf(c)));
+        for (size_t c = groups_[first]; c < groups_[last]; ++c)
+            run.weights.push_back(static_cast<float>(computeWeight(c)));
     };
     const auto addGroups = [&](size_t first, size_t last, Run& run) {
         run.first = first;

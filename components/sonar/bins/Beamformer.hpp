@@ -59,7 +59,7 @@ private:
     struct Band {
         std::array<Run, 2> cells, groups;
     };
-    Band bandOf(const Beam& beam, const Fan& cells, const Rules& rules) const;
+    Band computeBand(const Beam& beam, const Fan& cells, const Rules& rules) const;
     /** Bins before `end`, and the bands of all beams there. */
     struct BandsTo {
         size_t end;

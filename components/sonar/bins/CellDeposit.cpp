@@ -125,7 +125,7 @@ void CellDeposit::bendCells(double near_edge, double far_edge) {
 }
 
 void CellDeposit::bendCell(int i, double curvature, double near_edge, double far_edge) {
-    Footprint cell = footprintOf(covered, i);
+    Footprint cell = getFootprint(covered, i);
     const double level = cell.pixel - cells.normal_z[i] * cells.sin_el[i] / cells.distance[i];
     const double sag =
         (cells.width[i] * cells.width[i] * level + cells.height[i] * cells.height[i] * cell.pixel) * (1.0 / 24);

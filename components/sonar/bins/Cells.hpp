@@ -51,7 +51,7 @@ struct Cells {
     double focus[capacity];   ///< Intensity of bent rays relative to straight rays [1].
     double near_limit[capacity], far_limit[capacity];  ///< Inverse ranges of the object [1/m].
     int beam[capacity];
-    int64_t object[capacity];  ///< Set where the truth is recorded, by objectOf(); -1: a miss.
+    int64_t object[capacity];  ///< Set where the truth is recorded, by getObject(); -1: a miss.
     uint32_t hits[capacity];   ///< Samples of the cell [1]. Set where the truth is recorded.
     int count = 0;
     /** A cell of a smooth body, and its curvature. */
@@ -63,7 +63,7 @@ struct Cells {
     int of_bodies_count = 0;
 
     /** Returns an index into Geometry::objects, which may have the bits of Truth.hpp, and a triangle in one number. */
-    static int64_t objectOf(uint32_t object, uint32_t triangle) { return int64_t{triangle} << 32 | object; }
+    static int64_t getObject(uint32_t object, uint32_t triangle) { return int64_t{triangle} << 32 | object; }
     bool isFull() const { return count == capacity; }
     /** Sets the plane of cell i to that of a triangle, and the values of its material and object. */
     void setPlane(int i, const PlacedRun& placed, uint32_t triangle);

@@ -13,12 +13,12 @@ namespace {
  *  bins, and of energies [1]. */
 constexpr double above_fields = 20, above_water = 2;
 
-double shareOf(double level_db) { return std::pow(10, level_db / 10); }
+double computeShare(double level_db) { return std::pow(10, level_db / 10); }
 
 }  // namespace
 
 DetectionRules DetectionRules::of(const RenderPlan& plan) {
-    DetectionRules rules{returnRulesOf(plan.config), {}};
+    DetectionRules rules{makeReturnRules(plan.config), {}};
     const double margin = plan.sumsFields() ? above_fields : above_water;
     for (const Effect* effect : plan.effects) {
         const std::vector<float> water = effect->withoutSurfaces(plan);
@@ -33,7 +33,7 @@ void Detector::take(const types::Sonar& ping, const DetectionConfig& config, con
                    ping.bin_count);
     INSONIFY_CHECK(rules.water.empty() || rules.water.size() == ping.bins.size(), rules.water.size());
     ping_ = &ping;
-    gate_share_ = shareOf(-config.gate_db);
+    gate_share_ = computeShare(-config.gate_db);
     tables_.take(ping, ping.bin_count, rules.returns);
     range_min_ = rules.returns.range_min;
     levels_.resize(ping.bins.size());
@@ -45,10 +45,10 @@ void Detector::take(const types::Sonar& ping, const DetectionConfig& config, con
         levels_[i] = is_water ? 0 : level;
         strongest = std::max(strongest, levels_[i]);
     }
-    minimum_ = std::max(strongest * shareOf(config.threshold_db), std::numeric_limits<double>::min());
+    minimum_ = std::max(strongest * computeShare(config.threshold_db), std::numeric_limits<double>::min());
     if (!config.floor_db) return;
     for (size_t i = 0; i < levels_.size(); ++i)
-        if (static_cast<double>(ping.bins[i]) < shareOf(*config.floor_db)) levels_[i] = 0;
+        if (static_cast<double>(ping.bins[i]) < computeShare(*config.floor_db)) levels_[i] = 0;
 }
 
 Detection Detector::at(uint32_t beam, double place, size_t bin) const {

@@ -96,8 +96,8 @@ INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* inte
         }
         const float field = std::sqrt(-intensities[k] * logarithm(uniform(place)));
         const float phase = uniform(place >> 16), turns = phase - nearest(phase);
-        real[k] = field * cosineOf(turns);
-        imaginary[k] = field * sineOf(turns);
+        real[k] = field * computeCosine(turns);
+        imaginary[k] = field * computeSine(turns);
     }
 }
 
@@ -130,17 +130,17 @@ void FieldResponse::spread(std::span<const float> phases, std::span<float> field
         return;
     }
     std::ranges::fill(fields, 0.0f);
-    const auto fromOf = [&](const Tap& tap) {
+    const auto getFrom = [&](const Tap& tap) {
         return phases.data() + (static_cast<ptrdiff_t>(tap.phase * phaseLength() + 2 * margin_) + 2 * tap.shift);
     };
     size_t t = 0;
     for (; t + 4 <= taps_.size(); t += 4) {
         std::array<const float*, 4> from;
         std::array<float, 4> weights;
-        for (size_t i = 0; i < 4; ++i) from[i] = fromOf(taps_[t + i]), weights[i] = taps_[t + i].weight;
+        for (size_t i = 0; i < 4; ++i) from[i] = getFrom(taps_[t + i]), weights[i] = taps_[t + i].weight;
         addFourScaled(from, weights, fields.data(), fields.size());
     }
-    for (; t < taps_.size(); ++t) addScaled(fromOf(taps_[t]), taps_[t].weight, fields.data(), fields.size());
+    for (; t < taps_.size(); ++t) addScaled(getFrom(taps_[t]), taps_[t].weight, fields.data(), fields.size());
 }
 
 double FieldResponse::amplitude(size_t sample, double range) const {
@@ -173,16 +173,16 @@ FieldBeams::FieldBeams(const RenderPlan& plan, size_t numbers)
 
 void FieldBeams::form(ThreadPool& threads) {
     if (!beamformer_) return;
-    const auto eachOf = [&](size_t count, const auto& work) {
+    const auto visitEach = [&](size_t count, const auto& work) {
         threads.run([&](int part, int parts) {
             for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts)) work(i);
         });
     };
-    eachOf(beamformer_->groupCount(), [&](size_t group) {
+    visitEach(beamformer_->groupCount(), [&](size_t group) {
         beamformer_->sumGroup(group, cells_);
         if (quadrature_) quadrature_->sumGroup(group, cells_);
     });
-    eachOf(beam_count_, [&](size_t number) {
+    visitEach(beam_count_, [&](size_t number) {
         beamformer_->form(number, cells_, beam(number));
         if (!quadrature_) return;
         const std::span<float> own(&quadratures_[number * numbers_], numbers_);
@@ -209,7 +209,7 @@ void WaterField::fill(const types::Pose& sonar, const Beam& azimuth, std::span<c
             const double start = (sonar.position[axis] + near * ray[axis]) / side, base = std::floor(start);
             cubes.start[axis] = static_cast<float>(start - base);
             cubes.step[axis] = static_cast<float>(width_ * ray[axis] / side);
-            cubes.base[axis] = squareOf(base);
+            cubes.base[axis] = makeSquare(base);
         }
         scatterInCubes(cubes, intensities.data(), real.data(), imaginary.data());
         first = cubes.last;

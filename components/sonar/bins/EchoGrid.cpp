@@ -81,15 +81,15 @@ void EchoGrid::finishBeam(size_t beam, std::span<float> padded) const {
 void EchoGrid::finish(ThreadPool& threads) {
     INSONIFY_CHECK(!response_ || padded_.size() >= static_cast<size_t>(threads.size()), padded_.size());
     if (passes()) return;
-    const auto eachOf = [&](size_t count, const auto& work) {
+    const auto visitEach = [&](size_t count, const auto& work) {
         threads.run([&](int part, int parts) {
             for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts))
                 work(i, static_cast<size_t>(part));
         });
     };
     if (beamformer_)
-        eachOf(beamformer_->groupCount(), [&](size_t group, size_t) { beamformer_->sumGroup(group, echoes_); });
-    eachOf(beam_count_, [&](size_t beam, size_t part) {
+        visitEach(beamformer_->groupCount(), [&](size_t group, size_t) { beamformer_->sumGroup(group, echoes_); });
+    visitEach(beam_count_, [&](size_t beam, size_t part) {
         finishBeam(beam, response_ ? std::span<float>(padded_[part]) : std::span<float>());
     });
 }

@@ -38,7 +38,7 @@ public:
     void depositCell(const Footprint& cell, uint beam, double strength_range) {
         Estimator::depositCell(cell, 0, strength_range);
         uint64_t* const to = all_ + static_cast<size_t>(beam) * beam_numbers_;
-        const int32_t row = shown_.object < 0 ? -1 : truth_.rowOf(beam);
+        const int32_t row = shown_.object < 0 ? -1 : truth_.getRow(beam);
         const auto [first, last] = touched(cell);
         if (first > 0 && Estimator::features.has(Feature::Published)) move(0, to, -1);  // echoes out of range
         for (uint bin = first; bin < last; ++bin) move(bin, to, row);
@@ -101,11 +101,11 @@ private:
 /** Adds the echoes of a batch to the sums, and to the truth where it is recorded. */
 template <class Estimator>
 void sumBatch(const EchoRules& rules, const Cells& cells, const Covered& covered, const EchoSums& to) {
-    const auto beamOf = [&](int i) { return static_cast<uint>(cells.beam[i] - to.first_beam); };
+    const auto getBeam = [&](int i) { return static_cast<uint>(cells.beam[i] - to.first_beam); };
     if (!to.truth) {
         Estimator estimator(rules, to.sums);
         for (int i = 0; i < cells.count; ++i)
-            estimator.depositCell(footprintOf(covered, i), beamOf(i), covered.strength_range[i]);
+            estimator.depositCell(getFootprint(covered, i), getBeam(i), covered.strength_range[i]);
         return;
     }
     TruthEstimator<Estimator> estimator(rules, to.sums, to.truth);
@@ -115,7 +115,7 @@ void sumBatch(const EchoRules& rules, const Cells& cells, const Covered& covered
         const double up = rules.looks_down ? -cells.cos_az[i] * cells.cos_el[i] : cells.sin_el[i];
         estimator.setCell({cells.object[i], cells.hits[i], static_cast<uint32_t>(cells.beam[i]), up,
                            abs(facing) / sqrt(x * x + y * y + z * z)});
-        estimator.depositCell(footprintOf(covered, i), beamOf(i), covered.strength_range[i]);
+        estimator.depositCell(getFootprint(covered, i), getBeam(i), covered.strength_range[i]);
     }
 }
 
@@ -148,7 +148,7 @@ struct PhysicalBins : Bins {
 
     void depositCell(const Footprint& cell, uint beam, double strength_range) {
         if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;
-        uint bin = binOf(cell.near_end);
+        uint bin = findBin(cell.near_end);
         while (bin > 0u && edges[bin] < cell.near_end) --bin;
         while (edges[bin + 1u] >= cell.near_end) ++bin;
         uint64_t* of_beam = sums + beam * beam_sums;
@@ -175,7 +175,7 @@ private:
         const Bins8 above = max(min(load(edges + first), cell.near_end), cell.far_end);
         const Bins8 below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
         const Bins8 cut_off =
-            above < cell.nearest ? Bins8{} : 0.5 - trapezoidShare(cell, placeOf(cell, above) - cell.centre);
+            above < cell.nearest ? Bins8{} : 0.5 - trapezoidShare(cell, getPlace(cell, above) - cell.centre);
         const Bins8 share = cut_off + limbShare(cell, above) - limbShare(cell, below);
         add(limbEnergy(cell, strength_range, share, load(middles + first), above, below), of_beam + first);
     }

@@ -44,14 +44,14 @@ struct Bins {
     size_t beam_sums;  ///< Sums of a beam.
     double bin_width, attenuation;
     double binEdge(uint k) const { return edges[k]; }
-    uint binOf(double place) const { return min(uint(1.0 / (place * bin_width)), bin_count - 1u); }
+    uint findBin(double place) const { return min(uint(1.0 / (place * bin_width)), bin_count - 1u); }
     static uint64_t quanta(double amount) {  // via a signed number, for which there is an instruction
         return static_cast<uint64_t>(static_cast<int64_t>(min(amount, 1048576.0) * quanta_per_unit + 0.5));
     }
 };
 
 /** Returns the coverage of cell i. */
-inline Footprint footprintOf(const Covered& c, int i) {
+inline Footprint getFootprint(const Covered& c, int i) {
     return {c.pixel[i],    c.centre[i],  c.wide[i],    c.narrow[i], c.per_wide[i], c.steepness[i],
             c.near_end[i], c.far_end[i], c.nearest[i], c.limb[i],   c.fade[i],     c.size[i]};
 }

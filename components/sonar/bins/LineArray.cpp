@@ -126,7 +126,7 @@ ComplexRows LineArray::form(const ComplexRows& element_rows, std::span<const dou
     return beams;
 }
 
-std::vector<Cone> conesOf(const Fan& beams) {
+std::vector<Cone> makeCones(const Fan& beams) {
     std::vector<Cone> cones;
     for (const Beam& beam : beams) cones.push_back({std::sin(beam.low), std::sin(beam.high)});
     return cones;
@@ -135,13 +135,13 @@ std::vector<Cone> conesOf(const Fan& beams) {
 LineArray lineArray(const SonarConfig& config) {
     const double wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
     const acoustics::BeamPattern pattern(*config.beam_pattern->receive.azimuth, wavelength);
-    const ElementsConfig::Array array = config.elements->arrayOf(pattern.aperture() * wavelength, wavelength);
+    const ElementsConfig::Array array = config.elements->makeArray(pattern.aperture() * wavelength, wavelength);
     return {array.count, array.spacing, wavelength, pattern.taper()};
 }
 
 void computeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array,
                     types::SonarElements& signals) {
-    ComplexRows element_rows = array.elementSignals(sentField(plan, field), conesOf(plan.cells));
+    ComplexRows element_rows = array.elementSignals(sentField(plan, field), makeCones(plan.cells));
     if (plan.config.imperfections) multiplyRows(element_rows, plan.config.imperfections->elementFactors(array.count()));
     signals.speed_of_sound = plan.grid.speed_of_sound;
     signals.wavelength = array.wavelength();

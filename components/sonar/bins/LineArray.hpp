@@ -68,7 +68,7 @@ private:
 LineArray lineArray(const SonarConfig& config);
 
 /** Returns the beams of a plan as cones about the array. */
-std::vector<Cone> conesOf(const Fan& beams);
+std::vector<Cone> makeCones(const Fan& beams);
 
 /** Fills `signals`, except its time, with the elements' signals for a field whose cells are filled. Allocates. */
 void computeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array,

@@ -50,7 +50,7 @@ double turnedBetween(double low, double high, double azimuth) {
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
 /** Returns the elevation of a bin's echo, which is that of its beam; unknown for the water [rad]. */
-double elevationOf(const types::SonarTruth& truth, size_t beam, size_t at) {
+double computeElevation(const types::SonarTruth& truth, size_t beam, size_t at) {
     return truth.path[at] == types::SonarTruth::water ? double{unknown} : truth.bearings[beam].rad;
 }
 
@@ -158,7 +158,7 @@ void TruthTable::report(size_t beam, size_t to, types::SonarTruth& truth, std::s
 
 std::vector<int32_t> beamsOfCells(const RenderPlan& plan) {
     if (!plan.has(Pass::Beamform)) return {};
-    const std::vector<double> edges = plan.beams.halfways();
+    const std::vector<double> edges = plan.beams.midpoints();
     std::vector<int32_t> beams;
     for (const Beam& cell : plan.cells) {
         const auto above = std::ranges::upper_bound(edges, turnedBetween(edges.front(), edges.back(), cell.centre));
@@ -214,7 +214,7 @@ void TruthGrid::take(size_t cell, const TruthTable& echoes, size_t of, types::So
     const int32_t row = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
     if (row < 0) return;
     const auto beam = static_cast<size_t>(row);
-    if (!gathered_) return echoes.report(of, beam, truth, waterOf(beam));
+    if (!gathered_) return echoes.report(of, beam, truth, getWater(beam));
     const std::lock_guard one_at_a_time(alone_[beam]);
     gathered_->merge(beam, echoes, of);
 }
@@ -223,7 +223,7 @@ void TruthGrid::finish(types::SonarTruth& truth, ThreadPool& threads) const {
     if (!gathered_) return;
     threads.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < beam_count_; beam += static_cast<size_t>(parts))
-            gathered_->report(beam, beam, truth, waterOf(beam));
+            gathered_->report(beam, beam, truth, getWater(beam));
     });
 }
 
@@ -281,13 +281,13 @@ void PathTruth::completeBin(types::SonarTruth& truth, size_t at, double water) c
     const bool is_shown = truth.isByMirror(at) && shown_truth_.object[at] >= 0;
     const bool of_water = truth.object[at] < 0 && truth.share[at] > 0;
     const double direct = knows_direct_ ? energies_[0][at] : of_water ? water / double{truth.share[at]} : 0;
-    const double ways = energyOfWays(at), all = ways + direct;
+    const double paths = sumPathEnergy(at), all = paths + direct;
     if (!is_shown) {
         if (direct > 0) truth.share[at] = static_cast<float>(double{truth.share[at]} * direct / all);
         return;
     }
     truth.object[at] = shown_truth_.object[at];
-    truth.share[at] = static_cast<float>(double{shown_truth_.share[at]} * ways / all);
+    truth.share[at] = static_cast<float>(double{shown_truth_.share[at]} * paths / all);
     truth.elevation[at] = shown_truth_.elevation[at];
     truth.grazing[at] = shown_truth_.grazing[at];
     truth.hits[at] += shown_truth_.hits[at];
@@ -303,7 +303,7 @@ void PathTruth::report(types::SonarTruth& truth, const WaterTruth* water, double
             const size_t at = beam * bin_count_ + j;
             const double of_water = water ? water->intensity(beam, j, quantum) : 0;
             const uint8_t loudest = this->loudest(truth, at, of_water);
-            const bool received = truth.hits[at] > 0 || energyOfWays(at) > 0;
+            const bool received = truth.hits[at] > 0 || sumPathEnergy(at) > 0;
             if (loudest > 0) truth.path[at] = loudest;
             truth.shadow[at] = echo_beyond && !received;
             echo_beyond = echo_beyond || received;
@@ -355,7 +355,7 @@ void GridTruth::addTo(const types::Sonar& fan, const types::SonarTruth& truth, s
             Echo& echo =
                 known != echoes_.end() ? *known : echoes_.emplace_back(Echo{truth.object[at], truth.path[at], 0, 0, 0});
             echo.energy += share;
-            echo.elevation += share * elevationOf(truth, beam, at);
+            echo.elevation += share * computeElevation(truth, beam, at);
             echo.grazing += share * static_cast<double>(truth.grazing[at]);
         }
         fillBin(column * bins + bin, energy, hits, azimuths);
@@ -381,7 +381,7 @@ void GridTruth::copyReturn(const types::SonarTruth& truth, size_t beam, size_t b
     returns.object[cell] = truth.object[at];
     returns.share[cell] = truth.share[at];
     returns.hits[cell] = truth.hits[at];
-    returns.elevation[cell] = static_cast<float>(elevationOf(truth, beam, at));
+    returns.elevation[cell] = static_cast<float>(computeElevation(truth, beam, at));
     returns.grazing[cell] = truth.grazing[at];
     returns.path[cell] = truth.path[at];
 }

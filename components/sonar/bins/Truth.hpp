@@ -102,7 +102,7 @@ struct TruthSink {
     std::span<const int32_t> rows;  ///< Beam of the table for each beam of the sums, -1: none; empty: the same.
     std::span<uint64_t> one_beam;   ///< Buffer of the thread: EchoRules::sumCount() zeros, zeroed again after use.
 
-    int32_t rowOf(uint32_t beam) const { return rows.empty() ? static_cast<int32_t>(beam) : rows[beam]; }
+    int32_t getRow(uint32_t beam) const { return rows.empty() ? static_cast<int32_t>(beam) : rows[beam]; }
 };
 
 /** Returns for each azimuth cell of a plan the beam that shows it. A beam shows the cells up to halfway to its
@@ -151,7 +151,7 @@ public:
     void finish(types::SonarTruth& truth, ThreadPool& threads) const;
 
 private:
-    std::span<const uint64_t> waterOf(size_t beam) const {
+    std::span<const uint64_t> getWater(size_t beam) const {
         return water_ ? water_->beam(beam) : std::span<const uint64_t>();
     }
 
@@ -186,7 +186,7 @@ public:
     void report(types::SonarTruth& truth, const WaterTruth* water, double quantum);
 
 private:
-    double energyOfWays(size_t at) const { return energies_[1][at] + energies_[2][at] + energies_[3][at]; }
+    double sumPathEnergy(size_t at) const { return energies_[1][at] + energies_[2][at] + energies_[3][at]; }
     /** Returns the path that contributes more to a bin than direct echoes and the water; 0: none. */
     uint8_t loudest(const types::SonarTruth& truth, size_t at, double water) const;
     /** Takes the labels of the mirrors into a bin whose path is reported, and their energies into its share. */

@@ -56,7 +56,7 @@ std::vector<float> ImperfectionsConfig::beamFactors(size_t count) const {
     return factors;
 }
 
-ElementsConfig::Array ElementsConfig::arrayOf(double aperture_m, double wavelength) const {
+ElementsConfig::Array ElementsConfig::makeArray(double aperture_m, double wavelength) const {
     const double wanted = spacing_m.value_or(count ? aperture_m / *count : 0.5 * wavelength);
     const auto all = count ? static_cast<size_t>(*count) : static_cast<size_t>(std::lround(aperture_m / wanted));
     return {all, spacing_m.value_or(aperture_m / std::max(1.0, static_cast<double>(all)))};

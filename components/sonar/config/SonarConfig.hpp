@@ -205,7 +205,7 @@ struct ElementsConfig {
     };
     /** Returns the given values, the rest from the length of the aperture [m]; half a wavelength apart where none is
      *  given. */
-    Array arrayOf(double aperture_m, double wavelength) const;
+    Array makeArray(double aperture_m, double wavelength) const;
 
     static void describe(auto& self, auto& visit) {
         visit({"count", "1", "number of elements; absent: the number that fits the receiver's aperture", 2, 4096},

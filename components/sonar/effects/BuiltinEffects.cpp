@@ -182,7 +182,7 @@ std::string withoutFrequency(const Omitted& /*what*/, const BinGrid& /*grid*/) {
 std::string withoutRays(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "the scene is rasterised; sound passes through shells with `visibility: cpu`";
 }
-std::string onBentWays(const Omitted& /*what*/, const BinGrid& /*grid*/) {
+std::string onBentPaths(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "sound passes through shells on straight paths only; remove water.profile and motion_in_ping";
 }
 std::string withoutWalls(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "max_walls is 0"; }
@@ -200,7 +200,7 @@ public:
         if (plan.config.max_walls == 0) return omit(Reason::Other, withoutWalls);
         if (!plan.config.frequency_khz) return omit(Reason::Lacking, withoutFrequency);
         if (!plan.traces_rays) return omit(Reason::Lacking, withoutRays);
-        if (plan.profile || plan.config.motion_in_ping) return omit(Reason::Lacking, onBentWays);
+        if (plan.profile || plan.config.motion_in_ping) return omit(Reason::Lacking, onBentPaths);
         if (!plan.laws.hasWalls()) return omit(Reason::NoneInScene, withoutShell);
         plan.add(Pass::Walls);
         plan.laws.separateReturns();

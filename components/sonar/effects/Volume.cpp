@@ -18,7 +18,7 @@ constexpr double no_strength_db = -200;
 constexpr size_t max_layers = 16;
 
 /** Backscattering strength as a number [1/m]; 0 at its min. */
-double strengthOf(const VolumeLayer& layer) {
+double computeStrength(const VolumeLayer& layer) {
     return *layer.strength_db <= no_strength_db ? 0 : std::pow(10, *layer.strength_db / 10);
 }
 
@@ -26,7 +26,7 @@ std::string clear(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "st
 
 double strongest(const SonarConfig& config) {
     double maximum = 0;
-    for (const VolumeLayer& layer : config.volume) maximum = std::max(maximum, strengthOf(layer));
+    for (const VolumeLayer& layer : config.volume) maximum = std::max(maximum, computeStrength(layer));
     return maximum;
 }
 
@@ -89,14 +89,14 @@ void hideVolumeBy(const CellBatch& batch) {
     for (int i = 0; i < cells.count; ++i) {
         const auto beam = static_cast<uint>(cells.beam[i] - batch.first_beam);
         if (batch.covered.pixel[i] > 0)
-            water.hideVolume(footprintOf(batch.covered, i), beam, rise(batch.water, cells, i), cells.size[i]);
+            water.hideVolume(getFootprint(batch.covered, i), beam, rise(batch.water, cells, i), cells.size[i]);
         else if constexpr (Water::echoes_from_misses)
             water.addLayers(beam, rise(batch.water, cells, i), batch.rules.bins.range_max, cells.size[i]);
     }
 }
 
 /** Returns the layers of a configuration as in EchoRules::layers; empty where a layer has no bounds. */
-std::vector<double> layersOf(const SonarConfig& config) {
+std::vector<double> getLayers(const SonarConfig& config) {
     if (!config.hasLayers()) return {};
     const double maximum = strongest(config);
     std::vector<double> layers;
@@ -104,7 +104,7 @@ std::vector<double> layersOf(const SonarConfig& config) {
         constexpr double far = 1e9;
         layers.push_back(layer.bottom_m ? -*layer.bottom_m : -far);
         layers.push_back(layer.top_m ? -*layer.top_m : far);
-        layers.push_back(maximum > 0 ? strengthOf(layer) / maximum : 0);
+        layers.push_back(maximum > 0 ? computeStrength(layer) / maximum : 0);
     }
     return layers;
 }
@@ -133,7 +133,7 @@ double waterBetween(const BinGrid& grid, int j, double strength) {
 /** Intensity of the water itself, from the solid angle that receives its echo. */
 class VolumeInPings final : public PingEffect {
 public:
-    explicit VolumeInPings(const RenderPlan& plan) : plan_(plan), layers_(layersOf(plan.config)) { updateQuality(); }
+    explicit VolumeInPings(const RenderPlan& plan) : plan_(plan), layers_(getLayers(plan.config)) { updateQuality(); }
 
     void updateQuality() override;
     void giveRules(EchoRules& rules) const override { rules.layers = layers_; }

@@ -34,8 +34,8 @@ struct SeenEdge {
     double strength;      ///< (R D / 2 pi)^2 [1].
 
     glm::dvec3 at(double place) const { return edge.from + place * along; }
-    double rangeOf(double place) const { return std::hypot(aside, place - foot); }
-    double cosineAt(double place) const { return std::abs(place - foot) / rangeOf(place); }
+    double computeRange(double place) const { return std::hypot(aside, place - foot); }
+    double cosineAt(double place) const { return std::abs(place - foot) / computeRange(place); }
     /** Returns the section of diffraction at one end [m^2]. */
     double endSection(double place) const { return strength * square(edge.wavelength / (4 * pi * cosineAt(place))); }
 };
@@ -72,13 +72,13 @@ void appendRough(const SeenEdge& seen, double share, double square_slope, double
 }  // namespace
 
 double PlacedEdge::coefficient(const glm::dvec3& sonar) const {
-    const glm::dvec3 along = glm::normalize(to - from), way = sonar - from;
-    const glm::dvec3 across = way - glm::dot(way, along) * along, other = glm::cross(along, inward[0]);
-    const auto angleOf = [&](const glm::dvec3& v) {
+    const glm::dvec3 along = glm::normalize(to - from), back = sonar - from;
+    const glm::dvec3 across = back - glm::dot(back, along) * along, other = glm::cross(along, inward[0]);
+    const auto computeAngle = [&](const glm::dvec3& v) {
         const double angle = std::atan2(glm::dot(v, other), glm::dot(v, inward[0]));
         return angle < 0 ? angle + 2 * pi : angle;
     };
-    const double second = angleOf(inward[1]), sonar_at = angleOf(across);
+    const double second = computeAngle(inward[1]), sonar_at = computeAngle(across);
     const bool is_sheet = glm::length(inward[1] - inward[0]) < 1e-3;
     const bool between = !is_sheet && sonar_at < second;  // in the water from the first face to the second
     const double exterior = is_sheet ? 2 * pi : between ? second : 2 * pi - second;
@@ -109,7 +109,7 @@ void appendEdgeEchoes(const PlacedEdge& edge, const glm::dvec3& sonar, double sp
     if (!(aside > edge.wavelength)) return;
     const double strength = square(edge.reflection * edge.coefficient(sonar) / (2 * pi));
     const SeenEdge seen{edge, along, length, foot, aside, strength};
-    const double range = seen.rangeOf(std::clamp(foot, 0.0, length));
+    const double range = seen.computeRange(std::clamp(foot, 0.0, length));
     const double per_square = perSquareLength(length, edge.wavelength, range);
     const double wave = square(edge.wavelength) * per_square / (4 * pi), all = edge.square_slope + wave;
     const double share = std::sqrt(wave / all);
@@ -195,16 +195,16 @@ size_t EdgeEchoes::add(PingInMaking& to) {
         appendEdgeEchoes(edge, sonar, spacing_, echoes_);
         bool any = false;
         for (const EdgeEcho& echo : echoes_) {
-            TargetPath way;
-            way.length = glm::distance(sonar, echo.at);
-            if (!(echo.section > min_section && way.length > 0 && way.length < plan_.grid.range_max)) continue;
-            way.direction = sonar_from_world * ((echo.at - sonar) / way.length);
-            if (!points_.mayReceive(way.direction)) continue;
+            TargetPath path;
+            path.length = glm::distance(sonar, echo.at);
+            if (!(echo.section > min_section && path.length > 0 && path.length < plan_.grid.range_max)) continue;
+            path.direction = sonar_from_world * ((echo.at - sonar) / path.length);
+            if (!points_.mayReceive(path.direction)) continue;
             WallArrivals arrivals;
-            way.power = walls_.passed(sightlines_, sonar, echo.at, way.walls, arrivals);
-            way.ringing = arrivals.ringing;
-            if (arrivals.areDelayed()) way.arrivals = &arrivals;
-            if (way.power > 0) any |= points_.addAlong(way, 10 * std::log10(echo.section), to);
+            path.power = walls_.passed(sightlines_, sonar, echo.at, path.walls, arrivals);
+            path.ringing = arrivals.ringing;
+            if (arrivals.areDelayed()) path.arrivals = &arrivals;
+            if (path.power > 0) any |= points_.addAlong(path, 10 * std::log10(echo.section), to);
         }
         received += any ? 1 : 0;
     }

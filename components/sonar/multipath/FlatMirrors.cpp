@@ -33,7 +33,7 @@ std::vector<Reflecting> reflectingIn(const types::Geometry& geometry, size_t obj
     return found;
 }
 
-std::vector<Box> boxesOf(const std::vector<Reflecting>& triangles) {
+std::vector<Box> makeBoxes(const std::vector<Reflecting>& triangles) {
     std::vector<Box> boxes(triangles.size());
     for (size_t i = 0; i < boxes.size(); ++i)
         for (const glm::dvec3& corner : triangles[i].corners) boxes[i].add(corner);
@@ -46,7 +46,7 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y 
 class Planes {
 public:
     explicit Planes(const std::vector<Reflecting>& triangles)
-        : triangles_(triangles), boxes_(boxesOf(triangles)), tree_(boxes_), taken_(triangles.size()) {
+        : triangles_(triangles), boxes_(makeBoxes(triangles)), tree_(boxes_), taken_(triangles.size()) {
         Box all;
         for (const Box& box : boxes_) all.add(box);
         const glm::dvec3 far = glm::max(glm::abs(all.low), glm::abs(all.high));
@@ -55,7 +55,7 @@ public:
 
     /** Takes a triangle and all others in its plane that are not taken yet. Returns them, ascending. */
     std::vector<size_t> take(size_t first) {
-        const MirrorPlane plane = planeOf(triangles_[first]);
+        const MirrorPlane plane = makePlane(triangles_[first]);
         std::vector<size_t> found;
         const auto off = [&](const glm::dvec3& point) {
             return std::abs(glm::dot(plane.normal, point) - plane.distance);
@@ -78,7 +78,7 @@ public:
     }
     bool isTaken(size_t i) const { return taken_[i]; }
 
-    static MirrorPlane planeOf(const Reflecting& triangle) {
+    static MirrorPlane makePlane(const Reflecting& triangle) {
         const glm::dvec3 normal = glm::normalize(triangle.across);
         return {normal, glm::dot(normal, triangle.corners[0])};
     }
@@ -158,7 +158,7 @@ void FlatMirrors::addObject(size_t object, int bounces, uint32_t& count) {
     std::ranges::stable_sort(by_size, std::greater(), [&](size_t i) { return glm::length(all[i].across); });
     for (const size_t maximum : by_size) {
         if (planes.isTaken(maximum)) continue;
-        const MirrorPlane plane = Planes::planeOf(all[maximum]);
+        const MirrorPlane plane = Planes::makePlane(all[maximum]);
         FlatMirror mirror;
         mirror.object = object;
         mirror.corners = all[maximum].corners;

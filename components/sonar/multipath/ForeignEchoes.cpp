@@ -46,9 +46,9 @@ private:
     uint32_t openTo(const PlacedSender& sender, const TracedPing& ping, const TracedTile& tile) const;
     void deposit(const PlacedSender& sender, const TracedPing& ping, const TracedTile& tile, int sample);
     LobeSlopes slopes(const TracedPing& ping, const TracedTile& tile, int sample, const CellAngles& at,
-                      const MirrorPlane& plane, const HalfWay& way) const;
+                      const MirrorPlane& plane, const HalfPath& path) const;
     /** Returns the index of the sums of pulses that become boxes of a length [m]; clears new sums. */
-    size_t sumsOf(double length);
+    size_t computeSums(double length);
 
     const RenderPlan& plan_;
     Receiver receiver_;
@@ -59,7 +59,7 @@ private:
     std::vector<std::vector<uint64_t>> sums_;  ///< One for each length: [cell][bin], in quanta.
 };
 
-size_t EchoesOfOthers::sumsOf(double length) {
+size_t EchoesOfOthers::computeSums(double length) {
     const auto known = std::ranges::find(lengths_, length);
     const auto place = static_cast<size_t>(known - lengths_.begin());
     if (known != lengths_.end()) return place;
@@ -80,7 +80,7 @@ void EchoesOfOthers::begin(const types::Snapshot& snapshot) {
         if (received.offset + glm::length(place) / 2 >= plan_.grid.range_max) continue;
         senders_.push_back({sent.get(), received, place,
                             glm::conjugate(sent->sonar.orientation) * snapshot.sonar.orientation,
-                            sumsOf(received.length)});
+                            computeSums(received.length)});
     }
 }
 
@@ -107,12 +107,12 @@ uint32_t EchoesOfOthers::openTo(const PlacedSender& sender, const TracedPing& pi
         const int column = tile.first_column + ping.view.shape.at[i].columns,
                   row = tile.first_row + ping.view.shape.at[i].rows;
         if (column >= tile.end_column || row >= ping.view.cells.rows) continue;
-        const glm::dvec3 way = ping.view.cells.direction(column, row), at = double{tile.hits->distance[i]} * way,
-                         on = sender.place - at;
+        const glm::dvec3 direction = ping.view.cells.direction(column, row),
+                         at = double{tile.hits->distance[i]} * direction, on = sender.place - at;
         const double length = glm::length(on);
         const MirrorPlane plane = planeMet(ping.scene, *tile.hits, i);
         // The sender and the sonar are on one side of the surface.
-        if (!(glm::dot(plane.normal, way) * glm::dot(plane.normal, on) < 0)) continue;
+        if (!(glm::dot(plane.normal, direction) * glm::dot(plane.normal, on) < 0)) continue;
         if (!(length > RayVisibility::nearest)) continue;
         const double half = sender.received.offset + 0.5 * (glm::length(at) + length);
         if (!(half > nearest_bin && half < reaching_back * plan_.grid.range_max)) continue;
@@ -128,15 +128,15 @@ uint32_t EchoesOfOthers::openTo(const PlacedSender& sender, const TracedPing& pi
 }
 
 LobeSlopes EchoesOfOthers::slopes(const TracedPing& ping, const TracedTile& tile, int sample, const CellAngles& at,
-                                  const MirrorPlane& plane, const HalfWay& way) const {
+                                  const MirrorPlane& plane, const HalfPath& path) const {
     const PlacedRun& run = ping.scene.ranges[tile.hits->command[sample]];
     if (!run.facets || !ping.rules.laws.hasLobe(run.material)) return {};
     LobeSample seen{};
     seen.facet = run.facets[tile.hits->triangle[sample]];
     seen.normal = plane.normal;
     seen.axis = turned(run, seen.facet.axis);
-    seen.range = 1 / way.inverse;
-    seen.lookAlong(glm::normalize(at.middle + way.from_focus));
+    seen.range = 1 / path.inverse;
+    seen.lookAlong(glm::normalize(at.middle + path.from_focus));
     seen.width = at.width;
     seen.height = at.height;
     return ping.rules.laws.lobeSlopes(run.material, seen);
@@ -147,34 +147,34 @@ void EchoesOfOthers::deposit(const PlacedSender& sender, const TracedPing& ping,
     const MirrorPlane plane = planeMet(ping.scene, *tile.hits, sample);
     const double facing = std::abs(glm::dot(plane.normal, at.middle));
     if (!(facing > edge_on && plane.distance * glm::dot(plane.normal, at.middle) > 0)) return;
-    HalfWay way = halfWay(plane, sender.place, at);
-    const double lit = std::abs(glm::dot(plane.normal, way.from_focus));
-    const double half = 1 / way.inverse, range = half + sender.received.offset;
+    HalfPath path = computeHalfPath(plane, sender.place, at);
+    const double lit = std::abs(glm::dot(plane.normal, path.from_focus));
+    const double half = 1 / path.inverse, range = half + sender.received.offset;
     if (!(lit > edge_on && range > nearest_bin)) return;
     const PlacedRun& run = ping.scene.ranges[tile.hits->command[sample]];
     const MaterialLaws::Bistatic given = ping.rules.laws.bistatic(
-        run.material, lit, facing, std::abs(glm::dot(plane.normal, glm::normalize(at.middle + way.from_focus))),
-        slopes(ping, tile, sample, at, plane, way));
-    const double power = sender.sent->radiation->towards(glm::normalize(sender.sender_from_sonar * way.from_focus)) *
-                         patterns_->received(patterns_->wayOf(at.middle)) * sender.received.level;
+        run.material, lit, facing, std::abs(glm::dot(plane.normal, glm::normalize(at.middle + path.from_focus))),
+        slopes(ping, tile, sample, at, plane, path));
+    const double power = sender.sent->radiation->towards(glm::normalize(sender.sender_from_sonar * path.from_focus)) *
+                         patterns_->received(patterns_->toDirection(at.middle)) * sender.received.level;
     if (!(power > 0)) return;
     // The cell's own echo is at `half`; the delay of the pulse shifts it, and its extent stays.
-    const double stretch = half / range * (half / range), nearest = 1 / way.nearest + sender.received.offset;
+    const double stretch = half / range * (half / range), nearest = 1 / path.nearest + sender.received.offset;
     const Footprint cell = trapezoidFootprint(
-        1 / range, 1 / range, std::abs(way.per_azimuth) * stretch * at.width,
-        std::abs(way.per_elevation + way.per_azimuth * at.lean) * stretch * at.height,
+        1 / range, 1 / range, std::abs(path.per_azimuth) * stretch * at.width,
+        std::abs(path.per_elevation + path.per_azimuth * at.lean) * stretch * at.height,
         nearest > nearest_bin ? 1 / nearest : 1 / nearest_bin, 1 / nearest_bin, 0, ping.rules.edges.front(),
         ping.rules.edges[static_cast<size_t>(ping.rules.bins.bin_count)], at.size);
     const double absorbed = std::exp(2 * sender.received.loss * (range - half)) * tile.meanGain(sample, 1);
     SharedBins(ping.rules, sums_[sender.sums].data())
         .depositCell(cell, static_cast<uint>(at.cell),
                      ping.rules.strength_scale * power * (given.diffuse + given.lobe) * absorbed * range * range *
-                         range / (way.back * way.back));
+                         range / (path.back * path.back));
 }
 
 bool EchoesOfOthers::addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) {
     INSONIFY_CHECK(bins.size() == bin_count_ && cell < plan_.cells.size(), bins.size(), bin_count_, cell);
-    const double quantum = quantumOf(ping);
+    const double quantum = computeQuantum(ping);
     bool any = false;
     thread_local std::vector<double> facing;  // cumulated up to each bin
     facing.resize(bins.size());

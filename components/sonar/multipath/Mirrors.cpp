@@ -33,7 +33,7 @@ double reflectedPower(const types::Material& material, int bounces) {
     return bounces > 1 && smooth && !material.shell && reflection > min_reflection ? reflection * reflection : 0;
 }
 
-int bouncesOf(const SonarConfig& config) { return config.tracesPaths() ? config.multipath->bounces : 0; }
+int countBounces(const SonarConfig& config) { return config.tracesPaths() ? config.multipath->bounces : 0; }
 
 double slopeOfSea(double wind) {
     if (!(wind > 0)) return 0;
@@ -65,14 +65,14 @@ void WaterMirror::place(const types::Snapshot& snapshot, double range_max) {
     reflects_ = wanted_ && !omitted_;
 }
 
-double WaterMirror::distance(const glm::dvec3& from, const glm::dvec3& way) const {
+double WaterMirror::distance(const glm::dvec3& from, const glm::dvec3& direction) const {
     constexpr double edge_on = 1e-9;
-    const double rise = glm::dot(plane_.normal, way);
+    const double rise = glm::dot(plane_.normal, direction);
     if (!reflects_ || !(rise > edge_on)) return std::numeric_limits<double>::infinity();
     return std::max(0.0, (plane_.distance - glm::dot(plane_.normal, from)) / rise);
 }
 
-MirrorPlane WaterMirror::facet(const glm::dvec3& at, const glm::dvec3& way, uint64_t key) const {
+MirrorPlane WaterMirror::facet(const glm::dvec3& at, const glm::dvec3& direction, uint64_t key) const {
     if (slope_ == 0) return plane_;
     const glm::dvec3& up = plane_.normal;
     const glm::dvec3 level =
@@ -81,9 +81,9 @@ MirrorPlane WaterMirror::facet(const glm::dvec3& at, const glm::dvec3& way, uint
     const double size = slope_ * std::sqrt(-2 * std::log(uniform(0)));
     const double turn = 2 * std::numbers::pi * uniform(1);
     const glm::dvec3 slope = size * (std::cos(turn) * level + std::sin(turn) * glm::cross(up, level));
-    const glm::dvec3 tilted = glm::dot(up + slope, way) > 0 ? up + slope : up - slope;
+    const glm::dvec3 tilted = glm::dot(up + slope, direction) > 0 ? up + slope : up - slope;
     const MirrorPlane facet{glm::normalize(tilted), glm::dot(glm::normalize(tilted), at)};
-    return glm::dot(facet.turned(way), up) < 0 ? facet : plane_;
+    return glm::dot(facet.turned(direction), up) < 0 ? facet : plane_;
 }
 
 }  // namespace insonify::sonar

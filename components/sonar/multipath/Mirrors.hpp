@@ -16,7 +16,9 @@ struct MirrorPlane {
     glm::dvec3 normal{0};  ///< Unit [1].
     double distance = 0;   ///< [m]
 
-    glm::dvec3 turned(const glm::dvec3& way) const { return way - 2 * glm::dot(normal, way) * normal; }
+    glm::dvec3 turned(const glm::dvec3& direction) const {
+        return direction - 2 * glm::dot(normal, direction) * normal;
+    }
     glm::dvec3 image(const glm::dvec3& place) const {
         return place - 2 * (glm::dot(normal, place) - distance) * normal;
     }
@@ -28,7 +30,7 @@ struct MirrorPlane {
 double reflectedPower(const types::Material& material, int bounces);
 
 /** Returns the max number of reflections of one path; 0: there are no paths by mirrors [1]. */
-int bouncesOf(const SonarConfig& config);
+int countBounces(const SonarConfig& config);
 
 /** Returns the mean square slope of a sea surface in a wind [m/s], the sum of both directions; 0 without wind [1].
  *  ACOUSTICS.md 5.24. */
@@ -51,10 +53,10 @@ public:
     const MirrorPlane& plane() const { return plane_; }
     /** Returns its distance along a direction from a place, sonar axes, in lengths of the direction; infinite where it
      *  is not ahead. */
-    double distance(const glm::dvec3& from, const glm::dvec3& way) const;
-    /** Returns a facet about `at` that the wind has tilted, facing sound that travels along `way`; `key` identifies the
-     *  facet in the ping. Flat without wind. */
-    MirrorPlane facet(const glm::dvec3& at, const glm::dvec3& way, uint64_t key) const;
+    double distance(const glm::dvec3& from, const glm::dvec3& direction) const;
+    /** Returns a facet about `at` that the wind has tilted, facing sound that travels along `direction`; `key`
+     * identifies the facet in the ping. Flat without wind. */
+    MirrorPlane facet(const glm::dvec3& at, const glm::dvec3& direction, uint64_t key) const;
     /** Returns why it does not reflect in this ping; none where it does, or is not configured to. */
     std::optional<Omitted> omissions() const { return omitted_; }
 
@@ -90,14 +92,14 @@ struct MirrorChain {
         for (int k = count; k-- > 0;) place = planes[static_cast<size_t>(k)].image(place);
         return place;
     }
-    glm::dvec3 turned(glm::dvec3 way) const {
-        for (int k = count; k-- > 0;) way = planes[static_cast<size_t>(k)].turned(way);
-        return way;
+    glm::dvec3 turned(glm::dvec3 direction) const {
+        for (int k = count; k-- > 0;) direction = planes[static_cast<size_t>(k)].turned(direction);
+        return direction;
     }
     /** Inverts turned(). */
-    glm::dvec3 turnedBack(glm::dvec3 way) const {
-        for (int k = 0; k < count; ++k) way = planes[static_cast<size_t>(k)].turned(way);
-        return way;
+    glm::dvec3 turnedBack(glm::dvec3 direction) const {
+        for (int k = 0; k < count; ++k) direction = planes[static_cast<size_t>(k)].turned(direction);
+        return direction;
     }
 };
 

@@ -62,8 +62,8 @@ Waveform waveform(const types::Transmission& sent, const Waveform& own) {
             known(sent.duration, own.duration)};
 }
 
-Mismatch mismatchOf(const Waveform& own, const Waveform& sent, double cell, double rejection_db,
-                    double speed_of_sound) {
+Mismatch computeMismatch(const Waveform& own, const Waveform& sent, double cell, double rejection_db,
+                         double speed_of_sound) {
     const bool is_same_band = !std::isfinite(own.frequency_khz) || areAlike(own.frequency_khz, sent.frequency_khz);
     if (is_same_band && areAlike(own.bandwidth_khz, sent.bandwidth_khz) && areAlike(own.duration, sent.duration))
         return {};
@@ -86,7 +86,7 @@ Receiver::Receiver(const RenderPlan& plan)
 Reception Receiver::reception(const types::Transmission& sent, const types::Time& own_time) const {
     const CrosstalkConfig& config = *plan_.config.crosstalk;
     const Mismatch mismatch =
-        mismatchOf(own_, waveform(sent, own_), cell_, config.rejection_db, plan_.grid.speed_of_sound);
+        computeMismatch(own_, waveform(sent, own_), cell_, config.rejection_db, plan_.grid.speed_of_sound);
     const bool knows_levels = config.source_level_db && std::isfinite(sent.source_level_db);
     const double louder_db = knows_levels ? sent.source_level_db - *config.source_level_db : 0;
     return {std::pow(10, louder_db / 10) * mismatch.intensity, mismatch.length, loss_,
@@ -98,7 +98,7 @@ DirectSound::DirectSound(const RenderPlan& plan, const types::Geometry& geometry
     setScene(geometry);
 }
 
-void DirectSound::setScene(const types::Geometry& geometry) { ways_.emplace(plan_.config, geometry); }
+void DirectSound::setScene(const types::Geometry& geometry) { paths_.emplace(plan_.config, geometry); }
 
 double DirectSound::receivedBy(const Beam& beam, const BeamAngles& from, double range) const {
     const auto& pattern = plan_.directivity;
@@ -130,19 +130,19 @@ bool DirectSound::spread(double range, double length) {
     return true;
 }
 
-bool DirectSound::addWay(const types::Transmission& sent, const Reception& received, const TargetPath& way,
-                         types::Sonar& ping) {
-    const double range = received.offset + way.length / 2;
+bool DirectSound::addPath(const types::Transmission& sent, const Reception& received, const TargetPath& path,
+                          types::Sonar& ping) {
+    const double range = received.offset + path.length / 2;
     if (!(range >= plan_.grid.range_min) || !spread(range, received.length)) return false;
     const bool conical = plan_.features.has(Feature::Conical);
-    if (conical && way.direction.x < 0) return false;
-    const double power = sent.radiation->towards(glm::conjugate(sent.sonar.orientation) * way.from_point);
+    if (conical && path.direction.x < 0) return false;
+    const double power = sent.radiation->towards(glm::conjugate(sent.sonar.orientation) * path.from_point);
     const double intensity =
-        received.level * power * way.power * std::exp(-received.loss * way.length) / (way.length * way.length);
-    const BeamAngles from = beamAngles(way.direction, conical);
+        received.level * power * path.power * std::exp(-received.loss * path.length) / (path.length * path.length);
+    const BeamAngles from = beamAngles(path.direction, conical);
     bool has_echo = false;
     for (size_t beam = 0; intensity > 0 && beam < plan_.beams.size(); ++beam) {
-        const double gain = receivedBy(plan_.beams[beam], from, way.length);
+        const double gain = receivedBy(plan_.beams[beam], from, path.length);
         if (!(gain > 0)) continue;
         has_echo = true;
         float* bins = &ping.bins[beam * ping.bin_count + first_bin_];
@@ -161,12 +161,13 @@ size_t DirectSound::add(const types::Snapshot& snapshot, types::Sonar& ping) {
         received_.push_back(receiver_.reception(*sent, snapshot.time));
         earliest = std::max(earliest, -received_.back().offset);
     }
-    ways_->place(snapshot, plan_.grid.range_max + earliest);
+    paths_->place(snapshot, plan_.grid.range_max + earliest);
     size_t has_echo = 0;
     for (size_t i = 0; i < received_.size(); ++i) {
         const auto& sent = snapshot.transmissions[i];
         bool any = false;
-        for (const TargetPath& way : ways_->waysTo(sent->sonar.position)) any |= addWay(*sent, received_[i], way, ping);
+        for (const TargetPath& path : paths_->pathsTo(sent->sonar.position))
+            any |= addPath(*sent, received_[i], path, ping);
         has_echo += any ? 1 : 0;
     }
     return has_echo;

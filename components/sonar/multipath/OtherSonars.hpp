@@ -54,7 +54,8 @@ struct Mismatch {
  *  @param own  the waveform that the receiver's filter matches
  *  @param cell  integral of the own pulse's response over slant range [m]
  *  @param rejection_db  attenuation of the energy outside the receiver's band [dB] */
-Mismatch mismatchOf(const Waveform& own, const Waveform& sent, double cell, double rejection_db, double speed_of_sound);
+Mismatch computeMismatch(const Waveform& own, const Waveform& sent, double cell, double rejection_db,
+                         double speed_of_sound);
 
 /** Reception of another sonar's transmission, independent of their places. */
 struct Reception {
@@ -94,7 +95,8 @@ public:
     size_t add(const types::Snapshot& snapshot, types::Sonar& ping);
 
 private:
-    bool addWay(const types::Transmission& sent, const Reception& received, const TargetPath& way, types::Sonar& ping);
+    bool addPath(const types::Transmission& sent, const Reception& received, const TargetPath& path,
+                 types::Sonar& ping);
     /** Fills shares_ for bins from first_bin_. Returns whether there are any. */
     bool spread(double range, double length);
     /** Returns the receive power of a beam in a direction of the sonar's axes [1]. */
@@ -102,7 +104,7 @@ private:
 
     const RenderPlan& plan_;
     Receiver receiver_;
-    std::optional<TargetPaths> ways_;
+    std::optional<TargetPaths> paths_;
     std::optional<EchoShape> shape_;
     std::vector<Reception> received_;  ///< Receptions of the ping's transmissions.
     std::vector<double> shares_;       ///< Mean of the response in each bin [1].

@@ -13,7 +13,7 @@ CellAngles::CellAngles(const TracedView& traced, const TracedTile& tile, int sam
     const AngularView::Elevation& e = view.elevations[low + up];
     const bool cones = view.conical;
     const AngularView::Direction a =
-        cones ? AngularView::azimuthOf(view.bearings[left + across], e) : view.azimuths[left + across];
+        cones ? AngularView::computeAzimuth(view.bearings[left + across], e) : view.azimuths[left + across];
     const auto edge = [&](size_t i) { return cones ? coneAzimuth(view.bearings[i], e.angle) : view.bearings[i]; };
     cell = view.beam_of[static_cast<size_t>(column)];
     middle = {e.cosine * a.cosine, e.cosine * a.sine, e.sine};
@@ -26,27 +26,27 @@ CellAngles::CellAngles(const TracedView& traced, const TracedTile& tile, int sam
     weighted = width * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
 }
 
-HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const CellAngles& at) {
+HalfPath computeHalfPath(const MirrorPlane& plane, const glm::dvec3& focus, const CellAngles& at) {
     const double g = glm::dot(plane.normal, at.middle) / plane.distance, r = 1 / g;
     const glm::dvec3 place = r * at.middle, from = place - focus;
-    HalfWay way;
-    way.back = glm::length(from);
-    way.from_focus = from / way.back;
-    const double range = 0.5 * (r + way.back), along = 1 + glm::dot(way.from_focus, at.middle);
+    HalfPath path;
+    path.back = glm::length(from);
+    path.from_focus = from / path.back;
+    const double range = 0.5 * (r + path.back), along = 1 + glm::dot(path.from_focus, at.middle);
     const auto change = [&](const glm::dvec3& turn) {
         const double of_range = -r * r * glm::dot(plane.normal, turn) / plane.distance;
-        return -0.5 * (along * of_range + r * glm::dot(way.from_focus, turn)) / (range * range);
+        return -0.5 * (along * of_range + r * glm::dot(path.from_focus, turn)) / (range * range);
     };
-    way.inverse = 1 / range;
-    way.per_azimuth = change(at.per_azimuth);
-    way.per_elevation = change(at.per_elevation);
+    path.inverse = 1 / range;
+    path.per_azimuth = change(at.per_azimuth);
+    path.per_elevation = change(at.per_elevation);
     const double side = glm::dot(plane.normal, focus) - plane.distance;
     const bool same_side = side * plane.distance < 0;
-    way.nearest = 2 / glm::length(same_side ? plane.image(focus) : focus);
-    return way;
+    path.nearest = 2 / glm::length(same_side ? plane.image(focus) : focus);
+    return path;
 }
 
-void HalfWay::moveAway(double late) {
+void HalfPath::moveAway(double late) {
     const auto moved = [late](double range) { return std::max(range + late, 1e-3); };
     const double range = moved(1 / inverse), change = 1 / (range * range * inverse * inverse);
     inverse = 1 / range;

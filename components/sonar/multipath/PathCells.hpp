@@ -25,7 +25,7 @@ struct CellAngles {
 
 /** Inverse range of a path whose half is along a direction to a plane and from there to a focus, and its derivatives
  *  with the direction. */
-struct HalfWay {
+struct HalfPath {
     double inverse, per_azimuth, per_elevation, nearest;  ///< [1/m], [1/m rad], [1/m rad], [1/m].
     double back;                                          ///< Distance from the plane to the focus [m].
     glm::dvec3 from_focus;                                ///< Unit.
@@ -34,7 +34,7 @@ struct HalfWay {
     void moveAway(double late);
 };
 
-HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const CellAngles& at);
+HalfPath computeHalfPath(const MirrorPlane& plane, const glm::dvec3& focus, const CellAngles& at);
 
 /** Returns the plane of the triangle that ray `i` of a tile has hit, sonar axes. */
 MirrorPlane planeMet(const PlacedScene& scene, const TileHits& hits, int i);
@@ -51,22 +51,22 @@ struct SharedBins : Bins {
                                     sine_grazing}))
             return;
         std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
-        if (by_way) std::atomic_ref(by_way[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (by_path) std::atomic_ref(by_path[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
         if (truth) truth->show(cell, bin, ObjectEcho::of(quanta(amount), sine_elevation, sine_grazing, object, 1));
     }
     PathTruth* truth = nullptr;  ///< Receives each echo's truth, with the next four values; null: none.
     uint32_t object = 0;
     uint8_t path = 0;  ///< As types::SonarTruth::path.
     double sine_elevation = 0,
-           sine_grazing = 0;     ///< Sines of the elevation at the sonar and of the grazing angle at the object [1].
-    uint64_t* by_way = nullptr;  ///< Additional sums, of the current kind of path; null: none.
+           sine_grazing = 0;      ///< Sines of the elevation at the sonar and of the grazing angle at the object [1].
+    uint64_t* by_path = nullptr;  ///< Additional sums, of the current kind of path; null: none.
     static constexpr std::memory_order relaxed = std::memory_order_relaxed;
 #include "shaders/deposit.glsl"
 };
 #undef HAVE_PHYSICAL
 
 /** Returns a quantum of the sums [sr]. */
-inline double quantumOf(const TracedPing& ping) {
+inline double computeQuantum(const TracedPing& ping) {
     return ping.view.cells.cell() / (quanta_per_unit * ping.rules.strength_scale);
 }
 

@@ -99,27 +99,27 @@ private:
 
     bool begin(const TracedTile& tile);
     /** Continues a ray from its hit: by a mirror, or through a wall; drops a ray that ends there. */
-    void goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits);
+    void goOn(int i, const glm::dvec3& from, const glm::dvec3& direction, const TileHits& hits);
     bool hasWalls() const { return paths_.max_walls_ > 0; }
-    const WallLaw& wallOf(uint32_t command) const { return rules_.laws.walls[scene_.commands[command].material]; }
-    WallRay::Surface surfaceOf(const TileHits& hits, int i) const {
+    const WallLaw& getWall(uint32_t command) const { return rules_.laws.walls[scene_.commands[command].material]; }
+    WallRay::Surface getSurface(const TileHits& hits, int i) const {
         const uint32_t command = hits.command[i];
-        return {scene_.ranges[command], hits.triangle[i], scene_.commands[command].object, wallOf(command)};
+        return {scene_.ranges[command], hits.triangle[i], scene_.commands[command].object, getWall(command)};
     }
     /** Returns whether sound passes through a wall that is not a mirror. */
     bool letsThrough(uint32_t command) const {
-        return hasWalls() && command != TileHits::nothing && reflected(command) == 0 && wallOf(command).letsThrough();
+        return hasWalls() && command != TileHits::nothing && reflected(command) == 0 && getWall(command).letsThrough();
     }
     /** Passes the wall that a ray back to the sonar has hit. Returns whether it continues, straight and in water. */
-    bool passBack(Back& back, const TileHits& hits, int i, const glm::dvec3& way) const;
+    bool passBack(Back& back, const TileHits& hits, int i, const glm::dvec3& direction) const;
     void meet(int i, const TileHits& hits) {
-        walled_[static_cast<size_t>(i)].meet(surfaceOf(hits, i).normal(), double{hits.distance[i]});
+        walled_[static_cast<size_t>(i)].meet(getSurface(hits, i).normal(), double{hits.distance[i]});
     }
     void pass(int i, const TileHits& hits);
     void look(int i, const glm::dvec3& at, const glm::dvec3& on);
     /** Continues a ray from the mirror that it has hit; drops a ray that has hit none in reach. */
-    void reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits, bool tilts);
-    void send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way, double distance);
+    void reflect(int i, const glm::dvec3& from, const glm::dvec3& direction, const TileHits& hits, bool tilts);
+    void send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& direction, double distance);
     void traceOn();
     /** Finds for each ray with a hit the energy that returns directly to the sonar, on the side of the hit. */
     void findBacks();
@@ -130,11 +130,11 @@ private:
     void deposit(const CellAngles& at, int i, const Back& back, double gain);
     LobeSlopes lobeSlopes(const CellAngles& at, int i, const MirrorPlane& plane, const glm::dvec3& direction,
                           double range) const;
-    MaterialLaws::Bistatic section(const CellAngles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
+    MaterialLaws::Bistatic section(const CellAngles& at, int i, const MirrorPlane& plane, const HalfPath& path) const;
     void depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, const Back& back, double gain);
     /** Returns the echoes of a surface for sound out by mirrors and back directly. */
     EchoTrain echoesOnce(int i, const Back& back) const;
-    Footprint footprint(const CellAngles& at, int i, const HalfWay& way, double size, double late) const;
+    Footprint footprint(const CellAngles& at, int i, const HalfPath& path, double size, double late) const;
     /** Surface in the image of the space behind the mirrors, where rays are straight. */
     struct SeenPlane {
         MirrorPlane plane;
@@ -142,14 +142,14 @@ private:
     };
     SeenPlane seenPlane(const CellAngles& at, int i) const;
     /** Prepares the sums for echoes of ray i's hit: received from a direction, seen at a cosine. */
-    void recordWay(int i, bool twice, const glm::dvec3& received, double cosine) {
+    void recordPath(int i, bool twice, const glm::dvec3& received, double cosine) {
         if (!paths_.records_truth_) return;
         const MirrorChain& chain = chains_[static_cast<size_t>(i)];
         const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
                                             [](uint64_t name) { return name == surface_name; });
-        const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
-        bins_.path = by_surface ? way : PathTruth::Bounced;
-        bins_.by_way = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
+        const PathTruth::Path path = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
+        bins_.path = by_surface ? path : PathTruth::Bounced;
+        bins_.by_path = paths_.truth_->sums(by_surface ? path : PathTruth::Bounced);
         bins_.truth = &*paths_.truth_;
         bins_.object = scene_.commands[hits_.command[i]].object;
         bins_.sine_elevation = received.z;
@@ -196,17 +196,17 @@ bool PathEchoes::Tracer::begin(const TracedTile& tile) {
     return rays_.towards.active;
 }
 
-void PathEchoes::Tracer::goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits) {
+void PathEchoes::Tracer::goOn(int i, const glm::dvec3& from, const glm::dvec3& direction, const TileHits& hits) {
     const MirrorChain& chain = chains_[static_cast<size_t>(i)];
     if (letsThrough(hits.command[i])) return pass(i, hits);
-    if (chain.count == bouncesOf(paths_.plan_.config)) return drop(i);
-    reflect(i, from, way, hits, chain.count == 0);
+    if (chain.count == countBounces(paths_.plan_.config)) return drop(i);
+    reflect(i, from, direction, hits, chain.count == 0);
 }
 
 void PathEchoes::Tracer::pass(int i, const TileHits& hits) {
     MirrorChain& chain = chains_[static_cast<size_t>(i)];
     WallRay& ray = walled_[static_cast<size_t>(i)];
-    const WallRay::Surface surface = surfaceOf(hits, i);
+    const WallRay::Surface surface = getSurface(hits, i);
     const double sine = ray.sineInWater();
     if (chain.walls == paths_.max_walls_ || !ray.pass(surface, water_) ||
         !(chain.power * chain.power * ray.power >= WallRay::min_passed))
@@ -215,26 +215,26 @@ void PathEchoes::Tracer::pass(int i, const TileHits& hits) {
     chain.was_in_fill |= surface.wall.fill.has_value();
     chain.wall_names = types::hashed(chain.wall_names, hits.command[i], static_cast<uint64_t>(++chain.walls));
     lengths_[static_cast<size_t>(i)] = ray.range;
-    look(i, ray.from, ray.way);
+    look(i, ray.from, ray.direction);
 }
 
-void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits,
+void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3& direction, const TileHits& hits,
                                  bool tilts) {
     MirrorChain& chain = chains_[static_cast<size_t>(i)];
     const auto k = static_cast<size_t>(chain.count);
     if (hits.command[i] == TileHits::nothing) {
-        const double distance = paths_.water_.distance(from, way);
+        const double distance = paths_.water_.distance(from, direction);
         if (!(lengths_[static_cast<size_t>(i)] + distance < rules_.bins.range_max)) return drop(i);
-        const glm::dvec3 at = from + distance * way;
-        const MirrorPlane plane = tilts ? paths_.water_.facet(at, way, key_) : paths_.water_.plane();
+        const glm::dvec3 at = from + distance * direction;
+        const MirrorPlane plane = tilts ? paths_.water_.facet(at, direction, key_) : paths_.water_.plane();
         chain.names[k] = surface_name;
         if (hasWalls()) walled_[static_cast<size_t>(i)].meet(plane.normal, distance);
-        return send(i, plane, from, way, distance);
+        return send(i, plane, from, direction, distance);
     }
     const CommandRecord& command = scene_.commands[hits.command[i]];
     const double reflected = this->reflected(hits.command[i]);
     const MirrorPlane plane = planeMet(scene_, hits, i);
-    const double cosine = std::abs(glm::dot(plane.normal, way));
+    const double cosine = std::abs(glm::dot(plane.normal, direction));
     if (reflected == 0 || !(cosine > edge_on)) return drop(i);
     chain.names[k] = uint64_t{hits.command[i]} << 32 | hits.triangle[i];
     chain.power *= reflected;
@@ -246,13 +246,13 @@ void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3
         chain.widest = std::max(chain.widest, std::sqrt(spread(facet.first) * spread(facet.second)) / cosine);
     }
     chain.begins_lobed |= k == 0 && rules_.laws.records[command.material].law.y > 0;
-    send(i, plane, from, way, double{hits.distance[i]});
+    send(i, plane, from, direction, double{hits.distance[i]});
 }
 
-void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way,
+void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& direction,
                               double distance) {
     MirrorChain& chain = chains_[static_cast<size_t>(i)];
-    const glm::dvec3 at = from + distance * way, on = plane.turned(way);
+    const glm::dvec3 at = from + distance * direction, on = plane.turned(direction);
     double& length = lengths_[static_cast<size_t>(i)];
     length += distance;
     if (hasWalls()) {
@@ -334,11 +334,11 @@ void PathEchoes::Tracer::goBackThrough(PathRays& on) {
     }
 }
 
-bool PathEchoes::Tracer::passBack(Back& back, const TileHits& hits, int i, const glm::dvec3& way) const {
-    if (!letsThrough(hits.command[i]) || wallOf(hits.command[i]).fill) return false;
-    const double cosine = std::abs(glm::dot(planeMet(scene_, hits, i).normal, way)) / glm::length(way);
+bool PathEchoes::Tracer::passBack(Back& back, const TileHits& hits, int i, const glm::dvec3& direction) const {
+    if (!letsThrough(hits.command[i]) || getWall(hits.command[i]).fill) return false;
+    const double cosine = std::abs(glm::dot(planeMet(scene_, hits, i).normal, direction)) / glm::length(direction);
     back.share *=
-        back.train.passOnce(wallOf(hits.command[i]), std::sqrt(std::max(1 - cosine * cosine, 0.0)), water_.resolution);
+        back.train.passOnce(getWall(hits.command[i]), std::sqrt(std::max(1 - cosine * cosine, 0.0)), water_.resolution);
     count(Counter::WallsPassed, back.share > 0);
     return back.share > 0;
 }
@@ -389,7 +389,7 @@ void PathEchoes::Tracer::receive(const TracedTile& tile) {
     if (scene_.maps) hits_ = as_met;
 }
 
-Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfWay& way, double size,
+Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfPath& path, double size,
                                         double late) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     // A path via a mirror is between the direct path and that plus the distance to the sonar's image.
@@ -397,8 +397,8 @@ Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfW
     double near_limit = run.near_limit, far_limit = 1 / (1 / run.far_limit + image + std::max(late, 0.0));
     if (late < 0) near_limit = std::max(near_limit, 1 / std::max(1 / near_limit + late, 1e-3));
     if (hasWalls() && walled_[static_cast<size_t>(i)].is_bent) near_limit = 1e3, far_limit = 0;
-    return trapezoidFootprint(way.inverse, way.inverse, std::abs(way.per_azimuth) * at.width,
-                              std::abs(way.per_elevation + way.per_azimuth * at.lean) * at.height, way.nearest,
+    return trapezoidFootprint(path.inverse, path.inverse, std::abs(path.per_azimuth) * at.width,
+                              std::abs(path.per_elevation + path.per_azimuth * at.lean) * at.height, path.nearest,
                               near_limit, far_limit, near_edge_, far_edge_, size);
 }
 
@@ -420,20 +420,20 @@ void PathEchoes::Tracer::deposit(const CellAngles& at, int i, const Back& back, 
     const auto [plane, cosine, focus] = seenPlane(at, i);
     if (!(cosine > edge_on && plane.distance * glm::dot(plane.normal, at.middle) > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    recordWay(i, true, at.middle, cosine);
+    recordPath(i, true, at.middle, cosine);
     count(Counter::MirrorPaths);
-    const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
+    const HalfPath twice = computeHalfPath(plane, glm::dvec3(0), at);
     const double passed = hasWalls() ? walled_[static_cast<size_t>(i)].power : 1;
     const double strength =
         gain * rules_.strength_scale * chain.power * chain.power * passed * focus *
         rules_.laws.overCosine(run.material, cosine, lobeSlopes(at, i, plane, at.middle, 1 / twice.inverse));
     const EchoTrain echoes =
-        hasWalls() ? walled_[static_cast<size_t>(i)].echoesOf(surfaceOf(hits_, i), water_) : EchoTrain();
+        hasWalls() ? walled_[static_cast<size_t>(i)].getEchoes(getSurface(hits_, i), water_) : EchoTrain();
     for (size_t k = 0; k < echoes.size(); ++k) {
-        HalfWay way = twice;
-        if (echoes[k].late != 0) way.moveAway(echoes[k].late);
-        bins_.depositCell(footprint(at, i, way, at.weighted, echoes[k].late), static_cast<uint>(at.cell),
-                          strength * echoes[k].weight / way.inverse);
+        HalfPath path = twice;
+        if (echoes[k].late != 0) path.moveAway(echoes[k].late);
+        bins_.depositCell(footprint(at, i, path, at.weighted, echoes[k].late), static_cast<uint>(at.cell),
+                          strength * echoes[k].weight / path.inverse);
     }
     if (back.share > 0) depositOnce(at, i, plane, back, gain);
 }
@@ -441,7 +441,7 @@ void PathEchoes::Tracer::deposit(const CellAngles& at, int i, const Back& back, 
 EchoTrain PathEchoes::Tracer::echoesOnce(int i, const Back& back) const {
     if (!hasWalls()) return {};
     const WallRay& ray = walled_[static_cast<size_t>(i)];
-    const WallRay::Surface surface = surfaceOf(hits_, i);
+    const WallRay::Surface surface = getSurface(hits_, i);
     if (!surface.wall.rings()) return back.train;
     const double there = surface.wall.spacing(ray.sineInWater()),
                  here = surface.wall.spacing(std::sqrt(std::max(1 - back.cosine * back.cosine, 0.0))),
@@ -470,14 +470,14 @@ LobeSlopes PathEchoes::Tracer::lobeSlopes(const CellAngles& at, int i, const Mir
 /** Returns the scattering of a cell for sound that arrives directly and returns via the mirrors, or the other way
  *  round. */
 MaterialLaws::Bistatic PathEchoes::Tracer::section(const CellAngles& at, int i, const MirrorPlane& plane,
-                                                   const HalfWay& way) const {
+                                                   const HalfPath& path) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    const double direct = std::abs(glm::dot(plane.normal, way.from_focus));
+    const double direct = std::abs(glm::dot(plane.normal, path.from_focus));
     const double mirrored = std::abs(glm::dot(plane.normal, at.middle));
     if (!(direct > edge_on)) return {0, 0};
     const double widest = chains_[static_cast<size_t>(i)].widest;
-    const glm::dvec3 middle = glm::normalize(at.middle + way.from_focus);
-    LobeSlopes slopes = lobeSlopes(at, i, plane, middle, 1 / way.inverse);
+    const glm::dvec3 middle = glm::normalize(at.middle + path.from_focus);
+    LobeSlopes slopes = lobeSlopes(at, i, plane, middle, 1 / path.inverse);
     slopes.square_1 += std::max(widest / mirrored, slopes.wave_1 / (direct * mirrored)) - slopes.wave_1;
     slopes.square_2 += std::max(widest / mirrored, slopes.wave_2 / (direct * mirrored)) - slopes.wave_2;
     slopes.wave_1 = slopes.wave_2 = 0;  // the part of a plate that a chain of plates shows does not end at its edges
@@ -489,32 +489,32 @@ MaterialLaws::Bistatic PathEchoes::Tracer::section(const CellAngles& at, int i, 
 void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, const Back& back,
                                      double gain) {
     const MirrorChain& chain = chains_[static_cast<size_t>(i)];
-    const HalfWay straight = halfWay(plane, chain.image(glm::dvec3(0)), at);
+    const HalfPath straight = computeHalfPath(plane, chain.image(glm::dvec3(0)), at);
     const MaterialLaws::Bistatic given = section(at, i, plane, straight);
     const PathPatterns& patterns = *paths_.patterns_;
     const glm::dvec3 itself = chain.turnedBack(straight.from_focus);
-    const PathPatterns::Way by_mirror = patterns.wayOf(at.middle), by_itself = patterns.wayOf(itself);
+    const PathPatterns::Direction by_mirror = patterns.toDirection(at.middle), by_itself = patterns.toDirection(itself);
     const double returned = patterns.power(by_itself, by_mirror), sent = patterns.power(by_mirror, by_itself);
     // Echoes that this surface and the first mirror both reflect and scatter have their own rays from the other end.
     const bool is_direct =
         chain.begins_lobed && reflected(hits_.command[i]) > 0 && !patterns.inOneBeam(by_mirror, by_itself);
-    recordWay(i, false, at.middle, std::abs(glm::dot(plane.normal, at.middle)));
+    recordPath(i, false, at.middle, std::abs(glm::dot(plane.normal, at.middle)));
     count(Counter::MirrorPaths, static_cast<uint64_t>(returned > 0) + static_cast<uint64_t>(sent > 0));
     const EchoTrain echoes = echoesOnce(i, back);
     for (size_t k = 0; k < echoes.size(); ++k) {
         const double late = echoes[k].late;
-        HalfWay way = straight;
-        if (late != 0) way.moveAway(late);
+        HalfPath path = straight;
+        if (late != 0) path.moveAway(late);
         const double scale = gain * rules_.strength_scale * chain.power * chain.passed * back.share * echoes[k].weight /
-                             (way.back * way.back * way.inverse * way.inverse * way.inverse);
+                             (path.back * path.back * path.inverse * path.inverse * path.inverse);
         bins_.sine_elevation = at.middle.z;
         if (returned > 0)
-            bins_.depositCell(footprint(at, i, way, at.size * returned, late), static_cast<uint>(at.cell),
+            bins_.depositCell(footprint(at, i, path, at.size * returned, late), static_cast<uint>(at.cell),
                               scale * (given.diffuse + given.lobe));
         if (!(sent > 0)) continue;
         bins_.sine_elevation = itself.z;
         const double strength = scale * (given.diffuse + (is_direct ? 0 : given.lobe));
-        const Footprint cell = footprint(at, i, way, at.size * sent, late);
+        const Footprint cell = footprint(at, i, path, at.size * sent, late);
         patterns.eachCell(by_itself,
                           [&](size_t received) { bins_.depositCell(cell, static_cast<uint>(received), strength); });
     }
@@ -523,7 +523,7 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
 PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry)
     : plan_(plan), water_(plan.config), max_walls_(plan.has(Pass::Walls) ? plan.config.max_walls : 0) {
     for (const types::Material& material : geometry.materials)
-        reflected_.push_back(reflectedPower(material, bouncesOf(plan.config)));
+        reflected_.push_back(reflectedPower(material, countBounces(plan.config)));
     updateQuality();
 }
 
@@ -549,9 +549,9 @@ void PathEchoes::endAtSurface(const TracedView& view, const TracedTile& tile) co
     TileHits& hits = *tile.hits;
     for (int i = 0; i < tile_samples; ++i) {
         if (hits.command[i] == TileHits::nothing) continue;
-        const glm::dvec3 way =
+        const glm::dvec3 direction =
             view.cells.direction(tile.first_column + view.shape.at[i].columns, tile.first_row + view.shape.at[i].rows);
-        if (double{hits.distance[i]} > water_.distance(glm::dvec3(0), way)) hits.command[i] = TileHits::nothing;
+        if (double{hits.distance[i]} > water_.distance(glm::dvec3(0), direction)) hits.command[i] = TileHits::nothing;
     }
 }
 
@@ -569,7 +569,7 @@ std::span<float> PathEchoes::direct(size_t cell) {
 bool PathEchoes::addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) {
     INSONIFY_CHECK(bins.size() == bin_count_ && cell < plan_.cells.size(), bins.size(), bin_count_, cell);
     if (records_truth_ && !direct_.empty()) std::ranges::copy(bins, direct(cell).begin());
-    const double quantum = quantumOf(ping);
+    const double quantum = computeQuantum(ping);
     const uint64_t* sums = sums_.data() + cell * bins.size();
     uint64_t any = 0;
     for (size_t j = 0; j < bins.size(); ++j) {
@@ -583,8 +583,8 @@ bool PathEchoes::addEnergies(const TracedPing& ping, size_t cell, std::span<floa
 
 void PathEchoes::addToTruth(const TracedPing& ping, types::SonarTruth& truth) {
     for (size_t cell = 0; cell < plan_.cells.size(); ++cell)
-        truth_->take(cell, direct(cell), ping.levels, quantumOf(ping));
-    truth_->report(truth, ping.water, quantumOf(ping));
+        truth_->take(cell, direct(cell), ping.levels, computeQuantum(ping));
+    truth_->report(truth, ping.water, computeQuantum(ping));
 }
 
 }  // namespace

@@ -24,21 +24,21 @@ PathPatterns::PathPatterns(const RenderPlan& plan)
       beam_width_(has_azimuth_ ? plan.directivity->halfPowerAzimuth() : types::radians(plan.config.beamWidthDeg())) {
     constexpr acoustics::AdaptiveTable::Bound bound{0.0115, 1e-5};
     if (plan.directivity && plan.directivity->hasElevation()) {
-        const auto tableOf = [&](double (Directivity::*law)(double) const) {
+        const auto makeTable = [&](double (Directivity::*law)(double) const) {
             const auto at = [&](double sine) {
                 return ((*plan.directivity).*law)(std::asin(std::clamp(sine, -1.0, 1.0)));
             };
             return acoustics::AdaptiveTable(at, -reach_, reach_, bound, table_cells);
         };
-        sent_ = tableOf(&Directivity::sentElevation);
-        received_ = tableOf(&Directivity::receivedElevation);
+        sent_ = makeTable(&Directivity::sentElevation);
+        received_ = makeTable(&Directivity::receivedElevation);
     }
     if (has_azimuth_)
         azimuths_ = acoustics::AdaptiveTable([&](double azimuth) { return plan.directivity->sentAzimuth(azimuth); },
                                              -pi, pi, bound, table_cells);
 }
 
-PathPatterns::Way PathPatterns::wayOf(const glm::dvec3& direction) const {
+PathPatterns::Direction PathPatterns::toDirection(const glm::dvec3& direction) const {
     return {beamAzimuth(direction, conical_), direction.z, !conical_ || direction.x >= 0};
 }
 
@@ -52,7 +52,7 @@ double PathPatterns::sentAzimuth(double azimuth) const {
     return azimuths_.at(std::remainder(azimuth, 2 * pi));
 }
 
-double PathPatterns::power(const Way& sent, const Way& received) const {
+double PathPatterns::power(const Direction& sent, const Direction& received) const {
     if (!sent.received || !received.received) return 0;
     const double here = sentAzimuth(received.azimuth);
     return here > 0
@@ -60,12 +60,12 @@ double PathPatterns::power(const Way& sent, const Way& received) const {
                : 0;
 }
 
-double PathPatterns::received(const Way& way) const {
-    const double here = way.received ? sentAzimuth(way.azimuth) : 0;
-    return here > 0 ? elevation(received_, way.sine) / here : 0;
+double PathPatterns::received(const Direction& direction) const {
+    const double here = direction.received ? sentAzimuth(direction.azimuth) : 0;
+    return here > 0 ? elevation(received_, direction.sine) / here : 0;
 }
 
-bool PathPatterns::inOneBeam(const Way& a, const Way& b) const {
+bool PathPatterns::inOneBeam(const Direction& a, const Direction& b) const {
     return std::abs(std::remainder(a.azimuth - b.azimuth, 2 * pi)) < beam_width_;
 }
 

@@ -13,21 +13,21 @@ public:
     explicit PathPatterns(const RenderPlan& plan);
 
     /** A direction in sonar axes. */
-    struct Way {
+    struct Direction {
         double azimuth = 0;     ///< As in cells: of cones their bearing [rad].
         double sine = 0;        ///< Sine of the elevation [1].
         bool received = false;  ///< Whether it is received: not behind a straight array.
     };
-    Way wayOf(const glm::dvec3& direction) const;
+    Direction toDirection(const glm::dvec3& direction) const;
     /** Returns the power sent along one path and received along another, relative to the azimuth response of the cell
      *  that receives it [1]. */
-    double power(const Way& sent, const Way& received) const;
+    double power(const Direction& sent, const Direction& received) const;
     /** Returns the receive power along a path, relative to the azimuth response of the cell that receives it [1]. */
-    double received(const Way& way) const;
+    double received(const Direction& direction) const;
     /** Returns whether both are within one beam. */
-    bool inOneBeam(const Way& a, const Way& b) const;
+    bool inOneBeam(const Direction& a, const Direction& b) const;
     /** Calls use(cell) for each azimuth cell that contains a path's direction. */
-    void eachCell(const Way& way, const auto& use) const { plan_.cells.eachAt(way.azimuth, use); }
+    void eachCell(const Direction& direction, const auto& use) const { plan_.cells.eachAt(direction.azimuth, use); }
 
 private:
     double elevation(const acoustics::AdaptiveTable& table, double sine) const;

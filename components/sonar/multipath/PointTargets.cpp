@@ -22,18 +22,18 @@ PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geomet
 void PointTargets::setScene(const types::Geometry& geometry) {
     walls_.reset();
     if (plan_.has(Pass::Walls)) walls_.emplace(plan_);
-    ways_.emplace(plan_.config, geometry, walls_ ? &*walls_ : nullptr);
+    paths_.emplace(plan_.config, geometry, walls_ ? &*walls_ : nullptr);
 }
 
-std::optional<BeamAngles> PointTargets::directionOf(const glm::dvec3& way) const {
+std::optional<BeamAngles> PointTargets::computeDirection(const glm::dvec3& direction) const {
     const bool conical = plan_.features.has(Feature::Conical);
-    if (conical && way.x < 0) return {};
-    return beamAngles(way, conical);
+    if (conical && direction.x < 0) return {};
+    return beamAngles(direction, conical);
 }
 
-std::optional<PointTargets::Return> PointTargets::returnOf(const TargetPath& out, const TargetPath& back,
-                                                           double strength_db) const {
-    const auto sent = directionOf(out.direction), received = directionOf(back.direction);
+std::optional<PointTargets::Return> PointTargets::computeReturn(const TargetPath& out, const TargetPath& back,
+                                                                double strength_db) const {
+    const auto sent = computeDirection(out.direction), received = computeDirection(back.direction);
     const double range = 0.5 * (out.length + back.length);
     if (!sent || !received || !(range >= plan_.grid.range_min)) return {};
     const double ringing = &out == &back ? out.ringing : 1;
@@ -48,14 +48,14 @@ std::optional<PointTargets::Return> PointTargets::returnOf(const TargetPath& out
                   out.walls + back.walls > 0};
 }
 
-double PointTargets::inPhase(const TargetPath& way) const {
-    if (!way.by_surface || !plan_.config.frequency_khz) return 1;
+double PointTargets::inPhase(const TargetPath& path) const {
+    if (!path.by_surface || !plan_.config.frequency_khz) return 1;
     const double wavelength = plan_.grid.speed_of_sound / (1e3 * *plan_.config.frequency_khz);
-    return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, way.sine_grazing);
+    return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, path.sine_grazing);
 }
 
 bool PointTargets::mayReceive(const glm::dvec3& direction) const {
-    const auto angles = directionOf(direction);
+    const auto angles = computeDirection(direction);
     if (!angles) return false;
     const auto& pattern = plan_.directivity;
     if (pattern && pattern->hasElevation()) {
@@ -140,20 +140,21 @@ bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) con
     return received;
 }
 
-std::optional<TargetPath> PointTargets::bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target) {
+std::optional<TargetPath> PointTargets::findBentPath(const RayPaths& bent, const types::Snapshot& snapshot,
+                                                     size_t target) {
     const glm::dvec3 from_sonar = snapshot.targets[target].position - snapshot.sonar.position;
     const auto received = bent.received(glm::conjugate(snapshot.sonar.orientation) * from_sonar, target);
     if (!received) return {};
-    TargetPath way;
-    way.length = glm::length(received->place);
-    way.direction = received->place / way.length;
-    way.power = received->focus;
-    return way;
+    TargetPath path;
+    path.length = glm::length(received->place);
+    path.direction = received->place / path.length;
+    path.power = received->focus;
+    return path;
 }
 
 size_t PointTargets::add(PingInMaking& to) {
     const types::Snapshot& snapshot = to.snapshot;
-    ways_->place(snapshot, plan_.grid.range_max + (shape_ ? shape_->reach() : 0));
+    paths_->place(snapshot, plan_.grid.range_max + (shape_ ? shape_->reach() : 0));
     size_t received = 0;
     const auto time = static_cast<uint64_t>(snapshot.time.microseconds);
     const bool named = snapshot.target_names && snapshot.target_names->size() == snapshot.targets.size();
@@ -161,13 +162,13 @@ size_t PointTargets::add(PingInMaking& to) {
         const types::PointTarget& target = snapshot.targets[i];
         const uint64_t own = named ? types::hashedName((*snapshot.target_names)[i]) : i;
         bool any = false;
-        std::span<const TargetPath> ways = ways_->waysTo(target.position);
-        const auto way = to.bent && !ways.empty() ? bentWay(*to.bent, snapshot, i) : std::nullopt;
-        if (to.bent) ways = {way ? &*way : nullptr, way ? 1u : 0u};
-        for (const TargetPath& out : ways)
-            for (const TargetPath& back : ways) {
+        std::span<const TargetPath> paths = paths_->pathsTo(target.position);
+        const auto path = to.bent && !paths.empty() ? findBentPath(*to.bent, snapshot, i) : std::nullopt;
+        if (to.bent) paths = {path ? &*path : nullptr, path ? 1u : 0u};
+        for (const TargetPath& out : paths)
+            for (const TargetPath& back : paths) {
                 const auto pair =
-                    static_cast<uint64_t>((&out - ways.data()) * std::ssize(ways) + (&back - ways.data()));
+                    static_cast<uint64_t>((&out - paths.data()) * std::ssize(paths) + (&back - paths.data()));
                 any |= addPair(out, back, target.strength_db, to, types::hashed(time, own, pair));
             }
         received += any ? 1 : 0;
@@ -179,16 +180,16 @@ bool PointTargets::addPair(const TargetPath& out, const TargetPath& back, double
                            uint64_t key) {
     if (&out == &back && out.arrivals) return addRinging(out, strength_db, to, key);
     if (out.arrivals || back.arrivals) return addRinging(out, back, strength_db, to, key);
-    const auto echo = returnOf(out, back, strength_db);
+    const auto echo = computeReturn(out, back, strength_db);
     if (!echo || !spread(echo->range)) return false;
     return to.field ? addTo(*to.field, *echo, key) : addTo(to, *echo);
 }
 
-bool PointTargets::addRinging(const TargetPath& way, double strength_db, PingInMaking& to, uint64_t key) {
-    const EchoTrain& train = way.arrivals->both;
+bool PointTargets::addRinging(const TargetPath& path, double strength_db, PingInMaking& to, uint64_t key) {
+    const EchoTrain& train = path.arrivals->both;
     bool any = false;
     for (size_t k = 0; k < train.size(); ++k) {
-        TargetPath rung = way;
+        TargetPath rung = path;
         rung.arrivals = nullptr;
         rung.length += train[k].late;
         rung.power *= std::sqrt(std::max(train[k].weight, 0.0));
@@ -216,8 +217,8 @@ bool PointTargets::addRinging(const TargetPath& out, const TargetPath& back, dou
     return any;
 }
 
-bool PointTargets::addAlong(const TargetPath& way, double strength_db, PingInMaking& to) {
-    return addPair(way, way, strength_db, to, 0);
+bool PointTargets::addAlong(const TargetPath& path, double strength_db, PingInMaking& to) {
+    return addPair(path, path, strength_db, to, 0);
 }
 
 }  // namespace insonify::sonar

@@ -31,7 +31,7 @@ public:
 
     /** Adds an echo that returns along the same path, within the same ping, ignoring occlusion. Returns
      *  whether any beam has it. */
-    bool addAlong(const TargetPath& way, double strength_db, PingInMaking& to);
+    bool addAlong(const TargetPath& path, double strength_db, PingInMaking& to);
 
     /** Returns whether any beam may receive from a direction, a unit vector in the sonar's axes. Quick: false is
      *  certain. */
@@ -48,10 +48,10 @@ private:
         bool passes_walls;
     };
     /** Returns the beam angles of a path; none behind a straight array. */
-    std::optional<BeamAngles> directionOf(const glm::dvec3& way) const;
-    std::optional<Return> returnOf(const TargetPath& out, const TargetPath& back, double strength_db) const;
+    std::optional<BeamAngles> computeDirection(const glm::dvec3& direction) const;
+    std::optional<Return> computeReturn(const TargetPath& out, const TargetPath& back, double strength_db) const;
     /** Returns the bent path to a target; none where there is no path. */
-    static std::optional<TargetPath> bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target);
+    static std::optional<TargetPath> findBentPath(const RayPaths& bent, const types::Snapshot& snapshot, size_t target);
     double powerIn(const Beam& beam, const Return& echo) const;
     /** Returns the sign or phase of the field pattern there, of magnitude 1. */
     std::complex<double> phaseIn(const Beam& beam, const Return& echo) const;
@@ -60,17 +60,17 @@ private:
     /** Adds the echo of a pair of paths; `key` identifies the pair. Returns whether any beam has it. */
     bool addPair(const TargetPath& out, const TargetPath& back, double strength_db, PingInMaking& to, uint64_t key);
     /** Adds the echoes along a path through walls that ring. */
-    bool addRinging(const TargetPath& way, double strength_db, PingInMaking& to, uint64_t key);
+    bool addRinging(const TargetPath& path, double strength_db, PingInMaking& to, uint64_t key);
     /** Adds the echoes out along one path and back along another, through walls that ring. */
     bool addRinging(const TargetPath& out, const TargetPath& back, double strength_db, PingInMaking& to, uint64_t key);
     bool addTo(PingInMaking& to, const Return& echo) const;
     bool addTo(EchoField& field, const Return& echo, uint64_t key) const;
     /** Returns the share of the amplitude that rough mirrors leave in phase along a path [1]. */
-    double inPhase(const TargetPath& way) const;
+    double inPhase(const TargetPath& path) const;
 
     const RenderPlan& plan_;
     std::optional<WallSights> walls_;  ///< None where no sound passes walls.
-    std::optional<TargetPaths> ways_;
+    std::optional<TargetPaths> paths_;
     double absorption_;  ///< Two-way loss of intensity [1/m].
     std::optional<EchoShape> shape_;
     std::vector<double> means_;  ///< Means of h, for bins from first_bin_ [1].

@@ -81,8 +81,8 @@ TargetPaths::TargetPaths(const SonarConfig& config, const types::Geometry& geome
       reach_(bounces_ > 1 ? mirrors_.size() : 0),
       images_(mirrors_.size()),
       distances_(mirrors_.size()) {
-    static_assert(TargetPath::max_mirrors == 2, "waysTo() looks for ways by one mirror and by two");
-    ways_.reserve(std::min(max_reserved, 1 + mirrors_.size() * (1 + mirrors_.size())));
+    static_assert(TargetPath::max_mirrors == 2, "pathsTo() looks for paths by one mirror and by two");
+    paths_.reserve(std::min(max_reserved, 1 + mirrors_.size() * (1 + mirrors_.size())));
 }
 
 void TargetPaths::place(const types::Snapshot& snapshot, double range_max) {
@@ -118,15 +118,15 @@ void TargetPaths::placeMirrors(const types::Snapshot& snapshot, double range_max
     }
 }
 
-const std::vector<TargetPath>& TargetPaths::waysTo(const glm::dvec3& point) {
-    ways_.clear();
+const std::vector<TargetPath>& TargetPaths::pathsTo(const glm::dvec3& point) {
+    paths_.clear();
     arrivals_count_ = 0;
-    if (bounces_ > 0 && mirrors_.front().is_there && !(point.z < mirrors_.front().plane.distance)) return ways_;
-    addWay(point, {});
+    if (bounces_ > 0 && mirrors_.front().is_there && !(point.z < mirrors_.front().plane.distance)) return paths_;
+    addPath(point, {});
     if (bounces_ > 0) addByOne(point);
     if (bounces_ > 1) addByTwo(point);
-    std::ranges::sort(ways_, {}, &TargetPath::mirrors);
-    return ways_;
+    std::ranges::sort(paths_, {}, &TargetPath::mirrors);
+    return paths_;
 }
 
 void TargetPaths::addByOne(const glm::dvec3& point) {
@@ -136,7 +136,7 @@ void TargetPaths::addByOne(const glm::dvec3& point) {
         images_[i] = mirror.plane.image(point);
         distances_[i] = distanceFrom(mirror.plane, point);
         const PlacedMirror* const chain[] = {&mirror};
-        if (mayMeet(mirror, sonar_, mirror.sonar_side, images_[i], distances_[i])) addWay(point, chain);
+        if (mayMeet(mirror, sonar_, mirror.sonar_side, images_[i], distances_[i])) addPath(point, chain);
     }
 }
 
@@ -152,7 +152,7 @@ void TargetPaths::addByTwo(const glm::dvec3& point) {
             const PlacedMirror* const chain[] = {&first, &second};
             if (mayMeet(second, from, distanceFrom(second.plane, from), to, distances_[j]) &&
                 mayMeet(first, from, first.sonar_side, to, distanceFrom(first.plane, to)))
-                addWay(point, chain);
+                addPath(point, chain);
         });
     }
 }
@@ -166,34 +166,34 @@ bool TargetPaths::mayMeet(const PlacedMirror& mirror, const glm::dvec3& from, do
     return holds(mirror.box, from + a / (a + b) * (image - from), rounded * doubt_);
 }
 
-void TargetPaths::addWay(const glm::dvec3& point, Chain chain) {
+void TargetPaths::addPath(const glm::dvec3& point, Chain chain) {
     // The image seen behind the first k mirrors of the chain: the point's image in the mirrors after them.
     std::array<glm::dvec3, TargetPath::max_mirrors + 1> images;
     images[chain.size()] = point;
     for (size_t k = chain.size(); k-- > 0;) images[k] = chain[k]->plane.image(images[k + 1]);
-    TargetPath way;
-    way.length = glm::distance(sonar_, images[0]);
-    if (!(way.length > 0 && way.length <= longest_)) return;
-    way.direction = sonar_from_world_ * ((images[0] - sonar_) / way.length);
+    TargetPath path;
+    path.length = glm::distance(sonar_, images[0]);
+    if (!(path.length > 0 && path.length <= longest_)) return;
+    path.direction = sonar_from_world_ * ((images[0] - sonar_) / path.length);
     std::array<glm::dvec3, TargetPath::max_mirrors + 2> stops{sonar_};
     for (const PlacedMirror* mirror : chain) {
-        const auto k = static_cast<size_t>(way.reflections);
-        const auto at = meet(*mirror, stops[k], images[k], way);
+        const auto k = static_cast<size_t>(path.reflections);
+        const auto at = meet(*mirror, stops[k], images[k], path);
         if (!at) return;
         stops[k + 1] = *at;
     }
     stops[chain.size() + 1] = point;
     WallArrivals* const arrivals = walls_ ? &newArrivals() : nullptr;
     for (size_t k = 0; k <= chain.size(); ++k) {
-        way.power *= walls_ ? walls_->passed(sightlines_, stops[k], stops[k + 1], way.walls, *arrivals)
-                            : static_cast<double>(sightlines_.isOpen(stops[k], stops[k + 1]));
-        if (!(way.power > 0)) return;
+        path.power *= walls_ ? walls_->passed(sightlines_, stops[k], stops[k + 1], path.walls, *arrivals)
+                             : static_cast<double>(sightlines_.isOpen(stops[k], stops[k + 1]));
+        if (!(path.power > 0)) return;
     }
-    if (walls_) way.ringing = arrivals->ringing;
-    if (walls_ && arrivals->areDelayed()) way.arrivals = arrivals;
+    if (walls_) path.ringing = arrivals->ringing;
+    if (walls_ && arrivals->areDelayed()) path.arrivals = arrivals;
     const glm::dvec3 first = stops[chain.size()] - point;
-    way.from_point = first / std::max(glm::length(first), std::numeric_limits<double>::min());
-    addOnce(way);
+    path.from_point = first / std::max(glm::length(first), std::numeric_limits<double>::min());
+    addOnce(path);
 }
 
 WallArrivals& TargetPaths::newArrivals() {
@@ -202,7 +202,7 @@ WallArrivals& TargetPaths::newArrivals() {
 }
 
 std::optional<glm::dvec3> TargetPaths::meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,
-                                            TargetPath& way) const {
+                                            TargetPath& path) const {
     const double here = distanceFrom(mirror.plane, from), there = distanceFrom(mirror.plane, image);
     // A path may leave a first mirror where it joins the second; then the sonar's side decides.
     const bool in_corner = std::abs(here) <= doubt_;
@@ -211,27 +211,27 @@ std::optional<glm::dvec3> TargetPaths::meet(const PlacedMirror& mirror, const gl
     const glm::dvec3 at = in_corner ? from : from + here / (here - there) * (image - from);
     const MirrorTriangle* triangle = mirror.flat ? flat_.triangleAt(*mirror.flat, at, doubt_) : nullptr;
     if (mirror.flat && !triangle) return {};
-    if (triangle) way.power *= triangle->power;
+    if (triangle) path.power *= triangle->power;
     if (!mirror.flat) {
-        way.by_surface = true;
-        way.sine_grazing =
+        path.by_surface = true;
+        path.sine_grazing =
             in_corner ? std::abs(there) / glm::distance(image, at) : std::abs(here) / glm::distance(from, at);
     }
-    way.mirrors[static_cast<size_t>(way.reflections++)] = triangle ? triangle->place + 2 : 1;
+    path.mirrors[static_cast<size_t>(path.reflections++)] = triangle ? triangle->place + 2 : 1;
     return at;
 }
 
 /** Adds a path once: mirrors of several objects may share an edge or overlap, and their reflections are one path. */
-void TargetPaths::addOnce(const TargetPath& way) {
+void TargetPaths::addOnce(const TargetPath& path) {
     const auto isSame = [&](const TargetPath& other) {
-        return other.reflections == way.reflections && std::abs(other.length - way.length) <= same * way.length &&
-               glm::distance(other.direction, way.direction) <= same;
+        return other.reflections == path.reflections && std::abs(other.length - path.length) <= same * path.length &&
+               glm::distance(other.direction, path.direction) <= same;
     };
-    const auto known = std::ranges::find_if(ways_, isSame);
-    if (known == ways_.end())
-        ways_.push_back(way);
-    else if (way.mirrors < known->mirrors)
-        *known = way;
+    const auto known = std::ranges::find_if(paths_, isSame);
+    if (known == paths_.end())
+        paths_.push_back(path);
+    else if (path.mirrors < known->mirrors)
+        *known = path;
 }
 
 }  // namespace insonify::sonar

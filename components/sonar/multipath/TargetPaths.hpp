@@ -13,7 +13,7 @@
 
 namespace insonify::sonar {
 
-/** Arrivals of sound through walls that ring, on a way out and back or one way. */
+/** Arrivals of sound through walls that ring, on a path out and back or one way. */
 struct WallArrivals {
     EchoTrain both, once;
     double ringing = 1;  ///< Energy out and back relative to the square of that one way: resonances [1].
@@ -32,7 +32,7 @@ public:
     explicit WallSights(const RenderPlan& plan);
 
     /** Returns the one-way share of the energy that passes from one point to another [1]; 0: hidden. `walls` counts the
-     *  walls of the whole way, of which at most max_walls pass sound. `arrivals` continues with those of this line. */
+     *  walls of the whole path, of which at most max_walls pass sound. `arrivals` continues with those of this line. */
     double passed(const Sightlines& sightlines, const glm::dvec3& from, const glm::dvec3& to, int& walls,
                   WallArrivals& arrivals);
 
@@ -73,7 +73,7 @@ public:
     void place(const types::Snapshot& snapshot, double range_max);
     /** Returns the paths in the order of `TargetPath::mirrors`, the straight one first. They are valid until the next
      *  call. */
-    const std::vector<TargetPath>& waysTo(const glm::dvec3& point);
+    const std::vector<TargetPath>& pathsTo(const glm::dvec3& point);
 
 private:
     using Chain = std::span<const PlacedMirror* const>;
@@ -89,11 +89,11 @@ private:
     /** Returns arrivals for one more path. */
     WallArrivals& newArrivals();
     /** Adds the path via the mirrors of a chain, if there is one. */
-    void addWay(const glm::dvec3& point, Chain chain);
+    void addPath(const glm::dvec3& point, Chain chain);
     /** Returns where the line from a stop to the image hits a mirror, and adds the mirror to the path. */
     std::optional<glm::dvec3> meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,
-                                   TargetPath& way) const;
-    void addOnce(const TargetPath& way);
+                                   TargetPath& path) const;
+    void addOnce(const TargetPath& path);
 
     int bounces_;
     FlatMirrors flat_;
@@ -108,7 +108,7 @@ private:
 
     std::vector<glm::dvec3> images_;  ///< The point's image in each mirror [m].
     std::vector<double> distances_;   ///< From each mirror's plane to the point [m].
-    std::vector<TargetPath> ways_;
+    std::vector<TargetPath> paths_;
     glm::dvec3 sonar_{0};
     glm::dquat sonar_from_world_{1, 0, 0, 0};
     double longest_ = 0;  ///< [m]

@@ -4,13 +4,13 @@
 
 namespace insonify::sonar {
 
-void WallRay::begin(const glm::dvec3& direction) {
+void WallRay::begin(const glm::dvec3& initial) {
     from = glm::dvec3(0);
-    way = look = direction;
+    direction = look = initial;
     const glm::dvec3 up = std::abs(look.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
     across[0] = glm::normalize(glm::cross(up, look));
     across[1] = glm::cross(look, across[0]);
-    for (int k = 0; k < 2; ++k) per_from[k] = glm::dvec3(0), per_way[k] = across[k];
+    for (int k = 0; k < 2; ++k) per_from[k] = glm::dvec3(0), per_direction[k] = across[k];
     is_bent = false;
     range = 0;
     power = 1;
@@ -19,20 +19,20 @@ void WallRay::begin(const glm::dvec3& direction) {
     train = {};
 }
 
-int WallRay::bodyOf(uint32_t object) const {
+int WallRay::getBody(uint32_t object) const {
     for (int k = bodies_count; k-- > 0;)
         if (bodies[k].object == object) return k;
     return -1;
 }
 
 void WallRay::meet(const glm::dvec3& unit_normal, double length) {
-    normal = glm::dot(unit_normal, way) > 0 ? -unit_normal : unit_normal;
-    cosine = std::clamp(-glm::dot(normal, way), 1e-9, 1.0);
+    normal = glm::dot(unit_normal, direction) > 0 ? -unit_normal : unit_normal;
+    cosine = std::clamp(-glm::dot(normal, direction), 1e-9, 1.0);
     length_met = length;
-    from += length * way;
+    from += length * direction;
     for (int k = 0; k < 2; ++k) {
-        const glm::dvec3 moved = per_from[k] + length * per_way[k];
-        per_from[k] = moved + glm::dot(normal, moved) / cosine * way;
+        const glm::dvec3 moved = per_from[k] + length * per_direction[k];
+        per_from[k] = moved + glm::dot(normal, moved) / cosine * direction;
     }
     range += length / medium.speed;
     power *= std::exp(-2 * medium.attenuation * length);
@@ -46,7 +46,7 @@ EchoTrain WallRay::rung(const EchoTrain& train, const WallLaw& wall, bool from_w
     return echoes;
 }
 
-EchoTrain WallRay::echoesOf(const Surface& surface, const Water& water) const {
+EchoTrain WallRay::getEchoes(const Surface& surface, const Water& water) const {
     const WallLaw& wall = surface.wall;
     const bool from_within = isWithin(surface.object);
     EchoTrain echoes = train;
@@ -58,7 +58,7 @@ EchoTrain WallRay::echoesOf(const Surface& surface, const Water& water) const {
 }
 
 void WallRay::enter(const Surface& surface, const Water& water) {
-    const int known = bodyOf(surface.object);
+    const int known = getBody(surface.object);
     const std::optional<WallFill>& fill = surface.wall.fill;
     if (known >= 0) {
         std::move(bodies + known + 1, bodies + bodies_count, bodies + known);
@@ -82,11 +82,11 @@ bool WallRay::refract(const Surface& surface, double speed) {
     for (int k = 0; k < 2; ++k) {
         const glm::dvec3& moved = per_from[k];
         const glm::dvec3 per_normal = outward * (static_cast<double>(curve.w) * moved + glm::dot(bend, moved) * bend);
-        const double per_cosine = -(glm::dot(per_normal, way) + glm::dot(normal, per_way[k]));
+        const double per_cosine = -(glm::dot(per_normal, direction) + glm::dot(normal, per_direction[k]));
         const double per_along = (ratio - ratio * ratio * cosine / behind) * per_cosine;
-        per_way[k] = ratio * per_way[k] + per_along * normal + along * per_normal;
+        per_direction[k] = ratio * per_direction[k] + per_along * normal + along * per_normal;
     }
-    way = glm::normalize(ratio * way + along * normal);
+    direction = glm::normalize(ratio * direction + along * normal);
     is_bent = true;
     return true;
 }
@@ -110,16 +110,17 @@ bool WallRay::pass(const Surface& surface, const Water& water) {
 }
 
 void WallRay::reflect(const glm::dvec3& unit_normal) {
-    way -= 2 * glm::dot(unit_normal, way) * unit_normal;
-    for (glm::dvec3& turn : per_way) turn -= 2 * glm::dot(unit_normal, turn) * unit_normal;
+    direction -= 2 * glm::dot(unit_normal, direction) * unit_normal;
+    for (glm::dvec3& turn : per_direction) turn -= 2 * glm::dot(unit_normal, turn) * unit_normal;
 }
 
 ApparentPlane WallRay::apparent() const {
     ApparentPlane plane;
     plane.normal = look / range;
-    for (int k = 0; k < 2; ++k) plane.normal -= glm::dot(way, per_from[k]) / (medium.speed * range * range) * across[k];
+    for (int k = 0; k < 2; ++k)
+        plane.normal -= glm::dot(direction, per_from[k]) / (medium.speed * range * range) * across[k];
     plane.cosine = cosine;
-    const double area = std::abs(glm::dot(glm::cross(per_from[0], per_from[1]), way));  // per steradian
+    const double area = std::abs(glm::dot(glm::cross(per_from[0], per_from[1]), direction));  // per steradian
     // On return from a fluid of another speed, the rays of a steradian spread differently: reciprocity.
     const double fluid = medium.speed * medium.speed;
     plane.focus = fluid * std::min(range * range / std::max(area, 1e-30), max_focus);

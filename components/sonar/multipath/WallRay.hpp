@@ -42,28 +42,28 @@ struct WallRay {
     };
 
     bool is_bent = false;
-    glm::dvec3 from{0}, way{0}, look{0};  ///< [m], unit, unit: its initial direction.
-    glm::dvec3 across[2];                 ///< Normal to `look`.
-    glm::dvec3 per_from[2], per_way[2];   ///< Change of `from` and `way` with the look direction [m], [1].
-    double range = 0;                     ///< Slant range at `from` [m].
-    double power = 1;                     ///< Share of the energy that returns [1].
+    glm::dvec3 from{0}, direction{0}, look{0};  ///< [m], unit, unit: its initial direction.
+    glm::dvec3 across[2];                       ///< Normal to `look`.
+    glm::dvec3 per_from[2], per_direction[2];   ///< Change of `from` and `direction` with the look direction [m], [1].
+    double range = 0;                           ///< Slant range at `from` [m].
+    double power = 1;                           ///< Share of the energy that returns [1].
     Medium medium;
     int bodies_count = 0;
     Body bodies[max_bodies];
     EchoTrain train;        ///< Sound that arrives, out and back.
     glm::dvec3 normal{0};   ///< Unit normal of the surface, against the ray.
     double cosine = 1;      ///< Cosine of the angle between `normal` and the ray [1].
-    double length_met = 0;  ///< Length of its way to the surface since the last surface [m].
+    double length_met = 0;  ///< Length of its path to the surface since the last surface [m].
 
     /** Starts at the sonar in a unit direction. */
-    void begin(const glm::dvec3& direction);
+    void begin(const glm::dvec3& initial);
     /** Returns the sine of the angle of incidence of the same wave in water [1]. */
     double sineInWater() const { return std::sqrt(std::max(1 - cosine * cosine, 0.0)) / medium.speed; }
-    bool isWithin(uint32_t object) const { return bodyOf(object) >= 0; }
+    bool isWithin(uint32_t object) const { return getBody(object) >= 0; }
     /** Moves to a surface ahead with a unit normal to either side. */
     void meet(const glm::dvec3& unit_normal, double length);
-    /** Returns the echoes of the surface that it has met, by the same way back. */
-    EchoTrain echoesOf(const Surface& surface, const Water& water) const;
+    /** Returns the echoes of the surface that it has met, by the same path back. */
+    EchoTrain getEchoes(const Surface& surface, const Water& water) const;
     /** Returns the echoes of a wall that rings, of sound that arrives as `train`. `spacing`: of its returns [m];
      *  `inset`: slant range from its inner face to its outer face for sound from within [m]. */
     static EchoTrain rung(const EchoTrain& train, const WallLaw& wall, bool from_within, double spacing, double inset,
@@ -77,7 +77,7 @@ struct WallRay {
     ApparentPlane apparent() const;
 
 private:
-    int bodyOf(uint32_t object) const;
+    int getBody(uint32_t object) const;
     void enter(const Surface& surface, const Water& water);
     /** Refracts at the surface that it has met. Returns false if it is totally reflected. */
     bool refract(const Surface& surface, double speed);

@@ -42,7 +42,7 @@ Reverberation::Reverberation(const RenderPlan& plan, const types::Geometry& geom
                         std::any_of(facets[mesh]->begin() + cluster.first_index / 3,
                                     facets[mesh]->begin() + (cluster.first_index + cluster.index_count) / 3, isFlat);
     if (!plan.has(Pass::Paths)) return;
-    bounces = bouncesOf(plan.config);
+    bounces = countBounces(plan.config);
     for (const types::Material& material : geometry.materials)
         in_paths.push_back(reflectedPower(material, bounces) > 0);
 }
@@ -53,13 +53,13 @@ bool WallRays::begin(const TracedTile& tile, const TileRays& rays) {
     for (int i = 0; i < tile_samples; ++i) {
         Ray& ray = rays_[static_cast<size_t>(i)];
         ray.is_there = (rays.active >> i & 1) && hits_.command[i] != TileHits::nothing &&
-                       (wallOf(i).letsThrough() || wallOf(i).rings());
+                       (getWall(i).letsThrough() || getWall(i).rings());
         if (!ray.is_there) continue;
         any = true;
-        const glm::dvec3 way(rays.x[i], rays.y[i], rays.z[i]);
-        const double length = glm::length(way);
+        const glm::dvec3 direction(rays.x[i], rays.y[i], rays.z[i]);
+        const double length = glm::length(direction);
         hits_.distance[i] *= static_cast<float>(length);
-        ray.begin(way / length);
+        ray.begin(direction / length);
         ray.is_in_paths = true;
     }
     if (!any) return false;
@@ -84,9 +84,9 @@ const TracedTile* WallRays::next() {
 /** Moves a ray to the surface that it has hit. */
 void WallRays::meet(int i) {
     Ray& ray = rays_[static_cast<size_t>(i)];
-    const WallRay::Surface surface = surfaceOf(i);
+    const WallRay::Surface surface = getSurface(i);
     ray.meet(surface.normal(), static_cast<double>(hits_.distance[i]));
-    ray.echoes = ray.echoesOf(surface, water_);
+    ray.echoes = ray.getEchoes(surface, water_);
 }
 
 void WallRays::countEchoes() {
@@ -97,7 +97,7 @@ void WallRays::countEchoes() {
 
 void WallRays::pass(int i, PathRays& on) {
     Ray& ray = rays_[static_cast<size_t>(i)];
-    const WallRay::Surface surface = surfaceOf(i);
+    const WallRay::Surface surface = getSurface(i);
     ray.is_there = false;
     ray.is_in_paths &= !reverberation_.isInPaths(surface.run.material);
     if (!ray.pass(surface, water_)) return;
@@ -109,11 +109,11 @@ void WallRays::send(int i, PathRays& on) const {
     const Ray& ray = rays_[static_cast<size_t>(i)];
     const double begin = RayVisibility::nearest / 10 + 1e-5 * ray.range,
                  end = std::min((rules_.bins.range_max - ray.range) * ray.medium.speed,
-                                surface_.distance(ray.from, ray.way));
+                                surface_.distance(ray.from, ray.direction));
     if (!(begin < end)) return;
-    const glm::vec3 from(ray.from), way(ray.way);
+    const glm::vec3 from(ray.from), direction(ray.direction);
     on.from_x[i] = from.x, on.from_y[i] = from.y, on.from_z[i] = from.z;
-    on.towards.x[i] = way.x, on.towards.y[i] = way.y, on.towards.z[i] = way.z;
+    on.towards.x[i] = direction.x, on.towards.y[i] = direction.y, on.towards.z[i] = direction.z;
     on.nearest[i] = static_cast<float>(begin);
     on.farthest[i] = static_cast<float>(end);
     on.towards.active |= 1u << i;
@@ -122,11 +122,11 @@ void WallRays::send(int i, PathRays& on) const {
 double WallRays::mirrored(int i) {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     if (!run.facets || !Reverberation::isFlat(run.facets[hits_.triangle[i]])) return 0;
-    const bool from_within = rays_[static_cast<size_t>(i)].isWithin(objectOf(i));
-    const double within = from_within && wallOf(i).fill ? wallOf(i).fill->within : 1;
+    const bool from_within = rays_[static_cast<size_t>(i)].isWithin(getObject(i));
+    const double within = from_within && getWall(i).fill ? getWall(i).fill->within : 1;
     TracedTile met = tile_;
     met.hits = &hits_;
-    return std::min(scene_.meanOf(reverberation_.mirrored, view_, met, i) * within, 1.0);
+    return std::min(scene_.computeMean(reverberation_.mirrored, view_, met, i) * within, 1.0);
 }
 
 void WallRays::reflect(int i, PathRays& on) {

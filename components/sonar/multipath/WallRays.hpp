@@ -62,10 +62,10 @@ private:
         EchoTrain echoes;          ///< Echoes that return from here.
     };
 
-    const WallLaw& wallOf(int i) const { return rules_.laws.walls[scene_.ranges[hits_.command[i]].material]; }
-    uint32_t objectOf(int i) const { return scene_.commands[hits_.command[i]].object; }
-    WallRay::Surface surfaceOf(int i) const {
-        return {scene_.ranges[hits_.command[i]], hits_.triangle[i], objectOf(i), wallOf(i)};
+    const WallLaw& getWall(int i) const { return rules_.laws.walls[scene_.ranges[hits_.command[i]].material]; }
+    uint32_t getObject(int i) const { return scene_.commands[hits_.command[i]].object; }
+    WallRay::Surface getSurface(int i) const {
+        return {scene_.ranges[hits_.command[i]], hits_.triangle[i], getObject(i), getWall(i)};
     }
     void meet(int i);
     /** Continues a ray through the wall that it has hit; drops a ray that ends there. */

@@ -58,7 +58,7 @@ void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics)
 }
 
 /** Checks that properties that need straight sound paths are not combined with bent paths. */
-void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostics) {
+void checkStraightPaths(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const bool bends = config.water && config.water->profile;
     const std::string name = config.isCoherent()    ? "speckle"
                              : config.tracesPaths() ? "multipath"
@@ -83,7 +83,7 @@ void checkElementCount(const SonarConfig& config, types::Diagnostics& diagnostic
     const double wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
     const double aperture =
         acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture() * wavelength;
-    const auto [count, spacing] = config.elements->arrayOf(aperture, wavelength);
+    const auto [count, spacing] = config.elements->makeArray(aperture, wavelength);
     const double length = static_cast<double>(count) * spacing;
     if (count > 4096)
         return diagnostics.push_back(
@@ -267,7 +267,7 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     checkEffects(*this, diagnostics);
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
-    checkStraightWays(*this, diagnostics);
+    checkStraightPaths(*this, diagnostics);
     checkElements(*this, diagnostics);
     if (!diagnostics.empty()) return;
     choosesRays().value_or(true) ? checkRays(*this, diagnostics) : checkImages(*this, diagnostics);

@@ -20,7 +20,7 @@ constexpr double parts_of_resolution = 4;
 constexpr double min_shape = 0.01;
 constexpr int lowest_level = -60, highest_level = 40;
 
-acoustics::Pulse pulseOf(const RenderPlan& plan) {
+acoustics::Pulse makePulse(const RenderPlan& plan) {
     return acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound);
 }
 
@@ -42,9 +42,10 @@ double minSample(const RenderPlan& plan) {
 
 /** Returns the max width of the azimuth cells relative to the middle cell [1]. */
 double widestCell(const RenderPlan& plan) {
-    const auto widthOf = [](const Beam& cell) { return cell.high - cell.low; };
-    const double middle = widthOf(plan.cells[plan.cells.size() / 2]);
-    return plan.has(Pass::Beamform) ? widthOf(*std::ranges::max_element(plan.cells, {}, widthOf)) / middle : 1;
+    const auto computeWidth = [](const Beam& cell) { return cell.high - cell.low; };
+    const double middle = computeWidth(plan.cells[plan.cells.size() / 2]);
+    return plan.has(Pass::Beamform) ? computeWidth(*std::ranges::max_element(plan.cells, {}, computeWidth)) / middle
+                                    : 1;
 }
 
 /** Returns the number of a beam's samples that a lobe can fill: those in a circle of its slope, at eight places at
@@ -61,12 +62,12 @@ double samplesOfLobe(const RenderPlan& plan, double samples) {
 
 double beamWidth(const RenderPlan& plan) {
     if (plan.has(Pass::Beamform)) return plan.directivity->halfPowerAzimuth();
-    const auto widthOf = [](const Beam& beam) { return beam.high - beam.low; };
-    return widthOf(*std::ranges::min_element(plan.beams, {}, widthOf));
+    const auto computeWidth = [](const Beam& beam) { return beam.high - beam.low; };
+    return computeWidth(*std::ranges::min_element(plan.beams, {}, computeWidth));
 }
 
 double rangeResolution(const RenderPlan& plan) {
-    return plan.has(Pass::Pulse) ? pulseOf(plan).resolution() : plan.grid.bin_width;
+    return plan.has(Pass::Pulse) ? makePulse(plan).resolution() : plan.grid.bin_width;
 }
 
 FieldSampling fieldSampling(const RenderPlan& plan) {

@@ -11,7 +11,7 @@ namespace insonify::sonar {
 namespace {
 
 /** Returns the features that the configuration requires; effects add the rest. */
-Features featuresOf(const SonarConfig& config, const RenderOptions& options) {
+Features findFeatures(const SonarConfig& config, const RenderOptions& options) {
     Features features{config.model == Model::Physical ? Feature::Physical : Feature::Cerqueira2017};
     if (config.beam_geometry == BeamGeometry::Conical) features.add(Feature::Conical);
     if (options.estimator != Estimator::Footprint) features.add(Feature::Nearest);
@@ -65,7 +65,7 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     plan.traces_rays = !options.needImages() && config.tracesRays();
     plan.grid = makeBinGrid(config);
     plan.laws = makeMaterialLaws(config, geometry);
-    plan.features = featuresOf(config, options);
+    plan.features = findFeatures(config, options);
     plan.passes = {Pass::Cull, plan.traces_rays ? Pass::Rays : Pass::Surface, Pass::Deposit, Pass::Beams};
     plan.beams = makeBeams(config);
     if (config.beam_pattern) plan.directivity.emplace(config);
@@ -86,7 +86,7 @@ Reach reach(const RenderPlan& plan) {
     return {plan.grid.range_max, half_azimuth, half_elevation};
 }
 
-types::ReturnRules returnRulesOf(const SonarConfig& config) {
+types::ReturnRules makeReturnRules(const SonarConfig& config) {
     types::ReturnRules rules;
     rules.spreads = config.model == Model::Physical;
     rules.range_min = config.range_min;

@@ -139,7 +139,7 @@ Reach reach(const RenderPlan& plan);
 acoustics::Absorption makeAbsorption(const SonarConfig& config);
 
 /** Returns what is known of the bins of a configured sonar, for the detection of returns. */
-types::ReturnRules returnRulesOf(const SonarConfig& config);
+types::ReturnRules makeReturnRules(const SonarConfig& config);
 
 }  // namespace insonify::sonar
 

@@ -29,7 +29,7 @@ float nearest(const Culler::View& view, const ObjectRecord& object, vec3 centre,
 
 }  // namespace
 
-Culler::View Culler::viewOf(const ViewFrustum& frustum) {
+Culler::View Culler::computeView(const ViewFrustum& frustum) {
     const double cosine = std::cos(frustum.azimuth), sine = std::sin(frustum.azimuth), u = frustum.extent_u,
                  v = frustum.extent_v;
     const auto turned = [&](double x, double y, double z) {
@@ -55,7 +55,7 @@ void Culler::setRules(const CullRules& rules) {
 
 void Culler::visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges) const {
     ranges.clear();
-    const View view = viewOf(frustum);
+    const View view = computeView(frustum);
     for (size_t i = 0; i < records().size(); ++i)
         if (const uint32_t in_view = inView(view, i); in_view != NOT_IN_VIEW)
             addObject({i, view, in_view}, ranges);

@@ -43,7 +43,7 @@ public:
 
     /** Outward normals of the planes that bound a frustum's view, all through the sonar; sonar axes, of any length. */
     using View = std::array<glm::vec3, 5>;
-    static View viewOf(const ViewFrustum& frustum);
+    static View computeView(const ViewFrustum& frustum);
     /** Returns what a frustum may see of an object: NOT_IN_VIEW, IN_VIEW, FRONT_IN_VIEW or WHOLE_IN_VIEW. */
     uint32_t inView(const View& view, size_t object) const;
     float rangeMax() const { return range_max_; }

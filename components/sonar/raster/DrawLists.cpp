@@ -75,7 +75,7 @@ void ProcessorLists::add(Listed& listed, const Culler::DrawRange& range, const V
     listed.device_draws.push_back(listed.draws.back());
     listed.commands.push_back({range.object, place.first_triangle, static_cast<uint32_t>(range.material), 0});
     listed.device_commands.push_back(listed.commands.back());
-    listed.clips.push_back(clipOf(object, view));
+    listed.clips.push_back(computeClip(object, view));
     const int map = setup_.scene.withNormalMaps() ? material.normal_map : -1;
     if (setup_.scene.withNormalMaps())
         listed.normal_transforms.push_back(normalTransform(object, view, material.normal_scale));
@@ -225,7 +225,7 @@ void DeviceLists::list(size_t frustum, const ViewFrustum& frustum_view) {
     View& view = views_[frustum];
     view.objects.clear();
     view.any = false;
-    const Culler::View planes = Culler::viewOf(frustum_view);
+    const Culler::View planes = Culler::computeView(frustum_view);
     for (size_t i = 0; i < setup_.geometry.objects.size(); ++i) {
         const uint32_t in_view = setup_.culler.inView(planes, i);
         view.any = view.any || in_view != NOT_IN_VIEW;
@@ -239,7 +239,7 @@ ViewedObject DeviceLists::viewedObject(size_t object, const ViewFrustum& view, u
     viewed.in_view = in_view;
     if (in_view == NOT_IN_VIEW) return viewed;
     const ObjectRecord& record = setup_.culler.records()[object];
-    const Clip clip = clipOf(record, view);
+    const Clip clip = computeClip(record, view);
     viewed.clip_x = clip.x;
     viewed.clip_y = clip.y;
     viewed.clip_w = clip.w;
@@ -255,7 +255,7 @@ ViewedObject DeviceLists::viewedObject(size_t object, const ViewFrustum& view, u
 }
 
 void DeviceLists::setUniforms(size_t frustum, const ViewFrustum& view) const {
-    const Culler::View planes = Culler::viewOf(view);
+    const Culler::View planes = Culler::computeView(view);
     glUniform1ui(uniforms_.cluster_count, static_cast<GLuint>(commands_.size()));
     glUniform1ui(uniforms_.frustum, static_cast<GLuint>(frustum));
     glUniform1ui(uniforms_.frustum_count, static_cast<GLuint>(setup_.frusta));
@@ -321,7 +321,7 @@ Shown DeviceLists::shown() const {
 
 }  // namespace
 
-Clip clipOf(const ObjectRecord& object, const ViewFrustum& frustum) {
+Clip computeClip(const ObjectRecord& object, const ViewFrustum& frustum) {
     const glm::dvec4 x(object.row_x), y(object.row_y), z(object.row_z);
     const double cosine = std::cos(frustum.azimuth), sine = std::sin(frustum.azimuth);
     return {vec4((cosine * y - sine * x) / frustum.extent_u), vec4(z / frustum.extent_v), vec4(cosine * x + sine * y)};

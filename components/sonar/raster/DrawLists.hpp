@@ -17,7 +17,7 @@ namespace insonify::sonar {
 struct Clip {
     vec4 x, y, w;
 };
-Clip clipOf(const ObjectRecord& object, const ViewFrustum& frustum);
+Clip computeClip(const ObjectRecord& object, const ViewFrustum& frustum);
 
 /** Transform for a normal map, for normals and for tangents: rows of the matrices from object axes to the frustum's (x
  *  into the picture, y to port, z up). The first row's w is the scale of the map. */

@@ -118,7 +118,7 @@ private:
             const PlacedRun& run = part_.picture.ranges[texel[0] - 1];
             cells_.setPlane(i, run, texel[1]);
             if (part_.picture.channels == 4) cells_.mapped[i] = static_cast<double>(std::bit_cast<float>(texel[2]));
-            if (deposit_.to().truth) cells_.object[i] = Cells::objectOf(part_.picture.objects[texel[0] - 1], texel[1]);
+            if (deposit_.to().truth) cells_.object[i] = Cells::getObject(part_.picture.objects[texel[0] - 1], texel[1]);
             cells_.hits[i] = 1;
         }
         cells_.beam[i] = static_cast<int>(share.beam);
@@ -176,7 +176,7 @@ void depositPicture(const PicturePart& part, const EchoSums& to) { PictureCells(
 namespace {
 
 /** Returns a number as the sum of two floats: its float, and the rest. */
-vec2 pairOf(double number) {
+vec2 readPair(double number) {
     constexpr double maximum = std::numeric_limits<float>::max();
     const double held = std::clamp(number, -maximum, maximum);
     const auto high = static_cast<float>(held);
@@ -187,7 +187,7 @@ vec2 pairOf(double number) {
 std::vector<float> deviceEdges(const EchoRules& rules) {
     std::vector<float> numbers;
     for (int k = 0; k <= rules.bins.bin_count; ++k) {
-        const vec2 edge = pairOf(k == 0 ? rules.edges.front() : 1 / rules.bins.edge(k));
+        const vec2 edge = readPair(k == 0 ? rules.edges.front() : 1 / rules.bins.edge(k));
         numbers.insert(numbers.end(), {edge.x, edge.y});
     }
     return numbers;
@@ -196,13 +196,13 @@ std::vector<float> deviceEdges(const EchoRules& rules) {
 std::vector<DeviceShare> deviceShares(const std::vector<ShareRecord>& shares) {
     std::vector<DeviceShare> all;
     for (const ShareRecord& share : shares)
-        all.push_back({pairOf(share.middle), pairOf(share.limit), static_cast<float>(share.width),
+        all.push_back({readPair(share.middle), readPair(share.limit), static_cast<float>(share.width),
                        static_cast<float>(share.shear), share.beam, 0});
     return all;
 }
 
 void setPair(GLint place, double number) {
-    const vec2 pair = pairOf(number);
+    const vec2 pair = readPair(number);
     glUniform2f(place, pair.x, pair.y);
 }
 

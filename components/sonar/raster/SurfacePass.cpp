@@ -214,14 +214,14 @@ void SurfacePass::onEachPart(const auto& job) {
 
 void SurfacePass::makePart(size_t part) {
     if (part > 0) parts_[part].own.emplace(gpu::EglContext::Sharing{context_});
-    parts_[part].painter.emplace(scene_, setup_.defines, setup_.near_plane, contextOf(part));
+    parts_[part].painter.emplace(scene_, setup_.defines, setup_.near_plane, getContext(part));
     makePictures(part);
 }
 
 void SurfacePass::makePictures(size_t part) {
     for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size())
         pictures_[frustum] =
-            std::make_unique<VisibilityBuffer>(setup_.frusta[frustum], hasNormalMaps(setup_), contextOf(part));
+            std::make_unique<VisibilityBuffer>(setup_.frusta[frustum], hasNormalMaps(setup_), getContext(part));
 }
 
 void SurfacePass::updateShape(uint32_t object) {

@@ -120,7 +120,7 @@ private:
         std::optional<gpu::EglContext> own;  ///< Context of a thread; the first thread uses the renderer's.
         std::optional<SurfacePainter> painter;
     };
-    gpu::EglContext& contextOf(size_t part) { return parts_[part].own ? *parts_[part].own : context_; }
+    gpu::EglContext& getContext(size_t part) { return parts_[part].own ? *parts_[part].own : context_; }
     void release();
     void makePart(size_t part);
     void makePictures(size_t part);

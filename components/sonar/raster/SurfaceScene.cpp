@@ -93,7 +93,7 @@ gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_
 SurfaceScene::SurfaceScene(const types::Geometry& geometry, const MaterialLaws& laws, bool with_normal_maps)
     : with_normal_maps_(with_normal_maps),
       laws_{laws.records, laws.wavelength, laws.sharp_turn},
-      plane_list_(planesOf(geometry)),
+      plane_list_(extractPlanes(geometry)),
       facet_list_(facetLobes(geometry, laws)),
       materials_(uploaded(laws.records)) {
     uploadVertices(geometry);
@@ -139,13 +139,13 @@ void SurfaceScene::updateLaws(const types::Geometry& geometry, const MaterialLaw
     triangles_ = {};
 }
 
-size_t SurfaceScene::endOf(size_t mesh) const {
+size_t SurfaceScene::findEnd(size_t mesh) const {
     return mesh + 1 < places_.size() ? places_[mesh + 1].first_triangle : plane_list_.size();
 }
 
 void SurfaceScene::updateShape(const types::Geometry& geometry, const MaterialLaws& laws, size_t mesh) {
     const size_t first = places_[mesh].first_triangle;
-    findPlanes(geometry.meshes[mesh], std::span(plane_list_).subspan(first, endOf(mesh) - first));
+    findPlanes(geometry.meshes[mesh], std::span(plane_list_).subspan(first, findEnd(mesh) - first));
     if (facet_list_.empty()) return;
     const auto facets = MeshFacts::facetsNow(geometry.meshes[mesh], worldFromMesh(geometry, mesh), laws);
     if (facets) std::ranges::copy(*facets, facet_list_.begin() + static_cast<std::ptrdiff_t>(first));
@@ -153,7 +153,7 @@ void SurfaceScene::updateShape(const types::Geometry& geometry, const MaterialLa
 
 void SurfaceScene::uploadShape(const types::Mesh& mesh, size_t number) {
     const size_t vertex = places_[number].first_vertex, first = places_[number].first_triangle;
-    const size_t count = endOf(number) - first;
+    const size_t count = findEnd(number) - first;
     rewrite(positions_, mesh.positions, sources_[number], vertex);
     if (with_normal_maps_) {
         rewrite(normals_, mesh.normals, sources_[number], vertex);

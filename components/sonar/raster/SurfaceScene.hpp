@@ -45,7 +45,7 @@ private:
     void uploadNormalMaps(const types::Geometry& geometry);
 
     /** Returns the number of the first triangle behind a mesh. */
-    size_t endOf(size_t mesh) const;
+    size_t findEnd(size_t mesh) const;
 
     /** The part of the laws that facets and materials depend on. */
     struct UsedLaws {

@@ -48,7 +48,7 @@ double weightedBetween(const Directivity& directivity, double low, double high) 
     return sum * step / 6;
 }
 
-std::vector<AngularView::Elevation> elevationsOf(const RenderPlan& plan) {
+std::vector<AngularView::Elevation> computeElevations(const RenderPlan& plan) {
     const double half = types::radians(plan.sampled.beam_height_deg) / 2;
     const bool weighted = plan.features.has(Feature::ElevationPattern);
     const std::vector<double> edges =
@@ -81,7 +81,7 @@ int maxMerged(const AngularView& view, const BinGrid& bins) {
 
 }  // namespace
 
-AngularView::Direction AngularView::azimuthOf(double bearing, const Elevation& up) {
+AngularView::Direction AngularView::computeAzimuth(double bearing, const Elevation& up) {
     const double azimuth = coneAzimuth(bearing, up.angle);
     return {std::cos(azimuth), std::sin(azimuth)};
 }
@@ -95,10 +95,10 @@ AngularView makeAngularView(const RenderPlan& plan) {
     view.joined = beams.joins();
     view.rows = config.rows();
     view.conical = config.beam_geometry == BeamGeometry::Conical;
-    const auto widthOf = [](const Beam& beam) { return beam.high - beam.low; };
-    view.column_width = widthOf(beams[beams.size() / 2]) / view.beam_columns;
+    const auto computeWidth = [](const Beam& beam) { return beam.high - beam.low; };
+    view.column_width = computeWidth(beams[beams.size() / 2]) / view.beam_columns;
     view.weighted = plan.features.has(Feature::ElevationPattern);
-    view.elevations = elevationsOf(plan);
+    view.elevations = computeElevations(plan);
     view.row_height = 0;
     for (size_t row = 0; row < static_cast<size_t>(view.rows); ++row)
         view.row_height = std::max(view.row_height, view.height(row, 1));

@@ -43,11 +43,11 @@ struct AngularView {
     glm::dvec3 direction(int column, int row) const {
         const size_t middle = at(column) + 1;
         const Elevation& up = elevations[static_cast<size_t>(2 * row + 1)];
-        const Direction around = conical ? azimuthOf(bearings[middle], up) : azimuths[middle];
+        const Direction around = conical ? computeAzimuth(bearings[middle], up) : azimuths[middle];
         return {up.cosine * around.cosine, up.cosine * around.sine, up.sine};
     }
     /** Returns the azimuth where a cone of this bearing meets an elevation. */
-    static Direction azimuthOf(double bearing, const Elevation& up);
+    static Direction computeAzimuth(double bearing, const Elevation& up);
     /** Returns the height of `count` rows from `row` [rad]. */
     double height(size_t row, size_t count) const {
         return elevations[2 * (row + count)].angle - elevations[2 * row].angle;

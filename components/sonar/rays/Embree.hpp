@@ -48,7 +48,7 @@ inline void occlude(RTCScene scene, const int* valid, bool are_coherent, RTCRay1
 
 #else
 
-inline RTCIntersectContext contextOf(bool are_coherent) {
+inline RTCIntersectContext getContext(bool are_coherent) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = are_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
@@ -58,14 +58,14 @@ inline RTCIntersectContext contextOf(bool are_coherent) {
 /** Finds the first hits of 16 rays. `valid`: -1 for active rays, aligned to 64 bytes. */
 inline void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
     flushDirections(rays.ray);
-    RTCIntersectContext context = contextOf(true);
+    RTCIntersectContext context = getContext(true);
     rtcIntersect16(valid, scene, &context, &rays);
 }
 
 /** Finds the first hits of packets whose rays are all active; a ray whose tfar is below its tnear hits nothing. */
 inline void intersect(RTCScene scene, std::span<RTCRayHit16> packets) {
     for (RTCRayHit16& rays : packets) flushDirections(rays.ray);
-    RTCIntersectContext context = contextOf(true);
+    RTCIntersectContext context = getContext(true);
     rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(packets.data()), 16,
                    static_cast<unsigned>(packets.size()), sizeof(RTCRayHit16));
 }
@@ -73,7 +73,7 @@ inline void intersect(RTCScene scene, std::span<RTCRayHit16> packets) {
 /** Sets tfar of each ray that hits anything to -infinity. */
 inline void occlude(RTCScene scene, const int* valid, bool are_coherent, RTCRay16& rays) {
     flushDirections(rays);
-    RTCIntersectContext context = contextOf(are_coherent);
+    RTCIntersectContext context = getContext(are_coherent);
     rtcOccluded16(valid, scene, &context, &rays);
 }
 

@@ -23,7 +23,7 @@ void appendScaled(const uint8_t* rgb, float scale, std::vector<uint8_t>& texels)
 }
 
 /** Returns the level of a map that is nearest to log2 of the texels that a sample covers. */
-int levelOf(float covered) {
+int computeLevel(float covered) {
     const float root_2 = 1.41421356f, bounded = covered > 1 ? (covered < 1e30f ? covered : 1e30f) : 1.0f;
     return (std::bit_cast<int32_t>(bounded * root_2) >> 23) - 127;
 }
@@ -67,10 +67,10 @@ std::shared_ptr<const NormalMapping::Map> NormalMapping::sharedMap(
     const std::shared_ptr<const types::NormalMap>& source, float scale) {
     static auto& all = *new SharedValues<std::pair<const types::NormalMap*, float>,
                                          const Map>;  // threads may use it until the process ends
-    return all.of({source.get(), scale}, [&] { return std::make_shared<const Map>(mapOf(source, scale)); });
+    return all.of({source.get(), scale}, [&] { return std::make_shared<const Map>(makeMap(source, scale)); });
 }
 
-NormalMapping::Map NormalMapping::mapOf(std::shared_ptr<const types::NormalMap> source, float scale) {
+NormalMapping::Map NormalMapping::makeMap(std::shared_ptr<const types::NormalMap> source, float scale) {
     const types::NormalMap& map = *source;
     Map result{std::move(source), map.repeat_u, map.repeat_v, {}};
     Level level{map.width, map.height, {}};
@@ -159,7 +159,7 @@ void NormalMapping::lookUp(const Map& map, int count, const Frames& frames, Lean
     alignas(64) uint32_t rgb[4][max_samples];
     const auto coarsest = static_cast<int>(map.levels.size()) - 1;
     for (int i = 0; i < count; ++i) {
-        const Level& level = map.levels[static_cast<size_t>(std::min(levelOf(frames.covered[i]), coarsest))];
+        const Level& level = map.levels[static_cast<size_t>(std::min(computeLevel(frames.covered[i]), coarsest))];
         texels[i] = level.texels.data();
         width[i] = static_cast<float>(level.width), height[i] = static_cast<float>(level.height);
     }
@@ -205,7 +205,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void NormalMapping::cosines(cons
         const float facing = nx * samples.x[i] + ny * samples.y[i] + nz * samples.z[i];
         const float along = x * samples.x[i] + y * samples.y[i] + z * samples.z[i];
         // A mean of several unit normals is shorter than 1: its product is the mean of their cosines.
-        const float length = levelOf(frames.covered[i]) == 0 ? std::sqrt(x * x + y * y + z * z) : 1.0f;
+        const float length = computeLevel(frames.covered[i]) == 0 ? std::sqrt(x * x + y * y + z * z) : 1.0f;
         const float towards = (facing < 0 ? -along : along) / length;
         cosine[i] = towards > 1e-6f ? static_cast<double>(towards) : 1e-6;  // also where there is no frame
     }

@@ -45,7 +45,7 @@ private:
         bool repeat_u, repeat_v;
         std::vector<Level> levels;
     };
-    static Map mapOf(std::shared_ptr<const types::NormalMap> source, float scale);
+    static Map makeMap(std::shared_ptr<const types::NormalMap> source, float scale);
     /** Returns the map; all callers with the same map and scale share it. */
     static std::shared_ptr<const Map> sharedMap(const std::shared_ptr<const types::NormalMap>& source, float scale);
     /** Frames and map coordinates of samples. */

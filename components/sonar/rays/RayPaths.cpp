@@ -26,7 +26,7 @@ double cornerSpacing(const acoustics::SoundProfile& profile, const BinGrid& grid
 }
 
 /** Returns a unit vector normal to a direction. */
-glm::dvec3 acrossOf(const glm::dvec3& direction) {
+glm::dvec3 computeAcross(const glm::dvec3& direction) {
     const glm::dvec3 up = std::abs(direction.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
     return glm::normalize(glm::cross(up, direction));
 }
@@ -212,8 +212,8 @@ double RayPaths::nearLimit(double inverse_distance) const {
     return range > 1e-6 ? 1 / range : 1e6;
 }
 
-double RayPaths::rangeOf(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
-                         const Drift* drift) const {
+double RayPaths::computeRange(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
+                              const Drift* drift) const {
     constexpr int steps = 3;
     double range = near;
     for (int i = 0; i < steps; ++i) {
@@ -229,8 +229,8 @@ double RayPaths::rangeOf(const glm::dvec3& normal, double distance, const glm::d
 
 ApparentPlane RayPaths::apparent(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
                                  const Drift* drift) const {
-    const double range = rangeOf(normal, distance, direction, near, drift);
-    const glm::dvec3 across = acrossOf(direction), upward = glm::cross(direction, across);
+    const double range = computeRange(normal, distance, direction, near, drift);
+    const glm::dvec3 across = computeAcross(direction), upward = glm::cross(direction, across);
     const double angle = table_ ? table_->elevationStep() : 1e-3, length = 1e-3 * range;
     const auto turned = [&](const glm::dvec3& aside) {
         const auto to = [&](double by) { return at(glm::normalize(direction + by * aside), range, drift); };

@@ -109,8 +109,8 @@ public:
     /** Returns the motion of an object in this ping; null where it is at rest. */
     const Drift* drift(uint32_t object) const { return moves_ ? motion_->drift(object) : nullptr; }
     /** Returns the motion of one triangle of an object; fills `own` if the object deforms. */
-    const Drift* driftOf(uint32_t object, uint32_t triangle, Drift& own) const {
-        return moves_ ? motion_->driftOf(object, triangle, own) : nullptr;
+    const Drift* findDrift(uint32_t object, uint32_t triangle, Drift& own) const {
+        return moves_ ? motion_->findDrift(object, triangle, own) : nullptr;
     }
     /** Returns where an echo from a unit direction at a slant range [m] was returned: its place about the sonar when
      *  the pulse was sent [m]. `drift`: motion of its object. */
@@ -132,8 +132,8 @@ private:
     void placeCorners();
     /** Returns where a point that moves by `drift` was when the pulse was sent, over straight rays [m]. */
     glm::dvec3 movedBy(const glm::dvec3& direction, double range, const Drift* drift) const;
-    double rangeOf(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
-                   const Drift* drift) const;
+    double computeRange(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
+                        const Drift* drift) const;
 
     const RenderPlan& plan_;
     std::optional<RayTable> table_;

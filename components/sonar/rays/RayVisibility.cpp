@@ -29,7 +29,7 @@ constexpr size_t max_copied = 4'000'000;
 /** Returns the number of the lattice of scatterers of each object. It follows from the object's name alone, so that the
  *  speckle of an object does not change with the order or number of the others. The tiles of a survey, which share a
  *  name and a place, share a lattice. Other objects of one name, which no file has, are numbered in their order. */
-std::vector<uint32_t> latticesOf(const types::Geometry& geometry) {
+std::vector<uint32_t> makeLattices(const types::Geometry& geometry) {
     std::map<std::string, std::vector<size_t>> namesakes;  // the first object of each lattice of a name
     std::vector<uint32_t> lattices;
     for (size_t i = 0; i < geometry.objects.size(); ++i) {
@@ -151,7 +151,7 @@ void take(const RTCRayHit16& all, TileHits& hits, const auto& meaning) {
 using Places = std::array<glm::vec3, tile_samples>;
 
 /** Returns the places of a tile's rays at one range, for an object that moves by `drift`. */
-Places placesOf(const RayPaths& paths, const TileRays& rays, double range, const Drift* drift = nullptr) {
+Places getPlaces(const RayPaths& paths, const TileRays& rays, double range, const Drift* drift = nullptr) {
     Places places;
     for (int i = 0; i < tile_samples; ++i)
         places[static_cast<size_t>(i)] =
@@ -282,7 +282,7 @@ void RayVisibility::listCommands() {
         first_plane.push_back(planes);
         planes += static_cast<uint32_t>(mesh.indices.size() / 3);
     }
-    const std::vector<uint32_t> lattices = latticesOf(*geometry_);
+    const std::vector<uint32_t> lattices = makeLattices(*geometry_);
     for (size_t i = 0; i < geometry_->objects.size(); ++i) {
         first_command_.push_back(static_cast<uint32_t>(commands_.size()));
         const auto mesh = static_cast<size_t>(geometry_->objects[i].mesh);
@@ -453,7 +453,7 @@ void RayVisibility::traceAlong(const RayPaths& paths, const TileRays& rays, Tile
     Piece piece{};
     for (size_t k = 1; k < corners.size() && left.active; ++k) {
         const double start = corners[k - 1], length = corners[k] - start;
-        piece = {start, corners[k], piece.to, placesOf(paths, rays, corners[k])};
+        piece = {start, corners[k], piece.to, getPlaces(paths, rays, corners[k])};
         RTCRayHit16 all;
         extend(left, k == 1 ? static_cast<float>(nearest / length) : 0, all);
         for (float& end : all.ray.tfar) end = std::min(end, 1.0f);
@@ -477,8 +477,8 @@ void RayVisibility::tracePiece(const RayPaths& paths, const TileRays& rays, cons
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         if (const Drift* drift = paths.drift(mover.object))
-            direct(Rows(mover.from_sonar), mover.place, placesOf(paths, rays, piece.start, drift),
-                   placesOf(paths, rays, piece.end, drift), all);
+            direct(Rows(mover.from_sonar), mover.place, getPlaces(paths, rays, piece.start, drift),
+                   getPlaces(paths, rays, piece.end, drift), all);
         else
             direct(Rows(mover.from_sonar), mover.place, piece.from, piece.to, all);
         intersect(mover.tree, valid, all);
@@ -491,8 +491,8 @@ void RayVisibility::tracePieceAtDeforming(const RayPaths& paths, const TileRays&
                                           const int* valid, RTCRayHit16& all, TileHits& hits) const {
     for (size_t i = 0; i < deforming_.size(); ++i) {
         if (const Drift* drift = paths.drift(deforming_.object(i)))
-            direct(Rows(world_from_sonar_), place_, placesOf(paths, rays, piece.start, drift),
-                   placesOf(paths, rays, piece.end, drift), all);
+            direct(Rows(world_from_sonar_), place_, getPlaces(paths, rays, piece.start, drift),
+                   getPlaces(paths, rays, piece.end, drift), all);
         else
             direct(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
         intersect(deforming_.scene(i), valid, all);

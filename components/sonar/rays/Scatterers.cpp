@@ -67,7 +67,7 @@ namespace {
  *  cube for shape + 1 (1931), and a power of a uniform number to get from there to `shape`. */
 float gammaStrength(float shape, uint32_t bits) {
     const float next = shape + 1;
-    const float normal = std::sqrt(-2 * logarithm(uniform(bits >> 16))) * cosineOf(uniform(bits) - 0.5f);
+    const float normal = std::sqrt(-2 * logarithm(uniform(bits >> 16))) * computeCosine(uniform(bits) - 0.5f);
     const float root = std::max(0.0f, 1 - 1 / (9 * next) + normal / (3 * std::sqrt(next)));
     const float chance = uniform(mixed(bits + 0x9e3779b9u));
     return next / shape * root * root * root * std::exp(logarithm(chance) / shape);
@@ -124,8 +124,8 @@ INSONIFY_VECTOR_CLONES void radiate(int count, LatticeScatterers& __restrict sca
         const float field = scatterers.size[i] * std::sqrt(-logarithm(uniform(power)));
         const float phase = scatterers.turns[i] + uniform(power >> 16);
         const float turns = phase - nearest(phase);
-        scatterers.real[i] = field * cosineOf(turns);
-        scatterers.imaginary[i] = field * sineOf(turns);
+        scatterers.real[i] = field * computeCosine(turns);
+        scatterers.imaginary[i] = field * computeSine(turns);
     }
 }
 
@@ -277,8 +277,8 @@ double inverseRange(const Patch& patch, const glm::dvec3& direction) {
     return glm::dot(patch.normal, direction) / patch.distance;
 }
 
-PatchOutline outlineOf(const Patch& patch, const PatchLattice& lattice, const glm::dvec2& base, double spacing,
-                       double near, double far) {
+PatchOutline makeOutline(const Patch& patch, const PatchLattice& lattice, const glm::dvec2& base, double spacing,
+                         double near, double far) {
     const glm::dvec3 middle = patch.middle * lattice.range;
     const double per_spacing = 1 / spacing;
     const glm::dvec2 at = lattice.middle * per_spacing - base;
@@ -298,8 +298,8 @@ PatchOutline outlineOf(const Patch& patch, const PatchLattice& lattice, const gl
 }
 
 /** Returns the component in a direction of a point at `at`, and of u and v along their axes. */
-LatticePatch::Plane planeOf(const glm::dvec3& direction, const glm::dvec3& at, const glm::dvec3& along_u,
-                            const glm::dvec3& along_v) {
+LatticePatch::Plane makePlane(const glm::dvec3& direction, const glm::dvec3& at, const glm::dvec3& along_u,
+                              const glm::dvec3& along_v) {
     const auto part = [&](const glm::dvec3& of) { return static_cast<float>(glm::dot(direction, of)); };
     return {part(at), part(along_u), part(along_v)};
 }
@@ -315,14 +315,14 @@ void setSamples(const EchoRules& rules, const Patch& patch, LatticePatch& part) 
         part.next_sums[k] = static_cast<int32_t>(patch.beams[k + 1] - patch.beams[k]) * sums;
 }
 
-LatticePatch partOf(const EchoRules& rules, const Patch& patch, const PatchLattice& lattice, const glm::dvec2& base,
-                    const LatticeLevel& level) {
+LatticePatch getPart(const EchoRules& rules, const Patch& patch, const PatchLattice& lattice, const glm::dvec2& base,
+                     const LatticeLevel& level) {
     const glm::dvec3 at = lattice.range * patch.middle, along_u = level.spacing * lattice.along[0],
                      along_v = level.spacing * lattice.along[1];
     LatticePatch part{};
     part.key = mixed(patch.number * 6 + lattice.side + mixed(level.number + 1));
-    part.base_u = squareOf(base.x);
-    part.base_v = squareOf(base.y);
+    part.base_u = makeSquare(base.x);
+    part.base_v = makeSquare(base.y);
     part.middle_u = static_cast<float>(lattice.middle.x / level.spacing - base.x);
     part.middle_v = static_cast<float>(lattice.middle.y / level.spacing - base.y);
     part.range = static_cast<float>(lattice.range);
@@ -332,12 +332,12 @@ LatticePatch partOf(const EchoRules& rules, const Patch& patch, const PatchLatti
     part.square_uv = static_cast<float>(2 * glm::dot(along_u, along_v));
     part.square_vv = static_cast<float>(glm::dot(along_v, along_v));
     const AngularView::Direction towards = patch.conical ? AngularView::Direction{1, 0} : patch.bearing;
-    part.height = planeOf({0, 0, 1}, at, along_u, along_v);
-    part.aside = planeOf({-towards.sine, towards.cosine, 0}, at, along_u, along_v);
+    part.height = makePlane({0, 0, 1}, at, along_u, along_v);
+    part.aside = makePlane({-towards.sine, towards.cosine, 0}, at, along_u, along_v);
     if (patch.conical)
         part.ahead_per_range = 1;
     else
-        part.ahead = planeOf({towards.cosine, towards.sine, 0}, at, along_u, along_v);
+        part.ahead = makePlane({towards.cosine, towards.sine, 0}, at, along_u, along_v);
     setSamples(rules, patch, part);
     const double turns = rules.turns_per_metre * lattice.range;
     part.turns = static_cast<float>(turns - std::floor(turns));
@@ -378,7 +378,7 @@ PatchLattice::PatchLattice(const Patch& patch, const LatticeFrame& frame) {
 }
 
 /** Returns the slant ranges that a patch may reach: 1/r on a plane is a linear function of the direction. */
-Scatterers::Ranges Scatterers::rangesOf(const Patch& patch) const {
+Scatterers::Ranges Scatterers::computeRanges(const Patch& patch) const {
     const double nearest_inverse = glm::length(patch.normal) / std::abs(patch.distance);
     const double bulge = nearest_inverse * (patch.width * patch.width + patch.height * patch.height) / 8;
     double low = inverseRange(patch, patch.middle), high = low;
@@ -393,7 +393,7 @@ Scatterers::Ranges Scatterers::rangesOf(const Patch& patch) const {
 
 void Scatterers::deposit(const Patch& patch) {
     if (!(patch.strength_range > 0)) return;
-    const Ranges all = rangesOf(patch);
+    const Ranges all = computeRanges(patch);
     if (!(all.near < all.far)) return;
     if (frame_of_ != &patch.object) {
         frame_ = LatticeFrame(patch.object);
@@ -413,10 +413,10 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void Scatterers::depositLevel(co
                                                                               const LatticeLevel& level,
                                                                               const Ranges& ranges) {
     const glm::dvec2 base = glm::floor(lattice.middle / level.spacing);
-    LatticePatch part = partOf(rules_, patch, lattice, base, level);
+    LatticePatch part = getPart(rules_, patch, lattice, base, level);
     part.near_end = static_cast<float>(ranges.near - lattice.range);
     part.far_end = static_cast<float>(ranges.far - lattice.range);
-    const OutlineRows rows(outlineOf(patch, lattice, base, level.spacing, ranges.near, ranges.far));
+    const OutlineRows rows(makeOutline(patch, lattice, base, level.spacing, ranges.near, ranges.far));
     int32_t* const across = rows.isAlong(1) ? squares_.u : squares_.v;
     int32_t* const up = rows.isAlong(1) ? squares_.v : squares_.u;
     OutlineRows::Ends ends;

@@ -82,7 +82,7 @@ private:
     struct Ranges {
         double near, far;
     };
-    Ranges rangesOf(const Patch& patch) const;
+    Ranges computeRanges(const Patch& patch) const;
     void depositLevel(const Patch& patch, const PatchLattice& lattice, const LatticeLevel& level, const Ranges& ranges);
     /** Adds the fields of the first squares. */
     void add(const LatticePatch& part, const LatticeLevel& level, int count);

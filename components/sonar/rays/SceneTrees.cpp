@@ -28,7 +28,7 @@ RTCDevice sharedDevice() {
 thread_local size_t built_by_this_thread = 0;
 
 /** Returns numbers that are equal for equal objects. */
-std::vector<uint64_t> keyOf(const std::vector<TreeObject>& objects) {
+std::vector<uint64_t> makeKey(const std::vector<TreeObject>& objects) {
     std::vector<uint64_t> key;
     key.reserve(18 * objects.size());
     for (const TreeObject& object : objects) {
@@ -137,7 +137,7 @@ const EmbreeScene& MeshTree::tree() {
 std::shared_ptr<StillTree> StillTree::of(const std::vector<TreeObject>& objects) {
     static auto& all =
         *new SharedValues<std::vector<uint64_t>, StillTree>;  // threads may use it until the process ends
-    return all.of(keyOf(objects), [&] { return std::make_shared<StillTree>(objects); });
+    return all.of(makeKey(objects), [&] { return std::make_shared<StillTree>(objects); });
 }
 
 const EmbreeScene& StillTree::tree(const std::atomic<bool>* quits) {
@@ -312,7 +312,7 @@ struct MeshData {
     MeshFacts::Curves curves;
 };
 
-std::shared_ptr<const MeshData> dataOf(const types::MeshPtr& mesh, const MaterialLaws& laws) {
+std::shared_ptr<const MeshData> getData(const types::MeshPtr& mesh, const MaterialLaws& laws) {
     MeshData data{mesh, MeshTree::of(mesh), MeshFacts::of(mesh), {}, {}, {}};
     data.tree->tree();
     data.facts->box();
@@ -334,7 +334,7 @@ void MeshesAhead::take(const Meshes& meshes, const MaterialLaws& laws) {
     if (meshes)
         for (const types::MeshPtr& mesh : *meshes)
             items.push_back({{static_cast<int64_t>(reinterpret_cast<intptr_t>(mesh.get()))},
-                             [mesh, shared_laws](const std::atomic<bool>&) { return dataOf(mesh, *shared_laws); }});
+                             [mesh, shared_laws](const std::atomic<bool>&) { return getData(mesh, *shared_laws); }});
     ahead_.take(std::move(items));
 }
 

@@ -175,14 +175,14 @@ MapLevels::Look SurfaceMapping::look(const TracedView& view, const PlacedScene& 
         {uv + u * uv_b + v * uv_c, inMap(range * height / cosine * ahead), inMap(range * width * aside)});
 }
 
-double PlacedScene::meanOf(std::span<const double> property, const TracedView& view, const TracedTile& tile,
-                           int i) const {
+double PlacedScene::computeMean(std::span<const double> property, const TracedView& view, const TracedTile& tile,
+                                int i) const {
     const uint32_t command = tile.hits->command[i];
     if (!maps) return property[commands[command].material];
     const MapLevels::Look look = maps->look(view, *this, tile, i);
     double sum = 0;
-    for (size_t k = 0; k <= maps->classesOf(command); ++k)
-        sum += static_cast<double>(look.shares[k]) * property[commands[maps->commandOf(command, k)].material];
+    for (size_t k = 0; k <= maps->getClasses(command); ++k)
+        sum += static_cast<double>(look.shares[k]) * property[commands[maps->getCommand(command, k)].material];
     return static_cast<double>(look.strength) * sum;
 }
 
@@ -199,16 +199,16 @@ struct Seen {
 size_t split(const SurfaceMapping& maps, uint32_t command, const MapLevels::Look& look, float min_share,
              std::span<Seen> seen) {
     std::array<std::pair<float, size_t>, MapLevels::max_classes + 1> shares;
-    const size_t count = maps.classesOf(command) + 1;
+    const size_t count = maps.getClasses(command) + 1;
     for (size_t k = 0; k < count; ++k) shares[k] = {look.shares[k], k};
     std::sort(shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(count), std::greater<>());
     float rest = 1;
     size_t found = 1;
     for (; found < std::min(count, seen.size()) && shares[found].first >= min_share; ++found) {
-        seen[found] = {maps.commandOf(command, shares[found].second), look.strength * shares[found].first};
+        seen[found] = {maps.getCommand(command, shares[found].second), look.strength * shares[found].first};
         rest -= shares[found].first;
     }
-    seen[0] = {maps.commandOf(command, shares[0].second), look.strength * rest};
+    seen[0] = {maps.getCommand(command, shares[0].second), look.strength * rest};
     return found;
 }
 
@@ -218,9 +218,9 @@ Seen choose(const SurfaceMapping& maps, uint32_t command, const MapLevels::Look&
     constexpr int reversed[tile_samples] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
     float left = (static_cast<float>(reversed[i]) + 0.5f) / tile_samples;
     size_t chosen = 0;
-    for (const size_t count = maps.classesOf(command); chosen < count && left >= look.shares[chosen]; ++chosen)
+    for (const size_t count = maps.getClasses(command); chosen < count && left >= look.shares[chosen]; ++chosen)
         left -= look.shares[chosen];
-    return {maps.commandOf(command, chosen), look.strength};
+    return {maps.getCommand(command, chosen), look.strength};
 }
 
 }  // namespace

@@ -65,10 +65,10 @@ public:
      *  whichever path sound took. */
     MapLevels::Look look(const TracedView& view, const PlacedScene& scene, const TracedTile& tile, int i) const;
     /** Returns the command of a class of a command with a map; the command itself for 0, its own material. */
-    uint32_t commandOf(uint32_t command, size_t class_number) const {
+    uint32_t getCommand(uint32_t command, size_t class_number) const {
         return class_number == 0 ? command : first_class_[command] + static_cast<uint32_t>(class_number) - 1;
     }
-    size_t classesOf(uint32_t command) const {
+    size_t getClasses(uint32_t command) const {
         return of_command_[command] ? of_command_[command]->materials().size() : 0;
     }
 

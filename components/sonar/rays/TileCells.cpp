@@ -85,10 +85,10 @@ private:
         if (scene_.paths) {
             Drift own;
             bend(static_cast<double>(tile.hits->range[sample]),
-                 scene_.paths->driftOf(object, tile.hits->triangle[sample], own));
+                 scene_.paths->findDrift(object, tile.hits->triangle[sample], own));
         }
         if (deposit_.to().truth) {
-            cells_.object[i] = Cells::objectOf(object | tile.path, tile.hits->triangle[sample]);
+            cells_.object[i] = Cells::getObject(object | tile.path, tile.hits->triangle[sample]);
             cells_.hits[i] = static_cast<uint32_t>(merged);
         }
         if (++cells_.count == Cells::capacity) finish();

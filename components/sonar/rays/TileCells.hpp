@@ -34,7 +34,7 @@ struct PlacedScene {
 
     /** Returns the mean of a property of materials over the surface that sample `i` of a tile has hit, times the factor
      *  of its echo by maps. */
-    double meanOf(std::span<const double> property, const TracedView& view, const TracedTile& tile, int i) const;
+    double computeMean(std::span<const double> property, const TracedView& view, const TracedTile& tile, int i) const;
 };
 
 /** A traced tile: its place in the view and its hits. */

@@ -46,7 +46,7 @@ public:
             for (int i = 0; i < tile_samples; ++i)
                 same |= static_cast<uint32_t>((command_[i] == command_[first]) & (triangle_[i] == triangle_[first]))
                         << i;
-            same = tile.apparent ? 1u << first : partOf(tile, same & met);
+            same = tile.apparent ? 1u << first : getPart(tile, same & met);
             addPatch(tile, same);
             met &= ~same;
         }
@@ -58,14 +58,14 @@ public:
         deposit_.cover();
         for (int i = 0; i < cells_.count; ++i)
             if (deposit_.covered.pixel[i] > 0 && cells_.width[i] > 0)  // no direction beyond a cone's end
-                fields_.deposit(patchOf(i));
+                fields_.deposit(makePatch(i));
         deposit_.finish();
     }
 
 private:
     /** Samples are numbered row by row here: bit all.columns * row + column. */
-    int columnOf(int place) const { return place & (shape_.all.columns - 1); }
-    int rowOf(int place) const { return place >> column_bits_; }
+    int getColumn(int place) const { return place & (shape_.all.columns - 1); }
+    int getRow(int place) const { return place >> column_bits_; }
     uint32_t bits(int column, int columns, int row, int rows) const {
         uint32_t all = 0;
         for (int up = row; up < row + rows; ++up) all |= ((1u << columns) - 1) << (up * shape_.all.columns + column);
@@ -75,21 +75,21 @@ private:
         uint32_t columns = 0;
         for (uint32_t left = samples; left != 0; left >>= shape_.all.columns) columns |= left;
         columns &= (1u << shape_.all.columns) - 1;
-        const int column = std::countr_zero(columns), row = rowOf(std::countr_zero(samples));
+        const int column = std::countr_zero(columns), row = getRow(std::countr_zero(samples));
         return {view_, tile.first_column + column, static_cast<int>(std::bit_width(columns)) - column,
-                tile.first_row + row, rowOf(static_cast<int>(std::bit_width(samples)) - 1) - row + 1};
+                tile.first_row + row, getRow(static_cast<int>(std::bit_width(samples)) - 1) - row + 1};
     }
     int beamAt(const TracedTile& tile, int place) const {
-        return view_.beam_of[static_cast<size_t>(tile.first_column + columnOf(place))];
+        return view_.beam_of[static_cast<size_t>(tile.first_column + getColumn(place))];
     }
 
     /** Returns the samples of one patch with the lowest sample, among samples that hit the same triangle. Where beams
      *  do not join, a patch has one beam. Where effects have their own sums, which need whole cells, it is a rectangle
      *  of one beam. */
-    uint32_t partOf(const TracedTile& tile, uint32_t same) const {
+    uint32_t getPart(const TracedTile& tile, uint32_t same) const {
         const int first = std::countr_zero(same);
         if (has_own_ || !view_.joined) {
-            int column = columnOf(first), end = column + 1;
+            int column = getColumn(first), end = column + 1;
             const auto isNeighbour = [&](int other) {
                 return other >= 0 && other < shape_.all.columns && beamAt(tile, other) == beamAt(tile, first);
             };
@@ -97,9 +97,9 @@ private:
             while (isNeighbour(column - 1)) --column;
             same &= bits(column, end - column, 0, shape_.all.rows);
         }
-        const int row = rowOf(first);
+        const int row = getRow(first);
         if (has_own_) {
-            int column = columnOf(first), end = column + 1;
+            int column = getColumn(first), end = column + 1;
             while (end < shape_.all.columns && (same & bits(end, 1, row, 1)) != 0) ++end;
             int top = row + 1;
             const auto row_bits = [&](int up) { return bits(column, end - column, up, 1); };
@@ -115,7 +115,7 @@ private:
 
     /** Adds a miss: only effects process it. */
     void addMiss(const TracedTile& tile, int place) {
-        const int column = tile.first_column + columnOf(place), row = tile.first_row + rowOf(place);
+        const int column = tile.first_column + getColumn(place), row = tile.first_row + getRow(place);
         if (column >= tile.end_column || row >= view_.rows) return;
         cells_.setMiss(cells_.count);
         cells_.gain[cells_.count] = 1;
@@ -213,13 +213,13 @@ private:
         }
     }
 
-    Patch patchOf(int i) const {
+    Patch makePatch(int i) const {
         const Source& source = sources_[i];
         const SampleRectangle& all = source.all;
         const AngularView::Elevation &low = view_.elevations[all.low], &high = view_.elevations[all.high];
         const auto direction = [&](size_t side, const AngularView::Elevation& up) {
             const AngularView::Direction around =
-                conical_ ? AngularView::azimuthOf(view_.bearings[side], up) : view_.azimuths[side];
+                conical_ ? AngularView::computeAzimuth(view_.bearings[side], up) : view_.azimuths[side];
             return glm::dvec3(up.cosine * around.cosine, up.cosine * around.sine, up.sine);
         };
         Patch patch{{cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]},

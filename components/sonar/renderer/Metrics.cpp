@@ -28,7 +28,7 @@ struct Comparison {
 };
 
 template <class T>
-std::vector<BeamBins> beamsOf(std::span<const T> energies, const Layout& layout, int first_bin) {
+std::vector<BeamBins> getBeams(std::span<const T> energies, const Layout& layout, int first_bin) {
     std::vector<BeamBins> beams;
     for (int beam = 0; beam < layout.beams; ++beam) {
         const auto row = energies.subspan(static_cast<size_t>(beam * layout.bins + first_bin),
@@ -189,7 +189,7 @@ double levelDistance(const Comparison& c) {
 }
 
 /** Like FNV-1a of 64 bits, but a word of 32 bits at a time. */
-uint64_t hashOf(std::span<const float> values) {
+uint64_t computeHash(std::span<const float> values) {
     uint64_t hash = 14695981039346656037ull;
     for (const float value : values) hash = (hash ^ std::bit_cast<uint32_t>(value)) * 1099511628211ull;
     return hash;
@@ -200,7 +200,7 @@ uint64_t hashOf(std::span<const float> values) {
 Metrics compare(std::span<const float> got, std::span<const double> reference, const Layout& layout) {
     const int first_bin =
         std::clamp(static_cast<int>(std::ceil(layout.range_from / layout.bin_width - 1e-9)), 0, layout.bins - 1);
-    const Comparison comparison{beamsOf(got, layout, first_bin), beamsOf(reference, layout, first_bin), first_bin};
+    const Comparison comparison{getBeams(got, layout, first_bin), getBeams(reference, layout, first_bin), first_bin};
     Metrics metrics;
     addNorms(comparison, metrics);
     addLevels(comparison, metrics);
@@ -208,7 +208,7 @@ Metrics compare(std::span<const float> got, std::span<const double> reference, c
     addEnergies(comparison, metrics);
     metrics.correlation = correlation(comparison);
     metrics.level_distance = levelDistance(comparison);
-    metrics.hash = hashOf(got);
+    metrics.hash = computeHash(got);
     return metrics;
 }
 

@@ -20,7 +20,7 @@
 namespace insonify::sonar {
 namespace {
 
-std::string reasonOf(const Omitted& what, const BinGrid& grid) {
+std::string getReason(const Omitted& what, const BinGrid& grid) {
     if (what.words) return what.words(what, grid);
     switch (what.reason) {
         case Reason::NotConfigured: return "not configured";
@@ -154,7 +154,7 @@ std::string materialText(const SonarConfig& config, const types::Geometry& geome
 
 /** Returns "; its nearest point 10 m away at [10, 0, 0] of wall: beyond the range of 5 m". */
 std::string surfaceText(const Coverage& coverage, const types::Snapshot& scene) {
-    const types::Extent extent = types::extentOf(scene);
+    const types::Extent extent = types::getExtent(scene);
     if (extent.isEmpty()) return "; the scene has no triangles";
     const types::NearestPoint nearest = types::nearestPoint(scene, scene.sonar.position);
     std::string hindrance = hindranceText(coverage, inSonar(scene, nearest.point));
@@ -232,9 +232,9 @@ std::optional<types::Notice> depthNotice(const RenderPlan& plan, const types::Sn
 types::Omission describe(const Omitted& what, const BinGrid& grid) {
     const std::string name(what.effect);
     if (what.reason != Reason::OutOfView)
-        return {name, reasonOf(what, grid), !what.words && what.reason == Reason::NotConfigured};
+        return {name, getReason(what, grid), !what.words && what.reason == Reason::NotConfigured};
     return {fmt::format("{}{:.0f} of {:.0f} {}", name == "triangles" ? "at least " : "", what.value, what.bound, name),
-            reasonOf(what, grid)};
+            getReason(what, grid)};
 }
 
 types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {

@@ -162,7 +162,7 @@ bool QualityKeeper::isDue() const {
     return watched(pings_, share) != watched(pings_ - 1, share);
 }
 
-double QualityKeeper::errorOf(double change) {
+double QualityKeeper::computeError(double change) {
     if (change_ < 0) {  // the first look at a quality that was chosen for its time
         change_ = change;
         const double error = std::max(off_measure * per_change_ * change, min_error);
@@ -177,7 +177,7 @@ void QualityKeeper::approach(SonarRenderer& renderer, const types::Snapshot& sce
     approaching_ = false;
     change_ = -1;
     since_change_ = 0;
-    worst_ = errorOf(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
+    worst_ = computeError(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
     if (target_ > 0 && worst_ > off_target * target_) move(worst_, max_move * model_.at.samples(), model_.at);
     if (!next_ && std::max(model_.at.samples() / reported_.samples(), reported_.samples() / model_.at.samples()) >
                       worth_reporting)
@@ -193,7 +193,7 @@ void QualityKeeper::move(double error, double max_samples, const Quality& minimu
 }
 
 void QualityKeeper::watch(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
-    const double error = errorOf(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
+    const double error = computeError(estimator_.changeToCoarser(renderer, scene, ping, model_.at));
     worst_ = std::max(worst_, error);
     const bool is_off = error > std::max(off_target * target_, off_prediction * measured_);
     if (is_off && steady_) return move(error, max_move * model_.at.samples(), model_.at);

@@ -99,7 +99,7 @@ private:
     void take(const ErrorModel& measured, SonarRenderer& renderer, const types::Snapshot& scene,
               const types::Sonar& ping);
     /** Returns the error of a ping from its difference to a coarser one [1]. */
-    double errorOf(double change);
+    double computeError(double change);
     void watch(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping);
     bool isDue() const;
     /** Evaluates a ping after a change of settings or of the quality, and moves the quality towards the target. */

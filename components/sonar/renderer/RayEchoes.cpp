@@ -388,15 +388,15 @@ bool RayEchoes::traceThrough(TracedTile& tile) const {
         on.nearest[i] = 1;  // ray that ends
         if (!(straight.active >> i & 1) || tile.hits->command[i] == TileHits::nothing) continue;
         const PlacedRun& run = runs_[tile.hits->command[i]];
-        const glm::dvec3 way(straight.x[i], straight.y[i], straight.z[i]),
+        const glm::dvec3 direction(straight.x[i], straight.y[i], straight.z[i]),
             normal = turned(run, run.planes[tile.hits->triangle[i]].normal);
-        const double length = glm::length(way),
-                     cosine = std::abs(glm::dot(normal, way)) / (glm::length(normal) * length);
+        const double length = glm::length(direction),
+                     cosine = std::abs(glm::dot(normal, direction)) / (glm::length(normal) * length);
         tile.passed[i] *= static_cast<float>(rules_.laws.walls[run.material].passedAt(cosine));
         const float begin =
             tile.hits->distance[i] * (1 + 1e-5f) + static_cast<float>(RayVisibility::nearest / 10 / length);
         const auto end =
-            static_cast<float>(std::min(rules_.bins.range_max / length, surface_.distance(glm::dvec3(0), way)));
+            static_cast<float>(std::min(rules_.bins.range_max / length, surface_.distance(glm::dvec3(0), direction)));
         if (!(tile.passed[i] >= min_passed) || !(begin < end)) continue;
         on.nearest[i] = begin;
         on.farthest[i] = end;

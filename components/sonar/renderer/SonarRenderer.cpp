@@ -53,7 +53,7 @@ struct SonarRenderer::Parts {
     void changeConfig(const SonarConfig& config);
     void updateShapes(const types::Snapshot& snapshot);
     void describePlan();
-    types::SonarTruth* truthOf(const types::Sonar& ping) const { return &ping == reported_ping ? truth : nullptr; }
+    types::SonarTruth* getTruth(const types::Sonar& ping) const { return &ping == reported_ping ? truth : nullptr; }
 
     types::GeometryPtr scene;                  ///< Geometry of the snapshots.
     std::unique_ptr<DeformedMeshes> deformed;  ///< Null: no mesh deforms.
@@ -192,7 +192,7 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     parts_->fillHeader(snapshot, ping);
-    types::SonarTruth* const truth = parts_->truthOf(ping);
+    types::SonarTruth* const truth = parts_->getTruth(ping);
     if (truth) truth->copyGrid(ping);
     parts_->effects.begin({snapshot, truth});
     parts_->echoes->setTruth(truth);
@@ -214,7 +214,7 @@ void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth)
 void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) {
     const auto start = std::chrono::steady_clock::now();
     Accumulator& echoes = parts_->echoes->accumulator();
-    PingInMaking made{snapshot, ping, echoes.field(), parts_->echoes->bent(), parts_->truthOf(ping)};
+    PingInMaking made{snapshot, ping, echoes.field(), parts_->echoes->bent(), parts_->getTruth(ping)};
     parts_->effects.addEchoes(made);
     echoes.detect(ping);
     parts_->effects.addToBins(ping);

@@ -54,7 +54,7 @@ void DeformedMeshes::take(const types::Snapshot& snapshot, size_t part, size_t p
         const auto deformed =
             std::ranges::lower_bound(snapshot.deformed, objects_[i], {}, &types::DeformedObject::object);
         if (deformed != snapshot.deformed.end() && deformed->object == objects_[i]) {
-            types::poseMesh(types::poseOf(snapshot, *deformed, *own.mesh->deformation), *own.mesh);
+            types::poseMesh(types::getPose(snapshot, *deformed, *own.mesh->deformation), *own.mesh);
         } else {
             own.mesh->positions = own.rest->positions;
             own.mesh->normals = own.rest->normals;

@@ -118,7 +118,7 @@ public:
     FacetLobes(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double wavelength)
         : mesh_(mesh), world_from_mesh_(world_from_mesh), wavelength_(wavelength) {
         facets_.resize(mesh.indices.size() / 3);
-        edges_ = edgesOf(mesh);
+        edges_ = findEdges(mesh);
         std::vector<bool> has_area(facets_.size());
         for (const Edge& edge : edges_) has_area[edge.triangle] = true;
         for (uint32_t t = 0; t < facets_.size(); ++t)
@@ -131,7 +131,7 @@ public:
     std::vector<FacetRecord> records() const {
         std::vector<FacetRecord> all;
         all.reserve(facets_.size());
-        for (uint32_t t = 0; t < facets_.size(); ++t) all.push_back(recordOf(t));
+        for (uint32_t t = 0; t < facets_.size(); ++t) all.push_back(makeRecord(t));
         return all;
     }
 
@@ -148,12 +148,12 @@ private:
     glm::dvec3 place(uint32_t vertex) const {
         return world_from_mesh_ * (glm::dvec3(mesh_.positions[vertex]) - glm::dvec3(mesh_.positions[0]));
     }
-    std::array<glm::dvec3, 3> cornersOf(uint32_t t) const {
+    std::array<glm::dvec3, 3> getCorners(uint32_t t) const {
         const uint32_t* index = mesh_.indices.data() + 3 * size_t{t};
         return {place(index[0]), place(index[1]), place(index[2])};
     }
     void measure(uint32_t t) {
-        const std::array<glm::dvec3, 3> p = cornersOf(t);
+        const std::array<glm::dvec3, 3> p = getCorners(t);
         const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
         const double length = glm::length(across);
         if (length > 0) facets_[t].normal = across / length, facets_[t].area = length / 2;
@@ -178,15 +178,15 @@ private:
     }
     /** Returns a facet's share of the turn at an edge. It is half, but almost none next to a much smaller facet, which
      *  is the curve where a flat part ends. `ratio`: its area relative to the other's. */
-    static double shareOf(double ratio) {
-        if (ratio < 1) return 1 - shareOf(1 / ratio);
+    static double computeShare(double ratio) {
+        if (ratio < 1) return 1 - computeShare(1 / ratio);
         return ratio > similar ? similar * similar / (2 * ratio * ratio) : 0.5;
     }
     void turnAt(uint32_t t, uint32_t neighbour, double turn, const glm::dvec3& edge) {
         Facet& facet = facets_[t];
         const auto free = std::ranges::find(facet.neighbours, nobody);
         if (free != facet.neighbours.end()) *free = neighbour;
-        const double own = turn * shareOf(facet.area / facets_[neighbour].area);
+        const double own = turn * computeShare(facet.area / facets_[neighbour].area);
         const double length = glm::length(edge);
         const glm::dvec3 across = glm::cross(edge, facet.normal) / length;
         const glm::dmat3 square = glm::outerProduct(across, across);
@@ -197,7 +197,7 @@ private:
     void leanAt(uint32_t t, uint32_t neighbour, double turn, const glm::dvec3& edge) {
         FlatPart& part = parts_[facets_[t].part];
         const glm::dvec3 way = facets_[neighbour].normal - facets_[t].normal;
-        const double share = shareOf(facets_[t].area / facets_[neighbour].area), length = glm::length(edge);
+        const double share = computeShare(facets_[t].area / facets_[neighbour].area), length = glm::length(edge);
         const glm::dvec3 across = glm::cross(edge, facets_[t].normal) / length;
         part.outward += share * length * way;
         part.bend += share * length * turn * glm::outerProduct(across, across);
@@ -234,7 +234,7 @@ private:
             [](const Facet&, const Facet&) { return true; });
         std::vector<Moments> moments(smooth_.size());
         for (uint32_t t = 0; t < facets_.size(); ++t)
-            if (facets_[t].area > 0) moments[facets_[t].smooth].add(facets_[t].area, cornersOf(t));
+            if (facets_[t].area > 0) moments[facets_[t].smooth].add(facets_[t].area, getCorners(t));
         std::ranges::transform(moments, smooth_.begin(), &Moments::spread);
     }
     void findFlatParts() {
@@ -249,7 +249,7 @@ private:
                 if (facets_[t].area > 0) act(t, parts_[facets_[t].part]);
         };
         each([&](uint32_t t, FlatPart& part) {
-            part.moments.add(facets_[t].area, cornersOf(t));
+            part.moments.add(facets_[t].area, getCorners(t));
             part.steps += facets_[t].area * glm::dmat3(facets_[t].steps);
             part.curvature += facets_[t].area * glm::dmat3(facets_[t].curvature);
         });
@@ -259,12 +259,12 @@ private:
             leanAt(other, one, turn, edge);
         });
         each([&](uint32_t t, FlatPart& part) {
-            for (const glm::dvec3& corner : cornersOf(t)) part.reachTo(corner);
+            for (const glm::dvec3& corner : getCorners(t)) part.reachTo(corner);
         });
         for (FlatPart& part : parts_) part.measure();
     }
 
-    FacetRecord recordOf(uint32_t t) const {
+    FacetRecord makeRecord(uint32_t t) const {
         const Facet& facet = facets_[t];
         if (!(facet.area > 0)) return {vec4(0), vec4(0), vec4(0)};
         const FlatPart& part = parts_[facet.part];
@@ -316,7 +316,7 @@ constexpr double coarse = 0.3;     ///< Turn between facets of a body with 20 ar
 class SmoothFacets {
 public:
     SmoothFacets(const types::Mesh& mesh, const glm::dmat3& world_from_mesh)
-        : mesh_(mesh), world_from_mesh_(world_from_mesh), edges_(edgesOf(mesh)) {
+        : mesh_(mesh), world_from_mesh_(world_from_mesh), edges_(findEdges(mesh)) {
         for (const glm::vec3& at : mesh.positions) {
             const glm::dvec3 size = glm::abs(glm::dvec3(at));
             rounding_ = std::max({rounding_, size.x, size.y, size.z});
@@ -326,12 +326,12 @@ public:
         body_.resize(mesh.indices.size() / 3);
         std::iota(body_.begin(), body_.end(), 0u);
         joinBodies();
-        if (std::ranges::all_of(body_, [&](uint32_t t) { return open_[bodyOf(t)]; })) return;
+        if (std::ranges::all_of(body_, [&](uint32_t t) { return open_[getBody(t)]; })) return;
         findVolumes();
         rough_.resize(mesh.positions.size());
         eachPair([&](const Edge& one, const Edge& other) { markRough(one, other); });
         smooth_.resize(body_.size());
-        for (uint32_t t = 0; t < body_.size(); ++t) smooth_[t] = !open_[bodyOf(t)];
+        for (uint32_t t = 0; t < body_.size(); ++t) smooth_[t] = !open_[getBody(t)];
         for (const Edge& edge : edges_)
             if (rough_[edge.low] || rough_[edge.high]) smooth_[edge.triangle] = false;
     }
@@ -343,11 +343,11 @@ private:
     glm::dvec3 place(uint32_t vertex) const {
         return world_from_mesh_ * (glm::dvec3(mesh_.positions[vertex]) - glm::dvec3(mesh_.positions[0]));
     }
-    std::array<glm::dvec3, 3> cornersOf(uint32_t t) const {
+    std::array<glm::dvec3, 3> getCorners(uint32_t t) const {
         const uint32_t* index = mesh_.indices.data() + 3 * size_t{t};
         return {place(index[0]), place(index[1]), place(index[2])};
     }
-    uint32_t bodyOf(uint32_t t) {
+    uint32_t getBody(uint32_t t) {
         while (body_[t] != t) t = body_[t] = body_[body_[t]];
         return t;
     }
@@ -363,12 +363,12 @@ private:
         open_.assign(body_.size(), true);  // triangles without area have no edges
         for (const Edge& edge : edges_) open_[edge.triangle] = false;
         eachPair([&](const Edge& one, const Edge& other) {
-            const uint32_t a = bodyOf(one.triangle), b = bodyOf(other.triangle);
+            const uint32_t a = getBody(one.triangle), b = getBody(other.triangle);
             body_[std::max(a, b)] = std::min(a, b);
         });
         for (size_t k = 0, end = 0; k < edges_.size(); k = end) {
             while (end < edges_.size() && edges_[end].low == edges_[k].low && edges_[end].high == edges_[k].high) ++end;
-            if (end - k != 2) open_[bodyOf(edges_[k].triangle)] = true;
+            if (end - k != 2) open_[getBody(edges_[k].triangle)] = true;
         }
     }
 
@@ -376,14 +376,14 @@ private:
     void findVolumes() {
         volumes_.resize(body_.size());
         for (uint32_t t = 0; t < body_.size(); ++t) {
-            const auto p = cornersOf(t);
-            volumes_[bodyOf(t)] += glm::dot(p[0], glm::cross(p[1], p[2]));
+            const auto p = getCorners(t);
+            volumes_[getBody(t)] += glm::dot(p[0], glm::cross(p[1], p[2]));
         }
     }
 
     /** Returns the angle by which the rounding of coordinates may have turned a facet: of its corners, over its least
      *  height. A facet of 2 mm that a file has 1 km from its origin is turned by up to 0.06 rad [rad]. */
-    double roundingOf(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& across) const {
+    double findRounding(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& across) const {
         const glm::dvec3 sides(glm::distance(corners[0], corners[1]), glm::distance(corners[1], corners[2]),
                                glm::distance(corners[2], corners[0]));
         return 2 * rounding_ * std::max({sides.x, sides.y, sides.z}) / std::max(glm::length(across), 1e-30);
@@ -391,12 +391,12 @@ private:
 
     /** Marks the ends of an edge that is not possible on a smooth convex surface. */
     void markRough(const Edge& one, const Edge& other) {
-        const auto a = cornersOf(one.triangle), b = cornersOf(other.triangle);
+        const auto a = getCorners(one.triangle), b = getCorners(other.triangle);
         const glm::dvec3 n = glm::cross(a[1] - a[0], a[2] - a[0]), m = glm::cross(b[1] - b[0], b[2] - b[0]);
         const double turn = std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
         const glm::dvec3 onward = b[0] + b[1] + b[2] - a[0] - a[1] - a[2];
-        const bool hollow = turn > std::max(straight, roundingOf(a, n) + roundingOf(b, m)) &&
-                            glm::dot(n, onward) * volumes_[bodyOf(one.triangle)] > 0;
+        const bool hollow = turn > std::max(straight, findRounding(a, n) + findRounding(b, m)) &&
+                            glm::dot(n, onward) * volumes_[getBody(one.triangle)] > 0;
         if (hollow || (turn > coarse && turn < crease)) rough_[one.low] = rough_[one.high] = true;
     }
 
@@ -424,7 +424,7 @@ CurveRecord curve(const FacetRecord& facet, const glm::dvec3& normal, const glm:
 }
 
 /** Returns for each facet the first facet with the same corners in any order. */
-std::vector<size_t> firstsOf(const types::Mesh& mesh) {
+std::vector<size_t> findFirsts(const types::Mesh& mesh) {
     const std::vector<uint32_t> first = weld(mesh);
     std::vector<std::pair<std::array<uint32_t, 3>, size_t>> facets;
     facets.reserve(mesh.indices.size() / 3);
@@ -482,7 +482,7 @@ std::vector<FacetRecord> facetLobes(const types::Geometry& geometry, const Mater
 }
 
 std::vector<CurveRecord> facetCurves(const types::Mesh& mesh, const glm::dmat3& world_from_mesh) {
-    const std::vector<size_t> firsts = firstsOf(mesh);
+    const std::vector<size_t> firsts = findFirsts(mesh);
     types::Mesh once;
     once.positions = mesh.positions;
     std::vector<size_t> number(firsts.size());  // index of each facet in `once`

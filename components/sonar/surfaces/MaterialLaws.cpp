@@ -33,8 +33,8 @@ struct Shared {
 std::optional<acoustics::RoughSurface> roughSurface(const types::Material& material, const SonarConfig& config) {
     if (material.matter.empty() || !config.frequency_khz) return {};
     const acoustics::Matter matter = acoustics::matterNamed(material.matter).value();
-    return acoustics::roughSurfaceOf(acoustics::propertiesOf(matter), *config.frequency_khz, water_density,
-                                     config.speedOfSound());
+    return acoustics::makeRoughSurface(acoustics::getProperties(matter), *config.frequency_khz, water_density,
+                                       config.speedOfSound());
 }
 
 /** Adds tables; that of a seabed or a matter only once. */
@@ -91,7 +91,7 @@ private:
     std::map<std::string, int> seabeds_, matters_;
 };
 
-vec4 lawOf(const types::Material& material, const SonarConfig& config, float reflected, TableList& tables) {
+vec4 getLaw(const types::Material& material, const SonarConfig& config, float reflected, TableList& tables) {
     vec4 law(static_cast<float>(tables.of(material)), 0, 0, 0);
     if (const auto surface = roughSurface(material, config)) {
         if (surface->lobeShare() < min_lobe_share) return law;
@@ -202,7 +202,7 @@ MaterialLaws makeMaterialLaws(const SonarConfig& config, const types::Geometry& 
         const vec4 values(reflected * std::pow(10.0f, material.lambert_db / 10), material.reflectivity,
                           material.normal_scale, 0);
         const vec4 law =
-            config.model == Model::Physical ? lawOf(material, config, reflected, tables) : vec4(-1, 0, 0, 0);
+            config.model == Model::Physical ? getLaw(material, config, reflected, tables) : vec4(-1, 0, 0, 0);
         laws.records.push_back({values, law});
         laws.walls.push_back(std::move(wall));
     }

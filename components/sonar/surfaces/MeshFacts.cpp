@@ -247,7 +247,7 @@ namespace {
 /** Returns the plane of a triangle. A triangle without area has no normal, and thus no echo. The point is that of the
  *  plane nearest to the origin within the triangle's reach. Even on a huge triangle it is close to the visible part, if
  *  that is close to the origin. */
-PlaneRecord planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+PlaneRecord makePlane(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     const glm::dvec3 across = glm::cross(b - a, c - a), middle = (a + b + c) / 3.0;
     if (!(glm::length(across) > 0)) return {vec4(0), vec4(0)};
     const glm::dvec3 normal = glm::normalize(across), way = normal * glm::dot(normal, middle) - middle;
@@ -267,13 +267,13 @@ std::vector<Box> leaves(const types::Mesh& mesh) {
     return boxes;
 }
 
-Box boxOf(const types::Mesh& mesh) {
+Box makeBox(const types::Mesh& mesh) {
     Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
     for (const glm::vec3& p : mesh.positions) box.add(p);
     return box;
 }
 
-std::vector<float> mapDensityOf(const types::Mesh& mesh) {
+std::vector<float> computeMapDensity(const types::Mesh& mesh) {
     std::vector<float> all;
     all.reserve(mesh.indices.size() / 3);
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -291,13 +291,13 @@ std::vector<float> mapDensityOf(const types::Mesh& mesh) {
 
 }  // namespace
 
-std::vector<PlaneRecord> planesOf(const types::Mesh& mesh) {
+std::vector<PlaneRecord> extractPlanes(const types::Mesh& mesh) {
     std::vector<PlaneRecord> planes(mesh.indices.size() / 3);
     findPlanes(mesh, planes);
     return planes;
 }
 
-/** Some triangles at a time, in vector registers, with the same operations in the same order as planeOf(). */
+/** Some triangles at a time, in vector registers, with the same operations in the same order as makePlane(). */
 INSONIFY_VECTOR_CLONES void findPlanes(const types::Mesh& mesh, std::span<PlaneRecord> planes) {
     constexpr size_t at_once = 16;
     double a[3][at_once], b[3][at_once], c[3][at_once], normal[3][at_once], point[3][at_once], squares[at_once];
@@ -342,14 +342,14 @@ INSONIFY_VECTOR_CLONES void findPlanes(const types::Mesh& mesh, std::span<PlaneR
     }
     for (size_t t = whole; t < planes.size(); ++t) {
         const uint32_t* const corners = &mesh.indices[3 * t];
-        planes[t] = planeOf(mesh.positions[corners[0]], mesh.positions[corners[1]], mesh.positions[corners[2]]);
+        planes[t] = makePlane(mesh.positions[corners[0]], mesh.positions[corners[1]], mesh.positions[corners[2]]);
     }
 }
 
-std::vector<PlaneRecord> planesOf(const types::Geometry& geometry) {
+std::vector<PlaneRecord> extractPlanes(const types::Geometry& geometry) {
     std::vector<PlaneRecord> planes;
     for (const types::Mesh& mesh : geometry.meshes) {
-        const std::vector<PlaneRecord> added = planesOf(mesh);
+        const std::vector<PlaneRecord> added = extractPlanes(mesh);
         planes.insert(planes.end(), added.begin(), added.end());
     }
     return planes;
@@ -367,15 +367,15 @@ std::vector<std::shared_ptr<MeshFacts>> MeshFacts::ofAll(const types::Geometry& 
 }
 
 void MeshFacts::renew() {
-    box_.renew([this](Box& box) { box = boxOf(*mesh_); });
+    box_.renew([this](Box& box) { box = makeBox(*mesh_); });
     longest_edge_.renew([this](double& longest) { longest = sonar::longestEdge(*mesh_); });
     triangles_.renew([this](BoxTree& tree) { tree.refit(leaves(*mesh_)); });
     planes_.renew([this](const std::shared_ptr<std::vector<PlaneRecord>>& planes) { findPlanes(*mesh_, *planes); });
-    map_density_.renew([this](std::vector<float>& density) { density = mapDensityOf(*mesh_); });
+    map_density_.renew([this](std::vector<float>& density) { density = computeMapDensity(*mesh_); });
 }
 
 const Box& MeshFacts::box() {
-    return box_.get([this] { return boxOf(*mesh_); });
+    return box_.get([this] { return makeBox(*mesh_); });
 }
 
 double MeshFacts::longestEdge() {
@@ -387,11 +387,11 @@ const BoxTree& MeshFacts::triangles() {
 }
 
 MeshFacts::Planes MeshFacts::planes() {
-    return planes_.get([this] { return std::make_shared<std::vector<PlaneRecord>>(planesOf(*mesh_)); });
+    return planes_.get([this] { return std::make_shared<std::vector<PlaneRecord>>(extractPlanes(*mesh_)); });
 }
 
 const std::vector<float>& MeshFacts::mapDensity() {
-    return map_density_.get([this] { return mapDensityOf(*mesh_); });
+    return map_density_.get([this] { return computeMapDensity(*mesh_); });
 }
 
 MeshFacts::Facets MeshFacts::facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws) {

@@ -32,11 +32,11 @@ MeshDistances distancesTo(const types::Mesh& mesh, double longest_edge, const gl
                           std::vector<float>& scratch);
 
 /** Returns the planes of a mesh's triangles. */
-std::vector<PlaneRecord> planesOf(const types::Mesh& mesh);
+std::vector<PlaneRecord> extractPlanes(const types::Mesh& mesh);
 /** Fills a list of that size with the planes of a mesh's triangles. */
 void findPlanes(const types::Mesh& mesh, std::span<PlaneRecord> planes);
 /** Returns the planes of all meshes' triangles, mesh after mesh, in their order. */
-std::vector<PlaneRecord> planesOf(const types::Geometry& geometry);
+std::vector<PlaneRecord> extractPlanes(const types::Geometry& geometry);
 
 /** Data that sonars derive from a mesh alone, each made when it is first requested. All sonars of a process, and all
  *  geometries that share the mesh, share its MeshFacts. Thread-safe. */
@@ -65,7 +65,7 @@ public:
     double longestEdge();
     /** Returns a tree over runs of leaf_triangles triangles. */
     const BoxTree& triangles();
-    /** Returns a plane for each triangle, from planesOf(). */
+    /** Returns a plane for each triangle, from extractPlanes(). */
     Planes planes();
     /** Returns the lobe record of each triangle, from facetLobes(); null where no material of the mesh has a lobe. */
     Facets facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws);

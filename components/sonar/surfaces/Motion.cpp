@@ -120,7 +120,7 @@ void Motion::followShapes(const types::Snapshot& snapshot) {
 void Motion::addShape(const types::Snapshot& snapshot, const types::DeformedObject& deformed) {
     const uint32_t object = deformed.object;
     const types::MeshPtr& mesh = things_[object].shape;
-    types::velocitiesOf(types::poseOf(snapshot, deformed, *mesh->deformation), *mesh->deformation, of_vertices_);
+    types::computeVelocities(types::getPose(snapshot, deformed, *mesh->deformation), *mesh->deformation, of_vertices_);
     const auto moved = std::ranges::find(snapshot.moved, object, &types::MovedObject::object);
     const glm::dmat4& place = moved == snapshot.moved.end() ? places_[object] : moved->world_from_object;
     const glm::dmat3 sonar_from_world = glm::transpose(glm::mat3_cast(snapshot.sonar.orientation));
@@ -149,7 +149,7 @@ void Motion::addShape(const types::Snapshot& snapshot, const types::DeformedObje
     drifts_[object] = drift;
 }
 
-const Drift* Motion::driftOf(uint32_t object, uint32_t triangle, Drift& own) const {
+const Drift* Motion::findDrift(uint32_t object, uint32_t triangle, Drift& own) const {
     const Deforming* const deforming = deforming_[object].get();
     if (!deforming || !deforming->moves) return drift(object);
     const uint32_t* const corners = &deforming->mesh->indices[3 * static_cast<size_t>(triangle)];

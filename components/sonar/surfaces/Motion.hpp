@@ -39,7 +39,7 @@ public:
      *  If the object deforms: the mean motion of its vertices. */
     const Drift* drift(uint32_t object) const { return drifts_[object] ? &*drifts_[object] : nullptr; }
     /** Returns the motion of one triangle of an object; fills `own` if the object deforms. */
-    const Drift* driftOf(uint32_t object, uint32_t triangle, Drift& own) const;
+    const Drift* findDrift(uint32_t object, uint32_t triangle, Drift& own) const;
     /** Returns the velocity of a point target, in the world [m/s]. */
     glm::dvec3 targetVelocity(size_t target) const;
     /** Returns the max speed of objects and targets [m/s]. */

@@ -46,7 +46,7 @@ Box placedBox(const Box& box, const glm::dmat4& place) {
 }
 
 /** A place in whole numbers of `same_place`. */
-std::array<int64_t, 3> cellOf(const glm::dvec3& p) {
+std::array<int64_t, 3> findCell(const glm::dvec3& p) {
     return {std::llround(p.x / same_place), std::llround(p.y / same_place), std::llround(p.z / same_place)};
 }
 
@@ -56,7 +56,7 @@ std::vector<std::array<int64_t, 3>> cornersWithin(const types::Mesh& mesh, const
     for (const glm::vec3& corner : mesh.positions) {
         const glm::dvec3 p(place * glm::dvec4(corner, 1));
         if (glm::all(glm::greaterThanEqual(p, box.low)) && glm::all(glm::lessThanEqual(p, box.high)))
-            all.push_back(cellOf(p));
+            all.push_back(findCell(p));
     }
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -81,19 +81,19 @@ void ObjectPlacements::findSurfaces() {
     for (size_t i = 0; i < objects.size(); ++i) boxes.push_back(placedBox(box(i), objects[i].world_from_object));
     const auto longestEdge = [&](size_t i) {
         const glm::dmat3 m(objects[i].world_from_object);
-        return meshes_[meshOf(i)]->longestEdge() * std::sqrt(dot2(m[0]) + dot2(m[1]) + dot2(m[2]));
+        return meshes_[getMesh(i)]->longestEdge() * std::sqrt(dot2(m[0]) + dot2(m[1]) + dot2(m[2]));
     };
     const auto share = [&](size_t a, size_t b) {
         const Box both{glm::max(boxes[a].low, boxes[b].low), glm::min(boxes[a].high, boxes[b].high)};
         const glm::dvec3 size = both.high - both.low;
         const double thinnest = std::min({size.x, size.y, size.z});
         if (thinnest < 0 || thinnest > std::min(longestEdge(a), longestEdge(b))) return false;  // apart, or inside
-        const auto cornersOf = [&](size_t i) {
-            return cornersWithin(geometry_.meshes[meshOf(i)], objects[i].world_from_object, both);
+        const auto getCorners = [&](size_t i) {
+            return cornersWithin(geometry_.meshes[getMesh(i)], objects[i].world_from_object, both);
         };
-        const auto of_a = cornersOf(a);
+        const auto of_a = getCorners(a);
         if (of_a.size() < 2) return false;
-        const auto of_b = cornersOf(b);
+        const auto of_b = getCorners(b);
         return std::ranges::count_if(of_a, [&](const auto& at) { return std::ranges::binary_search(of_b, at); }) >= 2;
     };
     std::vector<size_t> surface(objects.size()), order(objects.size());
@@ -156,7 +156,7 @@ vec4 ObjectPlacements::extent(size_t index, const glm::dmat4& m, double nearest_
                            corner & 4 ? box(index).high.z : box(index).low.z, 1);
         farthest = std::max(farthest, glm::length(glm::dvec3(m * p)));
     }
-    const size_t mesh = meshOf(index);
+    const size_t mesh = getMesh(index);
     const double rounding = 1e-6 * farthest;  // upper bound for the floats of the search
     double nearest = nearest_of_sphere - rounding;
     if (in_view_[index]) {

@@ -28,10 +28,10 @@ public:
     /** Returns whether an object is out of range and was not placed: its record is not of this ping. */
     bool isFar(size_t object) const { return far_[object]; }
     /** Returns the box of an object's mesh, in the mesh's coordinates. */
-    const Box& box(size_t object) const { return meshes_[meshOf(object)]->box(); }
+    const Box& box(size_t object) const { return meshes_[getMesh(object)]->box(); }
 
 private:
-    size_t meshOf(size_t object) const { return static_cast<size_t>(geometry_.objects[object].mesh); }
+    size_t getMesh(size_t object) const { return static_cast<size_t>(geometry_.objects[object].mesh); }
     void placeObject(size_t index, const glm::dmat4& sonar_from_object);
     /** Returns the inverse of its nearest range, and of its farthest [1/m]. */
     vec4 extent(size_t index, const glm::dmat4& sonar_from_object, double nearest_of_sphere);

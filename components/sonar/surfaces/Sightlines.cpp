@@ -65,14 +65,14 @@ Sightlines::Sightlines(const types::Geometry& geometry, Lines lines)
     for (size_t i = 0; i < placed_.size(); ++i) placeObject(i, geometry.objects[i].world_from_object);
 }
 
-const types::Mesh& Sightlines::meshOf(size_t object) const {
+const types::Mesh& Sightlines::getMesh(size_t object) const {
     return geometry_.meshes[static_cast<size_t>(geometry_.objects[object].mesh)];
 }
 
 void Sightlines::placeObject(size_t object, const glm::dmat4& world_from_object) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     glm::dvec3 low(infinity), high(-infinity);
-    for (const types::Cluster& cluster : meshOf(object).clusters) {
+    for (const types::Cluster& cluster : getMesh(object).clusters) {
         const types::WorldBox box(world_from_object, cluster.centre, cluster.half);
         low = glm::min(low, box.centre - box.half);
         high = glm::max(high, box.centre + box.half);
@@ -97,7 +97,7 @@ void Sightlines::place(const types::Snapshot& snapshot) {
 }
 
 bool Sightlines::anyMet(size_t object, const glm::dvec3& from, const glm::dvec3& end, const auto& use) const {
-    const types::Mesh& mesh = meshOf(object);
+    const types::Mesh& mesh = getMesh(object);
     const Placed& placed = placed_[object];
     if (mesh.clusters.empty() || !types::meetsBox(from, end, placed.centre, placed.half)) return false;
     if (meshes_.empty() || !placed.has_inverse)
@@ -131,7 +131,7 @@ bool Sightlines::findWalls(const glm::dvec3& from, const glm::dvec3& to, const s
     for (size_t i = 0; i < placed_.size(); ++i) {
         const auto hides = [&](double share, bool, size_t index) {
             if (!(share * range > nearest && (1 - share) * range > nearest)) return false;
-            const auto material = static_cast<size_t>(materialAt(meshOf(i), index));
+            const auto material = static_cast<size_t>(materialAt(getMesh(i), index));
             if (!are_walls[material]) return true;
             walls.push_back({share * range, std::abs(glm::dot(normalAt(i, index), end)) / range, material});
             return false;
@@ -143,7 +143,7 @@ bool Sightlines::findWalls(const glm::dvec3& from, const glm::dvec3& to, const s
 }
 
 glm::dvec3 Sightlines::normalAt(size_t object, size_t index) const {
-    const types::Mesh& mesh = meshOf(object);
+    const types::Mesh& mesh = getMesh(object);
     const auto corner = [&](size_t i) {
         return glm::dvec3(placed_[object].world_from_object * glm::dvec4(mesh.positions[mesh.indices[i]], 1));
     };

@@ -49,7 +49,7 @@ private:
         bool has_inverse;              ///< False where the object is flat.
     };
     void placeObject(size_t object, const glm::dmat4& world_from_object);
-    const types::Mesh& meshOf(size_t object) const;
+    const types::Mesh& getMesh(size_t object) const;
     /** Returns the unit normal of the triangle with a first index, in the world; 0 where it has no area. */
     glm::dvec3 normalAt(size_t object, size_t index) const;
     /** Calls `use(share, is_back, index)` for each triangle of an object that the line from `from` along the vector

@@ -73,7 +73,7 @@ public:
         omitCurves();
         for (const Stretch& stretch : stretches_) markSides(stretch);
         found.encloses = enclosed();
-        for (const Stretch& stretch : stretches_) found.edges.push_back(edgeOf(stretch, found.encloses));
+        for (const Stretch& stretch : stretches_) found.edges.push_back(getEdge(stretch, found.encloses));
         return found;
     }
 
@@ -81,11 +81,11 @@ private:
     glm::dvec3 place(uint32_t vertex) const {
         return world_from_mesh_ * (glm::dvec3(mesh_.positions[vertex]) - glm::dvec3(mesh_.positions[0]));
     }
-    glm::dvec3 wayOf(const Edge& edge) const { return place(edge.high) - place(edge.low); }
+    glm::dvec3 edgeVector(const Edge& edge) const { return place(edge.high) - place(edge.low); }
     /** Returns the unit vector across an edge into the triangle; zero where the triangle has no area. */
-    glm::dvec3 inwardOf(const Edge& edge) const {
+    glm::dvec3 computeInward(const Edge& edge) const {
         const uint32_t* index = mesh_.indices.data() + 3 * size_t{edge.triangle};
-        const glm::dvec3 way = wayOf(edge), from = place(edge.low);
+        const glm::dvec3 way = edgeVector(edge), from = place(edge.low);
         glm::dvec3 farthest(0);
         for (int k = 0; k < 3; ++k) {
             const glm::dvec3 to = place(index[k]) - from;
@@ -98,16 +98,16 @@ private:
 
     /** Joins triangles of one plane, and keeps the sides at which planes end. */
     void findSides() {
-        const std::vector<Edge> edges = edgesOf(mesh_);
+        const std::vector<Edge> edges = findEdges(mesh_);
         for (size_t first = 0; first < edges.size();) {
             size_t last = first;
             std::vector<Side> sides;
             for (; last < edges.size() && edges[last].low == edges[first].low && edges[last].high == edges[first].high;
                  ++last) {
-                const glm::dvec3 inward = inwardOf(edges[last]);
+                const glm::dvec3 inward = computeInward(edges[last]);
                 if (glm::dot(inward, inward) > 0) sides.push_back({edges[last], inward});
             }
-            if (sides.size() == 2 && turnOf(sides[0], sides[1]) < min_turn_)
+            if (sides.size() == 2 && computeTurn(sides[0], sides[1]) < min_turn_)
                 sides[0].is_smooth = sides[1].is_smooth = true;
             if (!isFlat(sides)) sides_.insert(sides_.end(), sides.begin(), sides.end());
             first = last;
@@ -135,7 +135,7 @@ private:
             sides_[i].line = i;
             for (const uint32_t corner : {sides_[i].edge.low, sides_[i].edge.high}) {
                 for (const uint32_t other : at[corner]) {
-                    const double angle = between(wayOf(sides_[i].edge), wayOf(sides_[other].edge));
+                    const double angle = between(edgeVector(sides_[i].edge), edgeVector(sides_[other].edge));
                     if (std::min(angle, std::numbers::pi - angle) < same_direction) lines.join(i, other);
                 }
                 at[corner].push_back(i);
@@ -148,15 +148,15 @@ private:
         std::ranges::stable_sort(order_, {}, [&](uint32_t i) { return sides_[i].line; });
     }
     /** Returns the turn of a surface from one face to the other [rad]. */
-    static double turnOf(const Side& one, const Side& other) {
+    static double computeTurn(const Side& one, const Side& other) {
         return std::numbers::pi - between(one.inward, other.inward);
     }
 
     /** Adds the stretches of one line, between whose ends the faces are the same. */
     void addLine(std::span<const uint32_t> items) {
         const Side& longest = sides_[*std::ranges::max_element(
-            items, {}, [&](uint32_t i) { return glm::length(wayOf(sides_[i].edge)); })];
-        const glm::dvec3 origin = place(longest.edge.low), along = glm::normalize(wayOf(longest.edge));
+            items, {}, [&](uint32_t i) { return glm::length(edgeVector(sides_[i].edge)); })];
+        const glm::dvec3 origin = place(longest.edge.low), along = glm::normalize(edgeVector(longest.edge));
         std::map<double, uint32_t> stops;  // corners by their places
         for (const uint32_t i : items) {
             Side& side = sides_[i];
@@ -194,13 +194,13 @@ private:
         }
         if (faces.empty() || faces.size() > 2) return {};
         if (faces.size() == 1) return std::array{faces[0], faces[0]};
-        if (turnOf(*faces[0], *faces[1]) < min_turn_) return {};
-        if (partOf(*faces[1]) < partOf(*faces[0])) std::swap(faces[0], faces[1]);
+        if (computeTurn(*faces[0], *faces[1]) < min_turn_) return {};
+        if (getPart(*faces[1]) < getPart(*faces[0])) std::swap(faces[0], faces[1]);
         return std::array{faces[0], faces[1]};
     }
-    uint32_t partOf(const Side& side) { return parts_.of(side.edge.triangle); }
+    uint32_t getPart(const Side& side) { return parts_.of(side.edge.triangle); }
     bool haveSameParts(const std::array<const Side*, 2>& a, const std::array<const Side*, 2>& b) {
-        return partOf(*a[0]) == partOf(*b[0]) && partOf(*a[1]) == partOf(*b[1]);
+        return getPart(*a[0]) == getPart(*b[0]) && getPart(*a[1]) == getPart(*b[1]);
     }
 
     /** Removes stretches that continue at both ends like the facets of a curve. */
@@ -229,7 +229,7 @@ private:
     }
     bool shareAPart(const Stretch& one, const Stretch& other) {
         return std::ranges::any_of(one.faces, [&](const Side* a) {
-            return std::ranges::any_of(other.faces, [&](const Side* b) { return partOf(*a) == partOf(*b); });
+            return std::ranges::any_of(other.faces, [&](const Side* b) { return getPart(*a) == getPart(*b); });
         });
     }
 
@@ -247,7 +247,7 @@ private:
     std::vector<uint8_t> enclosed() {
         std::vector<uint8_t> whole(mesh_.indices.size() / 3, 1);
         for (const Side& side : sides_)
-            if (!side.echoes) whole[partOf(side)] = 0;
+            if (!side.echoes) whole[getPart(side)] = 0;
         std::vector<uint8_t> all(whole.size());
         for (uint32_t t = 0; t < all.size(); ++t) {
             all[t] = whole[parts_.of(t)];
@@ -261,7 +261,7 @@ private:
         for (const types::Cluster& cluster : mesh_.clusters)
             std::fill_n(materials_.begin() + cluster.first_index / 3, cluster.index_count / 3, cluster.material);
     }
-    StraightEdge edgeOf(const Stretch& stretch, const std::vector<uint8_t>& encloses) {
+    StraightEdge getEdge(const Stretch& stretch, const std::vector<uint8_t>& encloses) {
         StraightEdge edge{mesh_.positions[stretch.low_corner],
                           mesh_.positions[stretch.high_corner],
                           {},
@@ -271,7 +271,7 @@ private:
             EdgeFace& face = edge.faces[k];
             face = {side.inward, 0, materials_[side.edge.triangle], encloses[side.edge.triangle] != 0};
             const glm::dvec3 from = place(stretch.low_corner);
-            for (const uint32_t t : triangles_[partOf(side)])
+            for (const uint32_t t : triangles_[getPart(side)])
                 for (int i = 0; i < 3; ++i)
                     face.width =
                         std::max(face.width, glm::dot(place(mesh_.indices[3 * size_t{t} + i]) - from, side.inward));
@@ -294,7 +294,7 @@ private:
 
 std::vector<uint32_t> weld(const types::Mesh& mesh) { return types::weldedPlaces(mesh.positions, mesh.indices); }
 
-std::vector<Edge> edgesOf(const types::Mesh& mesh) {
+std::vector<Edge> findEdges(const types::Mesh& mesh) {
     const std::vector<uint32_t> first = weld(mesh);
     std::vector<Edge> edges;
     edges.reserve(mesh.indices.size());

@@ -23,7 +23,7 @@ std::vector<uint32_t> weld(const types::Mesh& mesh);
 
 /** Returns the edges of all triangles of a mesh, ascending: common edges of neighbours are adjacent. Omits triangles
  *  with two corners at one place, which have no area: their neighbours meet. */
-std::vector<Edge> edgesOf(const types::Mesh& mesh);
+std::vector<Edge> findEdges(const types::Mesh& mesh);
 
 /** A face that ends at an edge. */
 struct EdgeFace {

@@ -82,10 +82,12 @@ private:
     bool has_fluid_;
 };
 
-double sumOf(const std::vector<double>& energies) { return std::accumulate(energies.begin(), energies.end(), 0.0); }
+double computeSum(const std::vector<double>& energies) {
+    return std::accumulate(energies.begin(), energies.end(), 0.0);
+}
 
 Returns relative(const std::vector<double>& energies) {
-    const double sum = sumOf(energies);
+    const double sum = computeSum(energies);
     if (!(sum > 0)) return {1};
     const double first = std::max(energies.front(), min_first * sum), all = sum + first - energies.front();
     Returns returns;
@@ -94,9 +96,9 @@ Returns relative(const std::vector<double>& energies) {
     return returns;
 }
 
-WallFill fillOf(const types::Shell& shell, const SonarConfig& config, const WallLaw& law, const Wall& wall) {
+WallFill getFill(const types::Shell& shell, const SonarConfig& config, const WallLaw& law, const Wall& wall) {
     constexpr double no_reflection = 1e-9;
-    const double within = law.rings() ? sumOf(wall.returns(true).reflected) : wall.reflectedWithin();
+    const double within = law.rings() ? computeSum(wall.returns(true).reflected) : wall.reflectedWithin();
     const double number = 2 * std::numbers::pi * 1000 * *config.frequency_khz / shell.fill_speed;  // [1/m]
     return {.speed_ratio = shell.fill_speed / config.speedOfSound(),
             .attenuation = 2 * number * shell.fill_loss,
@@ -126,7 +128,7 @@ WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) 
     int bands = 1;
     const acoustics::PlateReturns outside = wall.returns(false);
     if (wall.rings(config) && (outside.reflected.size() > 1 || outside.passed.size() > 1)) {
-        law.reflected = sumOf(outside.reflected);
+        law.reflected = computeSum(outside.reflected);
         law.outside = relative(outside.reflected);
         law.inside = relative(wall.returns(true).reflected);
         law.behind = relative(outside.passed);
@@ -140,7 +142,7 @@ WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) 
         law.passed_once = acoustics::AdaptiveTable(law.exactly_once, 0, 1, {0.0115, 1e-5}, cells);
         if (bands > 1) law.passed = acoustics::AdaptiveTable(law.exactly, 0, 1, {0.023, 1e-7}, cells);
     }
-    if (material.shell->fill_density > 0) law.fill = fillOf(*material.shell, config, law, wall);
+    if (material.shell->fill_density > 0) law.fill = getFill(*material.shell, config, law, wall);
     return law;
 }
 

@@ -351,7 +351,7 @@ bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types
 
 RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
 
-std::string PingTask::diagnosticOf(bool received, const types::Sonar& sample) {
+std::string PingTask::findDiagnostic(bool received, const types::Sonar& sample) {
     return diagnostics_->follow(received, *renderer_, takenScene(), sample, [this] { return coverage(takenScene()); });
 }
 
@@ -377,7 +377,7 @@ void PingTask::render() {
     followQuality(*sample, took.count());
     if (signals) renderer_->setElements(*sample, nullptr);
     if (signals) signals_.stock(*signals);
-    if (const std::string diagnostic = diagnosticOf(received, *sample); !diagnostic.empty()) warn(diagnostic);
+    if (const std::string diagnostic = findDiagnostic(received, *sample); !diagnostic.empty()) warn(diagnostic);
     stampBearings(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_reported_, true)) refreshRecord();

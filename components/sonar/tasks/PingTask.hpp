@@ -91,7 +91,7 @@ public:
     /** Reports files of sound speeds and of beams that cannot be used. */
     void check(types::Diagnostics& diagnostics) const override;
     std::string indivisible() const override;
-    types::ReturnRules returnRules() const override { return returnRulesOf(sonarConfig()); }
+    types::ReturnRules returnRules() const override { return makeReturnRules(sonarConfig()); }
 
     /** Returns what all pings have counted; those that only measure the quality do not count. Read when stopped. */
     const CountedPings& counted() const { return counted_; }
@@ -186,7 +186,7 @@ private:
     void changeRenderer();
     void updatePlan();
     /** Returns the diagnostic of a ping that may be empty. */
-    std::string diagnosticOf(bool received, const types::Sonar& sample);
+    std::string findDiagnostic(bool received, const types::Sonar& sample);
     /** Updates the quality after a ping that took `ms` to render; may render it again. */
     void followQuality(types::Sonar& sample, double ms);
 

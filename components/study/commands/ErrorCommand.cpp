@@ -60,7 +60,7 @@ std::vector<std::string> sceneNames() {
 }
 
 /** Returns the scene's name: the file's, in letters that every report can show; never that of a scene of the study. */
-std::string nameOf(const std::string& file) {
+std::string getName(const std::string& file) {
     std::string name = std::filesystem::path(file).stem().string();
     for (char& c : name)
         if (!types::isLetter(c) && !types::isDigit(c) && c != '-' && c != '.') c = '_';
@@ -68,10 +68,10 @@ std::string nameOf(const std::string& file) {
 }
 
 StudyScene studied(const std::string& file, const deployer::SonarAt& sonar) {
-    return {nameOf(file), file, plain(sonar.config, file), sonar.snapshot, {}};
+    return {getName(file), file, plain(sonar.config, file), sonar.snapshot, {}};
 }
 
-std::vector<StudyScene> scenesOf(const Options& options) {
+std::vector<StudyScene> makeScenes(const Options& options) {
     const std::vector<std::string> names = sceneNames();
     for (const std::string& name : options.scenes)
         if (std::ranges::count(names, name) == 0)
@@ -95,7 +95,7 @@ using console::Json;
 
 Json toJson(const Measurement& m, const ErrorResult& result) {
     return {{"scene", m.scene},
-            {"method", nameOf(m.method)},
+            {"method", getName(m.method)},
             {"rows", m.rows},
             {"columns_per_beam", m.columns_per_beam},
             {"rel_l2", m.metrics.rel_l2},
@@ -109,7 +109,7 @@ Json toJson(const Measurement& m, const ErrorResult& result) {
 }
 
 /** Returns each method's results on each scene: slope, times to the goals and how they were found. */
-Json methodsOf(const ErrorResult& result) {
+Json getMethods(const ErrorResult& result) {
     Json all = Json::array();
     for (const Reference& reference : result.references)
         for (const Method method : methods) {
@@ -117,14 +117,14 @@ Json methodsOf(const ErrorResult& result) {
             if (points.empty()) continue;
             const auto fitted = slope(points, reference.error);
             Json each{{"scene", reference.scene},
-                      {"method", nameOf(method)},
+                      {"method", getName(method)},
                       {"slope", fitted ? Json(*fitted) : Json()},
                       {"points", Json::array()}};
             for (const double goal : goals) {
                 const auto time = timeTo(goal, points);
                 const std::string key = fmt::format("ms_to_{:g}_percent", 100 * goal);
                 each[key] = time ? Json(time->ms) : Json();
-                each[key + "_is"] = time ? Json(nameOf(time->kind)) : Json();
+                each[key + "_is"] = time ? Json(getName(time->kind)) : Json();
                 each[key + "_open"] = goal < blurred * reference.error;
             }
             for (const Measurement& m : points) each["points"].push_back(toJson(m, result));
@@ -135,8 +135,8 @@ Json methodsOf(const ErrorResult& result) {
 
 Json toJson(const ErrorResult& result) {
     Json json{{"device", result.device},      {"cores", std::thread::hardware_concurrency()},
-              {"references", Json::array()},  {"methods", methodsOf(result)},
-              {"predictions", Json::array()}, {"verdicts", verdictsOf(claims(result))},
+              {"references", Json::array()},  {"methods", getMethods(result)},
+              {"predictions", Json::array()}, {"verdicts", getVerdicts(claims(result))},
               {"points", Json::array()}};
     for (const Reference& r : result.references)
         json["references"].push_back({{"scene", r.scene},
@@ -156,7 +156,7 @@ Json toJson(const ErrorResult& result) {
 }
 
 int runStudy(Options options) {
-    const std::vector<StudyScene> scenes = scenesOf(options);
+    const std::vector<StudyScene> scenes = makeScenes(options);
     console::OutputFolder folder(options.out, "study_error");
     console::StudyProgress progress(!options.quiet, scenes.size());
     size_t scene = 0;
@@ -168,7 +168,7 @@ int runStudy(Options options) {
     folder.keep();
     console::write(toJson(result), (folder.path() / "error_time.json").string());
     const std::filesystem::path sheet = folder.path() / "error_time.md";
-    if (std::ofstream file(sheet, std::ios::binary); !(file << sheetOf(result)).flush())
+    if (std::ofstream file(sheet, std::ios::binary); !(file << makeSheet(result)).flush())
         throw std::runtime_error(sheet.string() + " cannot be written");
     progress.end();
 

@@ -61,7 +61,7 @@ int runFit(const FitOptions& options) {
                                         "Intervals are of 95 %. Properties that the recording does not determine have "
                                         "values consistent with the others."};
     std::vector<deployer::CommentedSetting> settings;
-    for (const FitSetting& each : settingsOf(fit, at.tasks)) settings.push_back({each.path, each.value, each.comment});
+    for (const FitSetting& each : getSettings(fit, at.tasks)) settings.push_back({each.path, each.value, each.comment});
     std::ofstream file(options.out, std::ios::binary);
     if (!(file << deployer::deploymentWith(options.deployment, settings, fs::absolute(options.out).parent_path(), head))
              .flush())

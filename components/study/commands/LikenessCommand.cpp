@@ -20,7 +20,7 @@ using console::Json;
 
 Json toJson(const LikenessRow& row) {
     Json json{{"name", row.name}};
-    for (const LikenessFigure& figure : figuresOf(row)) json[figure.name] = figure.value;
+    for (const LikenessFigure& figure : computeFigures(row)) json[figure.name] = figure.value;
     json["histogram"] = row.looks.histogram;
     json["mean_code_by_range"] = row.looks.mean_code;
     json["level_db_by_range"] = row.looks.level_db;
@@ -31,17 +31,17 @@ Json toJson(const LikenessResult& result) {
     Json json{{"pings", Json::array()}, {"verdicts", Json::array()}};
     for (const LikenessRow& row : result.rows) json["pings"].push_back(toJson(row));
     const LikenessRow* simulated = result.row("simulated");
-    if (simulated) json["verdicts"] = verdictsOf(claims(simulated->apart, result.recorded));
+    if (simulated) json["verdicts"] = getVerdicts(claims(simulated->apart, result.recorded));
     return json;
 }
 
 void printTable(const LikenessResult& result) {
     console::printResult("{:<18}", "");
     for (const LikenessRow& row : result.rows) console::printResult(" {:>15}", row.name);
-    const auto first = figuresOf(result.rows.front());
+    const auto first = computeFigures(result.rows.front());
     for (size_t i = 0; i < first.size(); ++i) {
         console::printResult("\n{:<18}", first[i].name);
-        for (const LikenessRow& row : result.rows) console::printResult(" {:>15.4g}", figuresOf(row)[i].value);
+        for (const LikenessRow& row : result.rows) console::printResult(" {:>15.4g}", computeFigures(row)[i].value);
     }
     console::printResult("\n");
 }
@@ -68,7 +68,7 @@ struct LikenessOptions : RecordingOptions {
 };
 
 /** Returns the settings that place the deployment's lines at those of a recording. */
-std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOptions& options) {
+std::vector<std::string> recordedSettings(const CodedPing& recorded, const LikenessOptions& options) {
     if (!recorded.is_waterfall)
         throw types::ConfigError(recorded.file, "--lines", "is recorded; the recording is not of a side-scan");
     if (recorded.places.empty())
@@ -77,7 +77,8 @@ std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOp
     ChainAt at = chainAt(options.deployment, options.ping, options.set);
     layLines(recorded, at.chain);
     std::vector<std::string> settings;
-    for (const FitSetting& setting : wayOf(at.chain, at.tasks)) settings.push_back(setting.path + "=" + setting.value);
+    for (const FitSetting& setting : getFoundSettings(at.chain, at.tasks))
+        settings.push_back(setting.path + "=" + setting.value);
     return settings;
 }
 
@@ -86,7 +87,7 @@ CodedPing simulatedLike(const CodedPing& recorded, const LikenessOptions& option
     const size_t count = recorded.is_waterfall ? recorded.beam_count : 1;
     std::vector<std::string> settings = options.set;
     if (options.lines == "recorded") {
-        const std::vector<std::string> way = recordedWay(recorded, options);
+        const std::vector<std::string> way = recordedSettings(recorded, options);
         settings.insert(settings.end(), way.begin(), way.end());
     }
     const deployer::PingsAt found = deployer::codedPingsAt(options.deployment, options.ping, count, settings);

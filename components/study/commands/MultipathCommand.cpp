@@ -76,7 +76,7 @@ types::Snapshot under(double surface, types::GeometryPtr scene) {
 }
 
 /** Returns a small disc far behind. */
-types::GeometryPtr openWater() { return sceneOf({disc(1, 0.1)}, {{-500, 0, 0}}); }
+types::GeometryPtr openWater() { return makeScene({disc(1, 0.1)}, {{-500, 0, 0}}); }
 
 /** Returns the material of a plate that is a mirror by its lobe. */
 types::Material smooth() {
@@ -88,7 +88,7 @@ types::Material smooth() {
 }
 
 types::GeometryPtr ofMaterial(const types::GeometryPtr& scene, const types::Material& material) {
-    const auto changed = copyOf(scene);
+    const auto changed = makeCopy(scene);
     changed->materials = {material};
     return changed;
 }
@@ -119,7 +119,7 @@ void studyTarget(MultipathResult& result) {
 /** Tests a bottom 4 m below, with the surface 2 m above: sums over slices of 1 m. */
 void studyBottom(MultipathResult& result) {
     const double fov = radians(8), half = radians(60), step = 1e-3;
-    const types::GeometryPtr scene = sceneOf({levelGround(-4)});
+    const types::GeometryPtr scene = makeScene({levelGround(-4)});
     const Probe with = probe(underSurface(8), under(2, scene)), without = probe(listener(8, 0), under(2, scene));
     std::array<double, 30> expected{}, received{};
     const auto add = [&](double range, double energy) {
@@ -152,7 +152,7 @@ void studyWall(MultipathResult& result) {
     mirror.lambert_db = -200;
     for (double end = 4; end < 10; end += 0.5) {
         const auto wall = quad({-20, 4, -20}, {20 + end, 0, 0}, {0, 0, 40});
-        types::Snapshot snapshot = lookingAt(ofMaterial(sceneOf({wall}), mirror));
+        types::Snapshot snapshot = lookingAt(ofMaterial(makeScene({wall}), mirror));
         snapshot.targets = {{{12, 1, 0}, 0}};
         const Probe received = probe(listener(170, 1), snapshot);
         const auto count = std::ranges::count_if(received.ping.bins, [](float bin) { return bin > 0; });
@@ -165,7 +165,7 @@ void studyWall(MultipathResult& result) {
 constexpr double corner_range = 50, wavelength = 0.003, side = 0.1;
 
 /** Returns the target strength of a small corner 50 m ahead [dB]. */
-double strengthOf(const types::GeometryPtr& corner) {
+double computeStrength(const types::GeometryPtr& corner) {
     sonar::SonarConfig config = fan(0.4, 0.4, 1, 60);
     config.speed_of_sound = 1500;
     config.frequency_khz = 500;
@@ -182,7 +182,7 @@ types::GeometryPtr dihedral(double yaw_deg) {
     const double h = std::numbers::sqrt2 / 2;
     const glm::dmat3 axes = turned(yaw_deg) * glm::dmat3{{-h, h, 0}, {-h, -h, 0}, {0, 0, 1}};
     const glm::vec3 edge(corner_range, 0, -side / 2), up(0, 0, side);
-    return ofMaterial(sceneOf({quad(edge, side * axes[0], up), quad(edge, side * axes[1], up)}), smooth());
+    return ofMaterial(makeScene({quad(edge, side * axes[0], up), quad(edge, side * axes[1], up)}), smooth());
 }
 
 /** Returns three perpendicular axes with equal angles to the sonar. */
@@ -199,9 +199,9 @@ types::GeometryPtr trihedral(bool square, double yaw_deg) {
     std::vector<types::Mesh> plates;
     for (int k = 0; k < 3; ++k) {
         const glm::vec3 u(side * axes[k]), v(side * axes[(k + 1) % 3]);
-        plates.push_back(square ? quad(corner, u, v) : meshOf({corner, corner + u, corner + v}, {0, 1, 2}));
+        plates.push_back(square ? quad(corner, u, v) : getMesh({corner, corner + u, corner + v}, {0, 1, 2}));
     }
-    return ofMaterial(sceneOf(std::move(plates)), smooth());
+    return ofMaterial(makeScene(std::move(plates)), smooth());
 }
 
 /** Returns the aperture of a trihedral towards the sonar, from the sorted cosines of the direction [m^2]. */
@@ -219,7 +219,7 @@ double trihedralAperture(bool square, double yaw_deg) {
 void studyCorner(MultipathResult& result, const std::string& name, const auto& scene, const auto& aperture) {
     EchoCurve curve{name, "Target strength of a " + name, "turned by [deg]", "target strength [dB]", {}};
     for (double yaw = -20; yaw <= 20; yaw += 5)
-        curve.points.push_back({yaw, strengthOf(scene(yaw)), 20 * std::log10(aperture(yaw) / wavelength)});
+        curve.points.push_back({yaw, computeStrength(scene(yaw)), 20 * std::log10(aperture(yaw) / wavelength)});
     result.claims.push_back({"target strength of a " + name + " off over 40 deg [dB]", curve.worst(), 2, true});
     result.curves.push_back(std::move(curve));
 }
@@ -273,7 +273,7 @@ Json toJson(const MultipathResult& result) {
                                   {"worst", curve.worst()},
                                   {"points", std::move(points)}});
     }
-    json["verdicts"] = verdictsOf(result.claims);
+    json["verdicts"] = getVerdicts(result.claims);
     return json;
 }
 

@@ -61,8 +61,8 @@ namespace {
 
 using sonar::SonarConfig;
 
-/** A way to render the ping. */
-struct Way {
+/** A setup to render the ping. */
+struct Setup {
     SonarConfig config;
     types::Snapshot snapshot;
     sonar::RenderOptions options = {};
@@ -85,16 +85,16 @@ std::vector<float> joined(const std::vector<float>& bins, int in_one) {
     return sums;
 }
 
-void render(const Way& way, int pings, Rendered& to) {
-    sonar::SonarRenderer renderer(way.config, way.snapshot.geometry, way.options);
+void render(const Setup& setup, int pings, Rendered& to) {
+    sonar::SonarRenderer renderer(setup.config, setup.snapshot.geometry, setup.options);
     types::Sonar ping;
-    renderer.render(way.snapshot, ping);
+    renderer.render(setup.snapshot, ping);
     for (int i = 0; i < pings; ++i) {
         const double start = now();
-        renderer.render(way.snapshot, ping);
+        renderer.render(setup.snapshot, ping);
         to.ms.push_back(now() - start);
     }
-    to.bins = joined(ping.bins, way.bins_in_one);
+    to.bins = joined(ping.bins, setup.bins_in_one);
 }
 
 double median(std::vector<double> values) {
@@ -103,7 +103,7 @@ double median(std::vector<double> values) {
 }
 
 /** Renders both ways alternately, so that a slowing machine affects both equally. */
-Ablation compared(const Way& without, const Way& with, int pings) {
+Ablation compared(const Setup& without, const Setup& with, int pings) {
     constexpr int turns = 3;
     Rendered a, b;
     for (int turn = 0; turn < turns; ++turn) {
@@ -161,7 +161,7 @@ private:
     /** Measures the change by twice the rows and columns: the bound for effects that depend on the pixels' size. */
     void measureQuality() {
         progress_("quality");
-        Way finer = planned_;
+        Setup finer = planned_;
         finer.config.quality.rows = 2 * planned_.config.rows();
         finer.config.quality.columns_per_beam = 2 * planned_.config.columnsPerBeam();
         const Ablation ablation = compared(planned_, finer, pings_);
@@ -173,13 +173,13 @@ private:
         const types::Omission words = sonar::describe(what, sonar::makeBinGrid(planned_.config));
         progress_(words.name);
         OmissionRow row{words.name, words.reason, {}, {}, "", false};
-        Way with = planned_;
+        Setup with = planned_;
         if (putBack(what, with, row)) row.measured = compared(planned_, with, pings_);
         return row;
     }
 
     /** Puts back an omission; returns false if that is impossible. */
-    bool putBack(const sonar::Omitted& what, Way& with, OmissionRow& row) const {
+    bool putBack(const sonar::Omitted& what, Setup& with, OmissionRow& row) const {
         const auto bound = [&](double value, const char* of) {
             row.bound = value;
             row.bound_of = of;
@@ -230,12 +230,12 @@ private:
             {"objects", draw_all},
             {"triangles", draw_all},
             {"slabs", draw_all}};
-        const auto way = ways.find(what.effect);
-        return way != ways.end() && way->second();
+        const auto setup = ways.find(what.effect);
+        return setup != ways.end() && setup->second();
     }
 
     /** Adds a tone as long as a bin, which changes nothing. */
-    bool neutralPulse(Way& with, OmissionRow& row) const {
+    bool neutralPulse(Setup& with, OmissionRow& row) const {
         const sonar::BinGrid grid = sonar::makeBinGrid(planned_.config);
         with.config.pulse.emplace().duration_us = 2e6 * grid.bin_width / grid.speed_of_sound;
         row.bound = 0;
@@ -244,7 +244,7 @@ private:
     }
 
     /** Adds a ring-down that is zero in float. */
-    bool weakRingDown(Way& with, OmissionRow& row) const {
+    bool weakRingDown(Setup& with, OmissionRow& row) const {
         if (planned_.config.model != sonar::Model::Physical) return false;
         if (!with.config.pulse) neutralPulse(with, row);
         with.config.pulse->ring_down = acoustics::RingDownConfig{-3000, 1};
@@ -254,7 +254,7 @@ private:
     }
 
     /** Renders eight bins for each and sums them: absorption changes from one to the next. */
-    bool splitBins(Way& with, OmissionRow& row) const {
+    bool splitBins(Setup& with, OmissionRow& row) const {
         constexpr int parts = 8;
         const SonarConfig& config = planned_.config;
         const sonar::BinGrid grid = sonar::makeBinGrid(config);
@@ -271,10 +271,10 @@ private:
     void measureKept() {
         const SonarConfig& config = planned_.config;
         for (const sonar::Effect* effect : sonar::effects()) {
-            Way without = planned_;
+            Setup without = planned_;
             if (const std::string name = effect->removeFrom(without.config); !name.empty()) keep(name, without);
         }
-        Way without = planned_;
+        Setup without = planned_;
         if (config.model == sonar::Model::Physical && !planned_.snapshot.targets.empty()) {
             without.snapshot.targets.clear();
             keep("point targets", without);
@@ -298,12 +298,12 @@ private:
             keep("normal maps", without);
     }
 
-    void keep(const std::string& name, const Way& without) {
+    void keep(const std::string& name, const Setup& without) {
         progress_(name);
         rows_.push_back({name, "configured", compared(without, planned_, pings_), {}, "", true});
     }
 
-    Way planned_;
+    Setup planned_;
     int pings_;
     const std::function<void(const std::string&)>& progress_;
     std::vector<sonar::Omitted> omitted_;

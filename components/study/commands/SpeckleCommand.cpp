@@ -24,14 +24,14 @@ Json toJson(const SpeckleRow& row) {
         Json each{{"slice", slice.slice},
                   {"bin_correlations", slice.figures.along},
                   {"beam_correlations", slice.figures.across}};
-        for (const SpeckleFigure& figure : figuresOf(slice)) each[figure.name] = figure.value;
+        for (const SpeckleFigure& figure : computeFigures(slice)) each[figure.name] = figure.value;
         json["slices"].push_back(std::move(each));
     }
     return json;
 }
 
 Json toJson(const std::vector<SpeckleRow>& rows, const std::vector<Claim>& claims) {
-    Json json{{"pings", Json::array()}, {"verdicts", verdictsOf(claims)}};
+    Json json{{"pings", Json::array()}, {"verdicts", getVerdicts(claims)}};
     for (const SpeckleRow& row : rows) json["pings"].push_back(toJson(row));
     return json;
 }
@@ -39,12 +39,13 @@ Json toJson(const std::vector<SpeckleRow>& rows, const std::vector<Claim>& claim
 void printTable(const std::vector<SpeckleRow>& rows) {
     console::printResult("{:<22}", "where it is loudest");
     for (const SpeckleRow& row : rows) console::printResult(" {:>16}", row.name);
-    const auto names = figuresOf(SpeckleSlice{});
+    const auto names = computeFigures(SpeckleSlice{});
     for (size_t i = 0; i < names.size(); ++i) {
         console::printResult("\n{:<22}", names[i].name);
         for (const SpeckleRow& row : rows) {
             const SpeckleSlice* loud = row.loudestSlice();
-            console::printResult(" {:>16}", loud ? fmt::format("{:.4g}", figuresOf(*loud)[i].value) : "too few bins");
+            console::printResult(" {:>16}",
+                                 loud ? fmt::format("{:.4g}", computeFigures(*loud)[i].value) : "too few bins");
         }
     }
     console::printResult("\n");

@@ -23,7 +23,7 @@ void makeFolder(const std::filesystem::path& folder) {
 
 void printRow(const StabilityRow& row) {
     const Outcome& outcome = row.outcome;
-    console::printResult("{:>3}  {:<7}  {:>8}  {}\n", row.number, nameOf(outcome.verdict),
+    console::printResult("{:>3}  {:<7}  {:>8}  {}\n", row.number, getName(outcome.verdict),
                          isEvaluated(outcome) ? fmt::format("{:.1e}", outcome.deviation) : "", row.name);
     if (outcome.verdict == Verdict::Fail)
         console::printResult("     expected: {}\n     got: {}\n", row.expected, outcome.got);

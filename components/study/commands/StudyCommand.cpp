@@ -42,7 +42,7 @@ bool areCodes(const types::Sonar& ping) {
 }
 
 /** Returns the pings of a stream; none where a ping has bins that are not codes. */
-std::vector<types::Sonar> codesOf(log::Reader& log, size_t stream) {
+std::vector<types::Sonar> readCodes(log::Reader& log, size_t stream) {
     std::vector<types::Sonar> pings;
     for (const log::SampleRef& at : log.samples()) {
         if (at.stream != stream) continue;
@@ -70,7 +70,7 @@ void readLaw(const log::Reader& log, const std::string& stream, CodedLog& coded)
 
 /** Reads the sonar's place at each ping, as far as the log has it. */
 void readPlaces(log::Reader& log, const log::Stream& pings, CodedLog& coded) {
-    const LoggedTrack track(log, posesOfSonar(log), mountOf(meaningOf(log, pings)));
+    const LoggedTrack track(log, posesOfSonar(log), findMount(readMeaning(log, pings)));
     const LoggedAltitudes altitudes(log);
     for (const types::Sonar& ping : coded.pings) {
         coded.sonars.push_back(track.at(ping.time));
@@ -86,7 +86,7 @@ std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
     for (size_t i = 0; i < log->streams().size(); ++i) {
         const log::Stream& stream = log->streams()[i];
         if (!stream.holds<types::Sonar>()) continue;
-        CodedLog coded{.pings = codesOf(*log, i)};
+        CodedLog coded{.pings = readCodes(*log, i)};
         if (coded.pings.empty()) continue;
         readLaw(*log, stream.name, coded);
         readPlaces(*log, stream, coded);
@@ -149,7 +149,7 @@ CLI::Option* RecordingOptions::addTo(CLI::App& command, const std::string& deplo
     return recordings;
 }
 
-console::Json verdictsOf(const std::vector<Claim>& claims) {
+console::Json getVerdicts(const std::vector<Claim>& claims) {
     console::Json verdicts = console::Json::array();
     for (const Claim& claim : claims)
         verdicts.push_back({{"claim", claim.text},

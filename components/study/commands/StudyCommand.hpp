@@ -41,7 +41,7 @@ struct RecordingOptions {
 };
 
 /** Returns {claim, measured, bound, verdict} of each claim. */
-console::Json verdictsOf(const std::vector<Claim>& claims);
+console::Json getVerdicts(const std::vector<Claim>& claims);
 
 // Each function adds one study to the command `study`.
 void addErrorStudy(CLI::App& study, console::Action& action);

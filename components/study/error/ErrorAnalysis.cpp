@@ -132,7 +132,7 @@ void addTimes(Out out, const ErrorResult& result) {
         for (const Method method : methods) {
             const auto points = ladder(result, reference.scene, method);
             if (points.empty()) continue;
-            fmt::format_to(out, "| {} | {}", reference.scene, nameOf(method));
+            fmt::format_to(out, "| {} | {}", reference.scene, getName(method));
             for (const double goal : goals) {
                 const auto time = timeTo(goal, points);
                 fmt::format_to(out, " | {}{}", time ? time->text() : "never",
@@ -176,7 +176,7 @@ void addPoints(Out out, const ErrorResult& result) {
         fmt::format_to(out,
                        "| {} | {} | {} | {} | {:.2e} | {:.2e} | {:.3f} | {} | {} | {:.1e} | {:.1e} | {:.1f} | {:.3f} | "
                        "{:.3f} | {:.3f} |\n",
-                       m.scene, nameOf(m.method), m.rows, m.columns_per_beam, e.rel_l2, e.rel_l2_tvg, e.db_rmse,
+                       m.scene, getName(m.method), m.rows, m.columns_per_beam, e.rel_l2, e.rel_l2_tvg, e.db_rmse,
                        e.missing_bins, e.ghost_bins, e.energy_bias, e.ripple, m.kappa_max, m.median_ms, m.p99_ms,
                        m.cpu_ms);
     }
@@ -212,7 +212,7 @@ std::optional<double> slope(const std::vector<Measurement>& points, double refer
     return (n * xy - x * y) / spread;
 }
 
-const char* nameOf(ReachTime::Kind kind) {
+const char* getName(ReachTime::Kind kind) {
     switch (kind) {
         case ReachTime::Kind::Interpolated: return "interpolated";
         case ReachTime::Kind::AtMost: return "at_most";
@@ -271,7 +271,7 @@ std::vector<Claim> claims(const ErrorResult& result) {
     return all;
 }
 
-std::string sheetOf(const ErrorResult& result) {
+std::string makeSheet(const ErrorResult& result) {
     std::string text = "# Error against run time\n\n";
     const Out out(text);
     addReferences(out, result);

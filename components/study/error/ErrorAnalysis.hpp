@@ -35,7 +35,7 @@ struct ReachTime {
     std::string text() const;
 };
 /** Returns "interpolated", "at_most" or "extrapolated". */
-const char* nameOf(ReachTime::Kind kind);
+const char* getName(ReachTime::Kind kind);
 
 /** Returns the time to reach an error, from the line through the two neighbouring points on logarithmic scales. If the
  *  finest point's error is too large, the line through the last two points is extended. None if they hardly fall, or
@@ -70,6 +70,6 @@ inline constexpr double goals[] = {0.1, 0.01, 0.001};
 inline constexpr double blurred = 3;
 
 /** Returns tables in Markdown: references, times to an error, chosen qualities, claims, every point. */
-std::string sheetOf(const ErrorResult& result);
+std::string makeSheet(const ErrorResult& result);
 
 }  // namespace insonify::study

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double frequency_khz = 100;  ///< The max frequency of TR 9407.
 
-acoustics::BeamLaw beamOf(acoustics::Weighting weighting, double width_deg) {
+acoustics::BeamLaw getBeam(acoustics::Weighting weighting, double width_deg) {
     acoustics::BeamLaw law;
     law.weighting = weighting;
     law.width_deg = width_deg;
@@ -35,11 +35,11 @@ acoustics::BeamLaw beamOf(acoustics::Weighting weighting, double width_deg) {
 void addPattern(sonar::SonarConfig& config) {
     const double fan_deg = config.fieldOfViewDeg(), beam_deg = fan_deg / config.beam_count;
     sonar::BeamPatternConfig& pattern = config.beam_pattern.emplace();
-    pattern.transmit.azimuth = beamOf(acoustics::Weighting::Gaussian, std::min(1.08 * fan_deg, 180.0));
-    pattern.transmit.elevation = beamOf(acoustics::Weighting::Uniform, config.beam_height_deg);
-    pattern.receive.azimuth = beamOf(acoustics::Weighting::Taylor, 4 * beam_deg);
+    pattern.transmit.azimuth = getBeam(acoustics::Weighting::Gaussian, std::min(1.08 * fan_deg, 180.0));
+    pattern.transmit.elevation = getBeam(acoustics::Weighting::Uniform, config.beam_height_deg);
+    pattern.receive.azimuth = getBeam(acoustics::Weighting::Taylor, 4 * beam_deg);
     pattern.receive.azimuth->sidelobe_db = -25;
-    pattern.receive.elevation = beamOf(acoustics::Weighting::Uniform, 1.25 * config.beam_height_deg);
+    pattern.receive.elevation = getBeam(acoustics::Weighting::Uniform, 1.25 * config.beam_height_deg);
 }
 
 void addPulse(sonar::SonarConfig& config) {
@@ -50,7 +50,7 @@ void addPulse(sonar::SonarConfig& config) {
 
 void addSeabed(StudyScene& scene) {
     scene.config.frequency_khz = frequency_khz;
-    const auto geometry = copyOf(scene.snapshot.geometry);
+    const auto geometry = makeCopy(scene.snapshot.geometry);
     if (std::ranges::all_of(geometry->materials, [](const types::Material& m) { return m.seabed.empty(); }))
         for (types::Material& material : geometry->materials) material.seabed = "medium_sand";
     scene.snapshot.geometry = geometry;
@@ -127,14 +127,14 @@ void time(const Ping& ping, int pings, std::vector<float>& energies, Measurement
         times[std::min(times.size() - 1, static_cast<size_t>(std::ceil(0.99 * static_cast<double>(times.size()))) - 1)];
 }
 
-sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
+sonar::SonarConfig getConfig(const StudyScene& scene, const Measurement& point) {
     sonar::SonarConfig config = scene.config;
     config.quality.rows = point.rows;
     config.quality.columns_per_beam = point.columns_per_beam;
     return config;
 }
 
-sonar::RenderOptions optionsOf(const Measurement& point) {
+sonar::RenderOptions getOptions(const Measurement& point) {
     sonar::RenderOptions options;
     if (point.method == Method::Nearest || point.method == Method::Published)
         options.estimator = sonar::Estimator::Nearest;
@@ -226,8 +226,8 @@ private:
 
     void measure(Method method, int rows, int columns) {
         Received received{{scene_.name, method, rows, columns, 1, {}, 0, 0, 0, 0}, {}};
-        options_.progress(fmt::format("{} {} {} x {}", scene_.name, nameOf(method), rows, columns));
-        const sonar::SonarConfig config = configOf(scene_, received.point);
+        options_.progress(fmt::format("{} {} {} x {}", scene_.name, getName(method), rows, columns));
+        const sonar::SonarConfig config = getConfig(scene_, received.point);
         if (method == Method::Embree) {
             tracer_.prepare(config);
             const auto ping = [&](auto& energies) { tracer_.render(scene_.snapshot.sonar, energies); };
@@ -240,7 +240,7 @@ private:
     }
 
     void timeRenderer(const sonar::SonarConfig& config, Received& received) {
-        sonar::SonarRenderer renderer(config, scene_.snapshot.geometry, optionsOf(received.point));
+        sonar::SonarRenderer renderer(config, scene_.snapshot.geometry, getOptions(received.point));
         types::Sonar ping;
         time([&](auto&) { renderer.render(scene_.snapshot, ping); }, options_.pings, received.energies, received.point);
         received.energies = ping.bins;
@@ -359,7 +359,7 @@ StudyScene withEffect(const StudyScene& plain, Effect effect) {
 void studyCoherent(const StudyScene& scene, const ErrorOptions& options, int min_rows, int base_columns,
                    ErrorResult& result) {
     const int poses = std::max(2, options.coherent_poses / 2 * 2);
-    const auto configOf = [&](int rows, int columns) {
+    const auto getConfig = [&](int rows, int columns) {
         sonar::SonarConfig config = scene.config;
         config.quality = {};
         config.quality.rows = rows;
@@ -367,7 +367,7 @@ void studyCoherent(const StudyScene& scene, const ErrorOptions& options, int min
         return config;
     };
     options.progress(scene.name + " energies");
-    sonar::SonarConfig energies = configOf(min_rows * finer, base_columns * finer);
+    sonar::SonarConfig energies = getConfig(min_rows * finer, base_columns * finer);
     energies.speckle.reset();
     const Halves expected = means(scene, energies, poses, nullptr, result.device);
     double chance = 0;
@@ -376,7 +376,7 @@ void studyCoherent(const StudyScene& scene, const ErrorOptions& options, int min
         options.progress(fmt::format("{} footprint {} x {}", scene.name, point.rows, point.columns_per_beam));
         std::vector<double> times;
         const Halves received =
-            means(scene, configOf(point.rows, point.columns_per_beam), poses, &times, result.device);
+            means(scene, getConfig(point.rows, point.columns_per_beam), poses, &times, result.device);
         double square = 0, scale = 0, spread = 0, got = 0, all = 0;
         for (size_t i = 0; i < received[0].size(); ++i) {
             const double product = (received[0][i] - expected[0][i]) * (received[1][i] - expected[1][i]);
@@ -396,7 +396,7 @@ void studyCoherent(const StudyScene& scene, const ErrorOptions& options, int min
         {scene.name, fmt::format("energies of {} poses, {} rows", poses, min_rows * finer), chance, 0, 0});
 }
 
-const char* nameOf(Method method) {
+const char* getName(Method method) {
     switch (method) {
         case Method::Footprint: return "footprint";
         case Method::Nearest: return "nearest";

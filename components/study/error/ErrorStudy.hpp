@@ -30,7 +30,7 @@ enum class Method { Footprint, Nearest, NearestJitter, Published, Embree };
 inline constexpr Method methods[] = {Method::Footprint, Method::Nearest, Method::NearestJitter, Method::Published,
                                      Method::Embree};
 /** Returns "footprint", "nearest", "nearest_jitter", "published" or "embree". */
-const char* nameOf(Method method);
+const char* getName(Method method);
 
 /** One point of a work-precision diagram. */
 struct Measurement {

@@ -30,7 +30,7 @@ double spacingDeg(const std::vector<double>& bearings) {
 }
 
 /** Returns the beam of a side-scan's line on this side. */
-size_t beamOf(const types::Sonar& line, double side) {
+size_t getBeam(const types::Sonar& line, double side) {
     return line.beam_count > 1 && (line.bearings[0].rad > 0) != (side > 0) ? 1 : 0;
 }
 
@@ -39,9 +39,9 @@ types::Sonar stacked(const std::vector<types::Sonar>& lines, double side) {
     types::Sonar all = lines.front();
     all.beam_count = static_cast<uint32_t>(lines.size());
     all.bins.clear();
-    all.bearings.assign(lines.size(), lines.front().bearings[beamOf(lines.front(), side)]);
+    all.bearings.assign(lines.size(), lines.front().bearings[getBeam(lines.front(), side)]);
     for (const types::Sonar& line : lines) {
-        const auto first = line.bins.begin() + static_cast<long>(beamOf(line, side) * line.bin_count);
+        const auto first = line.bins.begin() + static_cast<long>(getBeam(line, side) * line.bin_count);
         all.bins.insert(all.bins.end(), first, first + line.bin_count);
     }
     return all;

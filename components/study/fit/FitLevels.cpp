@@ -221,7 +221,7 @@ public:
             std::vector<double> across;
             for (size_t block = 0; block < recorded_.beam_blocks; ++block) {
                 across.push_back(stated(values, block, slice));
-                if (!by_median_) all.push_back(offOf(block, slice, across.back()));
+                if (!by_median_) all.push_back(computeOff(block, slice, across.back()));
             }
             if (by_median_) all.push_back(recorded_level_[slice] - medianLevel(across));
         }
@@ -266,7 +266,7 @@ private:
     bool isOpenWater(size_t block, size_t slice) const { return echoes_.at(block, slice) <= silent_db; }
     /** Returns recorded minus modelled level; in the water before the floor, with the recorded level of the quieter
      *  side. */
-    double offOf(size_t block, size_t slice, double modelled) const {
+    double computeOff(size_t block, size_t slice, double modelled) const {
         if (!chain_.isSideScan() || !isOpenWater(block, slice)) return recorded_.at(block, slice) - modelled;
         return is_loud_[block] ? 0 : (water_recorded_ ? *water_recorded_ : recorded_).at(block, slice) - modelled;
     }
@@ -290,14 +290,14 @@ private:
     }
     void render(const FitChain& chain) {
         const types::Sonar echoes = meanEchoes(rough_ ? thinned(chain) : chain);
-        echoes_ = blocksOf(echoes);
+        echoes_ = makeBlocks(echoes);
         const double slices = static_cast<double>(recorded_.slices);
         axis_ = echoes.binStart(echoes.bin_count) / (recorded_.ranges.back() * slices / (slices - 0.5));
         if (!fits_water_) return;
         constexpr double strength_db = -40;  // far above the rounding of the difference
         FitChain filled = thinned(chain);
         filled.sonar.volume.emplace_back().strength_db = strength_db;
-        water_ = blocksOf(meanEchoes(filled));
+        water_ = makeBlocks(meanEchoes(filled));
         for (size_t i = 0; i < water_.level.size(); ++i)
             water_.level[i] = toDb(toPower(water_.level[i]) - toPower(echoes_.level[i])) - strength_db;
     }
@@ -406,7 +406,7 @@ double alike(const std::vector<double>& residuals, size_t stride) {
 }
 
 /** Returns the variance of a residual as if all were independent [dB^2]. */
-double varianceOf(const LevelModel& model, const Values& at) {
+double computeVariance(const LevelModel& model, const Values& at) {
     const std::vector<double> residuals = model.residuals(at);
     double sum = 0;
     for (const double r : residuals) sum += r * r;
@@ -481,11 +481,11 @@ Values polished(LevelModel& model, Values at, const Chosen& chosen, const std::f
 Fitted around(double value, double deviation) { return {value, value - z_95 * deviation, value + z_95 * deviation}; }
 
 /** Returns the values with their intervals. */
-LevelFit fitOf(LevelModel& model, const Values& at) {
+LevelFit makeFit(LevelModel& model, const Values& at) {
     Chosen chosen = model.levels();
     for (const size_t i : model.looks()) chosen.push_back(i);
     const std::vector<double> residuals = model.residuals(at);
-    const double variance = varianceOf(model, at);
+    const double variance = computeVariance(model, at);
     double sum = 0;
     for (const double r : residuals) sum += r * r;
     cv::Mat derivatives = jacobian(model, at, chosen);
@@ -564,19 +564,19 @@ LevelFit fitLevels(const LevelBlocks& recorded, const CodedPing& law, const FitC
         const Values in_water = fitInner(model, model.startInWater(), 1500, 3);
         if (model.cost(in_water) < model.cost(values)) values = in_water;
     }
-    model.weighPulls(varianceOf(model, values));
+    model.weighPulls(computeVariance(model, values));
     if (model.looks().empty()) {
         values = fitInner(model, values, 1500, 2);
     } else {
         values = fitScene(model, values, progress);
-        model.weighPulls(varianceOf(model, values));
+        model.weighPulls(computeVariance(model, values));
         values = fitInner(model, values, 1500, 2);
         Chosen all = model.levels();
         for (const size_t i : model.looks()) all.push_back(i);
         values = polished(model, values, all, progress);
     }
     progress();
-    return fitOf(model, values);
+    return makeFit(model, values);
 }
 
 }  // namespace insonify::study

@@ -21,38 +21,38 @@ namespace {
 using Text = std::back_insert_iterator<std::string>;
 
 template <class Enum>
-std::string nameOf(Enum value) {
+std::string getName(Enum value) {
     return std::string(types::EnumNames<Enum>::names[static_cast<size_t>(value)]);
 }
 
-std::string blockOf(const acoustics::BeamLaw& law) {
+std::string getBlock(const acoustics::BeamLaw& law) {
     std::string text =
-        fmt::format("{{weighting: {}, width_deg: {:.4g}", nameOf(law.weighting.value_or(acoustics::Weighting::Uniform)),
-                    law.width_deg.value_or(1));
+        fmt::format("{{weighting: {}, width_deg: {:.4g}",
+                    getName(law.weighting.value_or(acoustics::Weighting::Uniform)), law.width_deg.value_or(1));
     if (law.sidelobe_db) text += fmt::format(", sidelobe_db: {:.4g}", *law.sidelobe_db);
     if (law.nbar) text += fmt::format(", nbar: {}", *law.nbar);
     return text + "}";
 }
 
-std::string blockOf(const acoustics::PulseConfig& pulse) {
+std::string getBlock(const acoustics::PulseConfig& pulse) {
     const std::string ringing = pulse.ring_down
                                     ? fmt::format(", ring_down: {{level_db: {:.2f}, decay_db_per_m: {:.4g}}}",
                                                   *pulse.ring_down->level_db, *pulse.ring_down->decay_db_per_m)
                                     : "";
     if (pulse.duration_us) return fmt::format("{{duration_us: {:.4g}{}}}", *pulse.duration_us, ringing);
     return fmt::format("{{bandwidth_khz: {:.4g}, window: {}{}}}", pulse.bandwidth_khz.value_or(0),
-                       nameOf(pulse.window.value_or(acoustics::PulseWindow::None)), ringing);
+                       getName(pulse.window.value_or(acoustics::PulseWindow::None)), ringing);
 }
 
-std::string blockOf(const sonar::SpeckleConfig& speckle) {
+std::string getBlock(const sonar::SpeckleConfig& speckle) {
     std::string text = "{coherent: true";
     if (speckle.scatterers_per_m2) text += fmt::format(", scatterers_per_m2: {:.4g}", *speckle.scatterers_per_m2);
     return text + fmt::format(", scatterers_per_cell: {}}}", speckle.scatterers_per_cell);
 }
 
-std::string blockOf(const receiver::CodeConfig& code) {
+std::string getBlock(const receiver::CodeConfig& code) {
     std::string text =
-        fmt::format("{{bits: {}, law: {}, full_scale_db: {:.2f}", code.bits, nameOf(code.law), code.full_scale_db);
+        fmt::format("{{bits: {}, law: {}, full_scale_db: {:.2f}", code.bits, getName(code.law), code.full_scale_db);
     if (code.law == receiver::CodeLaw::Log) text += fmt::format(", dynamic_range_db: {:.4g}", code.dynamic_range_db);
     return text + (code.gamma != 1 ? fmt::format(", gamma: {:.4g}}}", code.gamma) : "}");
 }
@@ -92,7 +92,7 @@ void addAcross(const RecordingFit& fit, const std::string& task, std::vector<Fit
     all.push_back({task + ".depression_deg", fmt::format("{:.4g}", 90 - std::abs(fan.bearings_deg.front())),
                    comment(fit, "depression")});
     all.push_back({task + ".beam_height_deg", fmt::format("{:.4g}", *fan.beam_width_deg), ""});
-    all.push_back({task + ".beam_pattern.receive.elevation", blockOf(*fan.beam_pattern->receive.azimuth),
+    all.push_back({task + ".beam_pattern.receive.elevation", getBlock(*fan.beam_pattern->receive.azimuth),
                    comment(fit, "elevation width")});
 }
 
@@ -106,8 +106,8 @@ void addSonar(const RecordingFit& fit, const std::string& task, std::vector<FitS
     set("range_rounding", "exact", "bins as deep as recorded");
     set("speed_of_sound", fmt::format("{:.7g}", sonar.speedOfSound()), "as recorded");
     set("frequency_khz", fmt::format("{:.7g}", *sonar.frequency_khz), "as recorded");
-    set("pulse", blockOf(*sonar.pulse), comment(fit, "pulse length"));
-    set("speckle", sonar.speckle ? blockOf(*sonar.speckle) : "null",
+    set("pulse", getBlock(*sonar.pulse), comment(fit, "pulse length"));
+    set("speckle", sonar.speckle ? getBlock(*sonar.speckle) : "null",
         sonar.speckle ? comment(fit, "scatterers per cell") : "speckle is made by the noise task");
     set("absorption", fmt::format("{{db_per_m: {:.4g}}}", *sonar.absorption->db_per_m), comment(fit, "absorption"));
     if (fit.chain.isSideScan()) return addAcross(fit, task, all);
@@ -118,9 +118,9 @@ void addSonar(const RecordingFit& fit, const std::string& task, std::vector<FitS
     set("beam_width_deg", fmt::format("{:.6g}", *sonar.beam_width_deg), "distance of the beams");
     set("beam_height_deg", fmt::format("{:.6g}", sonar.beam_height_deg), "");
     const sonar::BeamPatternConfig& pattern = *sonar.beam_pattern;
-    set("beam_pattern.receive.azimuth", blockOf(*pattern.receive.azimuth), comment(fit, "beam width"));
+    set("beam_pattern.receive.azimuth", getBlock(*pattern.receive.azimuth), comment(fit, "beam width"));
     if (fit.levels.elevation_deg)
-        set("beam_pattern.transmit.elevation", blockOf(*pattern.transmit.elevation), comment(fit, "elevation width"));
+        set("beam_pattern.transmit.elevation", getBlock(*pattern.transmit.elevation), comment(fit, "elevation width"));
 }
 
 void addNoise(const RecordingFit& fit, const std::string& task, std::vector<FitSetting>& all) {
@@ -149,7 +149,7 @@ void addNoise(const RecordingFit& fit, const std::string& task, std::vector<FitS
 
 }  // namespace
 
-std::vector<FitSetting> wayOf(const FitChain& chain, const FitTasks& tasks) {
+std::vector<FitSetting> getFoundSettings(const FitChain& chain, const FitTasks& tasks) {
     constexpr size_t every = 4;
     std::vector<std::string> points;
     const std::vector<types::Pose>& lines = chain.lines;
@@ -157,7 +157,7 @@ std::vector<FitSetting> wayOf(const FitChain& chain, const FitTasks& tasks) {
     const auto add = [&](size_t i) {
         const glm::dquat body = lines[i].orientation * glm::inverse(fan);
         const glm::dvec3 at = lines[i].position - body * tasks.mount.position;
-        const types::Turns turns = types::turnsOf(body);
+        const types::Turns turns = types::toTurns(body);
         points.push_back(
             fmt::format("{{time: {:.6g}, position: [{:.6g}, {:.6g}, {:.6g}], yaw_deg: {:.6g}, pitch_deg: {:.4g}}}",
                         static_cast<double>(i) * tasks.period, at.x, at.y, at.z, types::degrees(turns.yaw),
@@ -179,9 +179,9 @@ std::vector<FitSetting> wayOf(const FitChain& chain, const FitTasks& tasks) {
     return all;
 }
 
-std::vector<FitSetting> settingsOf(const RecordingFit& fit, const FitTasks& tasks) {
+std::vector<FitSetting> getSettings(const RecordingFit& fit, const FitTasks& tasks) {
     std::vector<FitSetting> all;
-    if (fit.chain.isSideScan()) all = wayOf(fit.chain, tasks);
+    if (fit.chain.isSideScan()) all = getFoundSettings(fit.chain, tasks);
     if (fit.levels.pitch_deg && !fit.chain.isSideScan()) {
         all.push_back({tasks.scene + ".mount.pitch_deg",
                        fmt::format("{:.4g}", tasks.mount.pitch_deg + fit.levels.pitch_deg->value),
@@ -197,11 +197,11 @@ std::vector<FitSetting> settingsOf(const RecordingFit& fit, const FitTasks& task
     all.push_back({tasks.receiver + ".tvg.log_coefficient", fmt::format("{:.4g}", tvg.log_coefficient),
                    comment(fit, "TVG logarithm")});
     all.push_back({tasks.receiver + ".tvg.db_per_m", fmt::format("{:.4g}", tvg.db_per_m), comment(fit, "TVG slope")});
-    all.push_back({tasks.receiver + ".code", blockOf(fit.chain.code()), comment(fit, "full scale")});
+    all.push_back({tasks.receiver + ".code", getBlock(fit.chain.code()), comment(fit, "full scale")});
     return all;
 }
 
-std::string pageOf(const RecordingFit& fit, const std::vector<CodedPing>& recorded, const std::string& picture) {
+std::string makePage(const RecordingFit& fit, const std::vector<CodedPing>& recorded, const std::string& picture) {
     std::string page = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Fitted sonar</title>\n"
         "<style>body{{font-family:sans-serif;max-width:80em;margin:1em auto}}td,th{{padding:.2em .8em;text-align:left;"
@@ -219,7 +219,7 @@ std::string pageOf(const RecordingFit& fit, const std::vector<CodedPing>& record
                 : fmt::format(
                       "<tr><td>{}</td><td colspan=\"3\">not determined by this recording</td><td>{}</td></tr>\n",
                       finding.name, finding.note);
-    const LevelBlocks real = blocksOf(recorded.front()), made = blocksOf(fit.simulated_pings.front());
+    const LevelBlocks real = makeBlocks(recorded.front()), made = makeBlocks(fit.simulated_pings.front());
     const auto [low, high] = std::ranges::minmax(real.level);
     page += fmt::format(
         "</table>\n<h2>Level over range</h2>\n<p>Blue: recorded, red: simulated; {:.0f} to {:.0f} dB relative to the "
@@ -235,8 +235,8 @@ std::filesystem::path writePage(const RecordingFit& fit, const std::vector<Coded
     std::filesystem::path page = deployment, picture = deployment;
     page.replace_extension(".html");
     picture.replace_extension(".png");
-    output::writePng(picture, fansOf({recorded.front(), fit.simulated_pings.front()}));
-    write(page, pageOf(fit, recorded, picture.filename().string()));
+    output::writePng(picture, drawFans({recorded.front(), fit.simulated_pings.front()}));
+    write(page, makePage(fit, recorded, picture.filename().string()));
     return page;
 }
 

@@ -21,14 +21,14 @@ struct FitSetting {
 };
 
 /** Returns the properties that move a deployment's vehicle along the lines of a side-scan, one line per period. */
-std::vector<FitSetting> wayOf(const FitChain& chain, const FitTasks& tasks);
+std::vector<FitSetting> getFoundSettings(const FitChain& chain, const FitTasks& tasks);
 
 /** Returns the properties that turn a deployment into the fitted one. */
-std::vector<FitSetting> settingsOf(const RecordingFit& fit, const FitTasks& tasks);
+std::vector<FitSetting> getSettings(const RecordingFit& fit, const FitTasks& tasks);
 
 /** Returns a page of HTML with the findings, levels over range, and a picture, by its name, of a recorded and a
  *  simulated ping. */
-std::string pageOf(const RecordingFit& fit, const std::vector<CodedPing>& recorded, const std::string& picture);
+std::string makePage(const RecordingFit& fit, const std::vector<CodedPing>& recorded, const std::string& picture);
 
 /** Writes the page next to a fitted deployment: its name with .html, and the picture with .png. Throws
  *  std::runtime_error if a file cannot be written. @return the page */

@@ -72,7 +72,7 @@ using Moments = std::array<double, 5>;  ///< Beams: three lags, one; bins: three
 
 std::optional<Moments> momentsIn(const SpeckleField& field) {
     try {
-        const SpeckleFigures figures = figuresOf(field);
+        const SpeckleFigures figures = computeFigures(field);
         Moments moments{0, figures.across[1], 0, figures.along[1], figures.texture.value};
         for (size_t lag = 1; lag <= lags_of_moments; ++lag) {
             moments[0] += figures.across[lag];
@@ -107,7 +107,7 @@ MeasuredMoments jackknifed(const SpeckleField& field, bool with_errors) {
 }
 
 /** Averages over pings. Speckle of a still scene is the same in each ping, so errors remain those of one ping. */
-MeasuredMoments meanOf(const std::vector<MeasuredMoments>& all) {
+MeasuredMoments computeMean(const std::vector<MeasuredMoments>& all) {
     MeasuredMoments mean;
     for (size_t i = 0; i < mean.size(); ++i) {
         double value = 0, error = 0, count = 0;
@@ -207,7 +207,7 @@ Measured sidelobes(const std::vector<CodedPing>& pings, double width_beams) {
     return {middle, 1.25 * deviation / std::sqrt(static_cast<double>(all.size()))};
 }
 
-SpeckleMoments momentsOf(const std::vector<CodedPing>& pings, const LevelFit& levels, bool with_errors) {
+SpeckleMoments computeMoments(const std::vector<CodedPing>& pings, const LevelFit& levels, bool with_errors) {
     std::vector<MeasuredMoments> echoes, noises, textures;
     SpeckleMoments moments{.echo_share = 0};
     for (const CodedPing& ping : pings) {
@@ -221,10 +221,10 @@ SpeckleMoments momentsOf(const std::vector<CodedPing>& pings, const LevelFit& le
         moments.echo_share += textured.share / static_cast<double>(pings.size());
         moments.range += textured.range / static_cast<double>(pings.size());
     }
-    const MeasuredMoments echo = meanOf(echoes), noise = meanOf(noises);
+    const MeasuredMoments echo = computeMean(echoes), noise = computeMean(noises);
     moments.echo_beams = echo[0];
     moments.echo_bins = echo[2];
-    moments.texture = meanOf(textures)[4];
+    moments.texture = computeMean(textures)[4];
     moments.noise_beams = noise[1];
     moments.noise_bins = noise[3];
     return moments;

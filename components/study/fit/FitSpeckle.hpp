@@ -27,7 +27,7 @@ struct SpeckleMoments {
 
 /** Returns the moments of several pings with equal weight. @param levels separates echoes and noise
  *  @param with_errors false: errors are 0, in a tenth of the time */
-SpeckleMoments momentsOf(const std::vector<CodedPing>& pings, const LevelFit& levels, bool with_errors);
+SpeckleMoments computeMoments(const std::vector<CodedPing>& pings, const LevelFit& levels, bool with_errors);
 
 /** Returns the highest sidelobe of a beam relative to its axis [dB]: the max level of beams next to isolated targets,
  *  beyond the main lobe; the median over all targets. A target must be unclipped and 25 dB above its surroundings, its

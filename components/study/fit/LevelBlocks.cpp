@@ -30,7 +30,7 @@ LevelBlocks blocksBy(size_t beams, size_t bins, double resolution, const auto& i
 CodeResponse::CodeResponse(const CodedPing& law) {
     constexpr int quantiles = 128;
     const double maximum = std::pow(2, law.bits) - 1;
-    const auto codeOf = [&](double intensity) {
+    const auto getCode = [&](double intensity) {
         const double exponent = (law.law.law == receiver::CodeLaw::Sqrt ? 0.5 : 1.0) * law.law.gamma;
         const double share = law.law.law == receiver::CodeLaw::Log ? 1 + toDb(intensity) / law.law.dynamic_range_db
                                                                    : std::pow(intensity, exponent);
@@ -40,7 +40,7 @@ CodeResponse::CodeResponse(const CodedPing& law) {
         double sum = 0;
         for (int i = 0; i < quantiles; ++i) {
             const double factor = -std::log((i + 0.5) / quantiles);
-            sum += toPower(law.levelDb(codeOf(toPower(level) * factor))) / quantiles;
+            sum += toPower(law.levelDb(getCode(toPower(level) * factor))) / quantiles;
         }
         stated_db_.push_back(toDb(sum));
     }
@@ -54,19 +54,19 @@ double CodeResponse::operator()(double level_db) const {
     return (1 - part) * stated_db_[i] + part * stated_db_[i + 1];
 }
 
-LevelBlocks blocksOf(const CodedPing& ping) {
+LevelBlocks makeBlocks(const CodedPing& ping) {
     return blocksBy(ping.beam_count, ping.bin_count, ping.resolution,
                     [&](size_t beam, size_t bin) { return toPower(ping.levelDb(ping.code(beam, bin))); });
 }
 
-LevelBlocks blocksOf(const types::Sonar& intensities) {
+LevelBlocks makeBlocks(const types::Sonar& intensities) {
     return blocksBy(intensities.beam_count, intensities.bin_count, intensities.binStart(1),
                     [&](size_t beam, size_t bin) {
                         return static_cast<double>(intensities.bins[beam * intensities.bin_count + bin]);
                     });
 }
 
-LevelBlocks meanOf(const std::vector<LevelBlocks>& all) {
+LevelBlocks computeMean(const std::vector<LevelBlocks>& all) {
     LevelBlocks mean = all.front();
     for (size_t i = 0; i < mean.level.size(); ++i) {
         double sum = 0;
@@ -76,7 +76,7 @@ LevelBlocks meanOf(const std::vector<LevelBlocks>& all) {
     return mean;
 }
 
-LevelBlocks minimumOf(const std::vector<LevelBlocks>& all) {
+LevelBlocks findMinimum(const std::vector<LevelBlocks>& all) {
     LevelBlocks minimum = all.front();
     for (const LevelBlocks& each : all)
         for (size_t i = 0; i < minimum.level.size(); ++i) minimum.level[i] = std::min(minimum.level[i], each.level[i]);

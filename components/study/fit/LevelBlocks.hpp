@@ -37,11 +37,11 @@ struct LevelBlocks {
 
 /** Returns the mean levels that a ping's codes state, relative to the max code; for intensities, relative to the
  *  source. A block without intensity has the level -400 dB. */
-LevelBlocks blocksOf(const CodedPing& ping);
-LevelBlocks blocksOf(const types::Sonar& intensities);
+LevelBlocks makeBlocks(const CodedPing& ping);
+LevelBlocks makeBlocks(const types::Sonar& intensities);
 /** Returns the mean of several pings, as intensities. */
-LevelBlocks meanOf(const std::vector<LevelBlocks>& all);
+LevelBlocks computeMean(const std::vector<LevelBlocks>& all);
 /** Returns the min of several pings. */
-LevelBlocks minimumOf(const std::vector<LevelBlocks>& all);
+LevelBlocks findMinimum(const std::vector<LevelBlocks>& all);
 
 }  // namespace insonify::study

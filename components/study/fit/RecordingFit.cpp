@@ -18,7 +18,7 @@ constexpr double min_texture = 0.01;  ///< Min 1 / shape of the K law.
 constexpr double min_width = 0.3, max_width = 16;  ///< Bounds of a filter's width [bins].
 
 /** Returns the sum of the first three lags of a filter's correlation of intensities, exp(-(lag / width)^2). */
-double correlationOf(double width) {
+double computeCorrelation(double width) {
     double sum = 0;
     for (int lag = 1; lag <= 3; ++lag) sum += std::exp(-std::pow(lag / width, 2));
     return sum;
@@ -410,8 +410,8 @@ LevelBlocks corrected(LevelBlocks recorded, const std::vector<CodedPing>& simula
     constexpr double mostly_echo = 0.5;
     constexpr size_t smoothed = 2;  ///< Slices on either side.
     std::vector<LevelBlocks> each;
-    for (const CodedPing& ping : simulated) each.push_back(blocksOf(ping));
-    const LevelBlocks made = meanOf(each);
+    for (const CodedPing& ping : simulated) each.push_back(makeBlocks(ping));
+    const LevelBlocks made = computeMean(each);
     std::vector<double> sums(recorded.slices), counts(recorded.slices);
     for (size_t block = 0; block < recorded.beam_blocks; ++block)
         for (size_t slice = 0; slice < recorded.slices; ++slice) {
@@ -463,8 +463,8 @@ void AveragedSpeckle::apply() {
     if (inverse_ > min_texture) speckle.law = noise::SpeckleLaw::K, speckle.shape = std::clamp(1 / inverse_, 0.1, 1e6);
     noise::FilterConfig& filter = chain_.noise.filter.emplace();
     filter.looks = looks_;
-    if (recorded_.echo_bins.isMoreThanChance() && bins_ > correlationOf(min_width))
-        filter.correlation_bins = argumentAt(bins_, min_width, max_width, correlationOf);
+    if (recorded_.echo_bins.isMoreThanChance() && bins_ > computeCorrelation(min_width))
+        filter.correlation_bins = argumentAt(bins_, min_width, max_width, computeCorrelation);
 }
 
 bool AveragedSpeckle::isTextured() const {
@@ -492,7 +492,7 @@ void AveragedSpeckle::addTo(std::vector<Finding>& findings) const {
     const auto& width = chain_.noise.filter->correlation_bins;
     const double slack = z_95 * recorded_.echo_bins.error;
     const auto at = [](double sum) {
-        return argumentAt(std::max(sum, correlationOf(min_width)), min_width, max_width, correlationOf);
+        return argumentAt(std::max(sum, computeCorrelation(min_width)), min_width, max_width, computeCorrelation);
     };
     findings.push_back({"speckle over bins", "1",
                         width ? Fitted{*width, at(bins_ - slack), at(bins_ + slack)} : Fitted{}, width.has_value(),
@@ -528,8 +528,8 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
     if (std::ranges::none_of(echoes.bins, [](float bin) { return bin > 0; }))
         throw types::ConfigError("", "scene", "gives the deployment's sonar no echo in the range of the recording");
     std::vector<LevelBlocks> blocks;
-    for (const CodedPing& ping : recorded) blocks.push_back(blocksOf(ping));
-    const LevelBlocks measured = meanOf(blocks);
+    for (const CodedPing& ping : recorded) blocks.push_back(makeBlocks(ping));
+    const LevelBlocks measured = computeMean(blocks);
     LevelBlocks levels = measured;
     const double range = recorded.front().resolution * static_cast<double>(recorded.front().bin_count);
 
@@ -542,17 +542,17 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
     for (size_t round = 0; round < rounds; ++round) {
         const auto show = [&] { progress(fmt::format("round {} of {}: levels", round + 1, rounds)); };
         fit.levels = fitLevels(levels, recorded.front(), chain,
-                               {.rough = rough, .water = minimumOf(blocks), .fits_scene = rough && round == 0}, show);
+                               {.rough = rough, .water = findMinimum(blocks), .fits_scene = rough && round == 0}, show);
         if (round == 0)
             pitch = fit.levels.pitch_deg, height = fit.levels.height_m, elevation = fit.levels.elevation_deg;
         chain = fit.levels.applied(chain);
         ring(ringing, recorded.front().resolution, chain);
-        fit.recorded = momentsOf(recorded, fit.levels, round + 2 == rounds);
+        fit.recorded = computeMoments(recorded, fit.levels, round + 2 == rounds);
         if (round == 0 && chain.isSideScan() && AveragedSpeckle::isIn(fit.recorded)) averaged.emplace(chain);
         if (round == 0) averaged ? averaged->begin(fit.recorded) : speckle.begin(fit.recorded);
         progress(fmt::format("round {} of {}: speckle", round + 1, rounds));
         fit.simulated_pings = simulatedPings(chain, simulations);
-        fit.simulated = momentsOf(fit.simulated_pings, fit.levels, false);
+        fit.simulated = computeMoments(fit.simulated_pings, fit.levels, false);
         levels = corrected(measured, fit.simulated_pings, fit.levels);
         if (round + 1 < rounds)
             averaged ? averaged->improve(fit.recorded, fit.simulated) : speckle.improve(fit.recorded, fit.simulated);

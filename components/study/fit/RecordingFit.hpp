@@ -69,7 +69,7 @@ struct RecordingFit {
  *
  *  Levels over range determine gain, noise, time-varied gain and absorption (`fitLevels`). The correlation of speckle
  *  between neighbouring beams and bins determines the beam width and the pulse length; the law of its intensities
- *  determines the number of scatterers in a cell (`momentsOf`). The same statistics are then measured in simulated
+ *  determines the number of scatterers in a cell (`computeMoments`). The same statistics are then measured in simulated
  *  pings, and the properties are moved until both agree (indirect inference: Gourieroux, Monfort and Renault 1993).
  *
  *  @param rough see LevelOptions

@@ -95,7 +95,7 @@ struct Patch {
     size_t beam, bin;
 
     double amplitude(size_t i, size_t j) const { return picture.amplitude(beam + i, bin + j); }
-    double meanOf(size_t from_i, size_t from_j, size_t size) const {
+    double computeMean(size_t from_i, size_t from_j, size_t size) const {
         double sum = 0;
         for (size_t i = 0; i < size; ++i)
             for (size_t j = 0; j < size; ++j) sum += amplitude(from_i + i, from_j + j);
@@ -106,10 +106,10 @@ struct Patch {
         for (size_t i = 0; i < patch; ++i)
             for (size_t j = 0; j < patch; ++j) clipped += picture.isClipped(beam + i, bin + j);
         if (static_cast<double>(clipped) > clipped_at_max * patch * patch) return false;
-        const double all = meanOf(0, 0, patch);
+        const double all = computeMean(0, 0, patch);
         for (const size_t i : {size_t{0}, patch / 2})
             for (const size_t j : {size_t{0}, patch / 2})
-                if (std::abs(meanOf(i, j, patch / 2) - all) > quarters_alike * all) return false;
+                if (std::abs(computeMean(i, j, patch / 2) - all) > quarters_alike * all) return false;
         return true;
     }
 };
@@ -122,7 +122,7 @@ void addSpeckle(const Picture& picture, Looks& looks) {
             const Patch each{picture, beam, bin};
             if (!each.isHomogeneous()) continue;
             ++looks.patches;
-            const double all = each.meanOf(0, 0, patch);
+            const double all = each.computeMean(0, 0, patch);
             double squares = 0, in_range = 0, in_beams = 0;
             for (size_t i = 0; i < patch; ++i)
                 for (size_t j = 0; j < patch; ++j) {
@@ -209,7 +209,7 @@ void forEachFigure(Looks& a, const Looks& b, const auto& f) {
         f(a.*figure, b.*figure);
 }
 
-double meanOf(const std::array<double, range_slices>& levels) {
+double computeMean(const std::array<double, range_slices>& levels) {
     double sum = 0;
     for (const double level : levels) sum += level / range_slices;
     return sum;
@@ -281,7 +281,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-Looks looksOf(const CodedPing& ping) {
+Looks computeLooks(const CodedPing& ping) {
     if (ping.beam_count < 2 * patch || ping.bin_count < 4 * patch)
         throw std::invalid_argument(ping.name + " has too few beams or bins for these statistics");
     Looks looks;
@@ -293,7 +293,7 @@ Looks looksOf(const CodedPing& ping) {
     return looks;
 }
 
-Looks meanOf(const std::vector<Looks>& all) {
+Looks computeMean(const std::vector<Looks>& all) {
     Looks sum;
     for (const Looks& each : all) {
         forEachFigure(sum, each, [&](double& a, double b) { a += b / static_cast<double>(all.size()); });
@@ -322,7 +322,7 @@ Apart apart(const Looks& a, const Looks& b) {
     const auto difference = [&](double Looks::*figure) { return std::abs(a.*figure - b.*figure); };
     double squares = 0;
     for (size_t i = 0; i < range_slices; ++i)
-        squares += std::pow(a.level_db[i] - meanOf(a.level_db) - (b.level_db[i] - meanOf(b.level_db)), 2);
+        squares += std::pow(a.level_db[i] - computeMean(a.level_db) - (b.level_db[i] - computeMean(b.level_db)), 2);
     return {.emd_codes = earthMoversDistance(a.histogram, b.histogram),
             .js_bits = jensenShannonDivergence(a.histogram, b.histogram),
             .dynamic_range_db = difference(&Looks::dynamic_range_db),
@@ -375,26 +375,26 @@ LikenessResult studyLikeness(const std::vector<CodedPing>& recorded, const Coded
     if (recorded.empty()) throw std::invalid_argument("there is no recorded ping to compare with");
     LikenessResult result;
     std::vector<Looks> looks;
-    for (const CodedPing& ping : recorded) looks.push_back(looksOf(ping));
-    result.recorded = meanOf(looks);
+    for (const CodedPing& ping : recorded) looks.push_back(computeLooks(ping));
+    result.recorded = computeMean(looks);
     const auto add = [&](const std::string& name, const Looks& each) {
         result.rows.push_back({name, each, apart(each, result.recorded)});
     };
     for (size_t i = 0; i < recorded.size(); ++i) add(recorded[i].name, looks[i]);
     result.shown = {recorded.front()};
     if (simulated) {
-        add("simulated", looksOf(*simulated));
+        add("simulated", computeLooks(*simulated));
         result.shown.push_back(*simulated);
     }
     double mean_code = 0;
     for (size_t code = 0; code < code_classes; ++code)
         mean_code += static_cast<double>(code) * result.recorded.histogram[code];
-    add("uniform", looksOf(uniformPing(recorded.front(), mean_code)));
-    add("cosine", looksOf(cosinePing(recorded.front())));
+    add("uniform", computeLooks(uniformPing(recorded.front(), mean_code)));
+    add("cosine", computeLooks(cosinePing(recorded.front())));
     return result;
 }
 
-std::vector<LikenessFigure> figuresOf(const LikenessRow& row) {
+std::vector<LikenessFigure> computeFigures(const LikenessRow& row) {
     const Looks& looks = row.looks;
     const auto& p = looks.percentiles;
     return {{"p1", p[0]},
@@ -420,10 +420,10 @@ std::vector<LikenessFigure> figuresOf(const LikenessRow& row) {
 
 std::string csv(const LikenessResult& result) {
     std::string text = "ping";
-    for (const LikenessFigure& figure : figuresOf(result.rows.front())) text += std::string(",") + figure.name;
+    for (const LikenessFigure& figure : computeFigures(result.rows.front())) text += std::string(",") + figure.name;
     for (const LikenessRow& row : result.rows) {
         text += "\n" + row.name;
-        for (const LikenessFigure& figure : figuresOf(row)) fmt::format_to(Out(text), ",{:.6g}", figure.value);
+        for (const LikenessFigure& figure : computeFigures(row)) fmt::format_to(Out(text), ",{:.6g}", figure.value);
     }
     return text + "\n";
 }
@@ -442,7 +442,7 @@ std::string profilesCsv(const LikenessResult& result) {
     return text;
 }
 
-types::Image fansOf(const std::vector<CodedPing>& pings) {
+types::Image drawFans(const std::vector<CodedPing>& pings) {
     std::vector<Fan> fans;
     int width = -gap;
     for (const CodedPing& ping : pings) width += fans.emplace_back(ping).width() + gap;
@@ -467,7 +467,7 @@ void writeReport(const LikenessResult& result, const std::filesystem::path& fold
     std::filesystem::create_directories(folder);
     write(folder / "likeness.csv", csv(result));
     write(folder / "profiles.csv", profilesCsv(result));
-    output::writePng(folder / "fans.png", fansOf(result.shown));
+    output::writePng(folder / "fans.png", drawFans(result.shown));
 }
 
 }  // namespace insonify::study

@@ -33,9 +33,9 @@ struct Looks {
 
 /** Returns the statistics of a ping of at least 32 beams and 64 bins. Without a homogeneous patch, or if nothing varies
  *  in the patches, their statistics are NaN. */
-Looks looksOf(const CodedPing& ping);
+Looks computeLooks(const CodedPing& ping);
 /** Returns the mean of each statistic. */
-Looks meanOf(const std::vector<Looks>& all);
+Looks computeMean(const std::vector<Looks>& all);
 
 /** Returns the mean distance by which codes must be moved to turn one histogram into the other (earth mover's distance;
  *  Rubner, Tomasi and Guibas, 2000): the area between the cumulated histograms [codes of 255]. */
@@ -85,14 +85,14 @@ struct LikenessFigure {
     const char* name;
     double value;
 };
-std::vector<LikenessFigure> figuresOf(const LikenessRow& row);
+std::vector<LikenessFigure> computeFigures(const LikenessRow& row);
 
 /** Return a line for each row, with its statistics and distances; histograms by code, codes and levels by slice. */
 std::string csv(const LikenessResult& result);
 std::string profilesCsv(const LikenessResult& result);
 
 /** Draws pings as fans side by side, grey, codes unchanged. */
-types::Image fansOf(const std::vector<CodedPing>& pings);
+types::Image drawFans(const std::vector<CodedPing>& pings);
 
 /** Writes likeness.csv, profiles.csv and fans.png. Throws std::runtime_error if a file cannot be written. */
 void writeReport(const LikenessResult& result, const std::filesystem::path& folder);

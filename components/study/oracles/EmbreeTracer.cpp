@@ -41,7 +41,7 @@ Strip row(double low, double high) {
 }
 
 /** Returns the two-way weight of an elevation, by the patterns of `config` in elevation [1]. */
-double receivedOf(const sonar::SonarConfig& config, double elevation) {
+double computeReceived(const sonar::SonarConfig& config, double elevation) {
     double received = 1;
     if (!config.beam_pattern) return received;
     for (const auto* law : {&config.beam_pattern->transmit.elevation, &config.beam_pattern->receive.elevation})
@@ -163,8 +163,9 @@ private:
         for (size_t k = 0; k < count; ++k)
             for (int i = 0; i < RayTree::packet; ++i) {  // beyond the edge: repeats the last direction
                 const int aside = std::min(i % tile, across - 1), above = static_cast<int>(k) * tile + i / tile;
-                rays[k].set(i, directionOf(fan_.columns[static_cast<size_t>(column + aside)].middle,
-                                           fan_.rows[static_cast<size_t>(first_row + std::min(above, up - 1))].middle));
+                rays[k].set(
+                    i, computeDirection(fan_.columns[static_cast<size_t>(column + aside)].middle,
+                                        fan_.rows[static_cast<size_t>(first_row + std::min(above, up - 1))].middle));
             }
         fan_.tree.trace(from_, {rays.data(), count}, {found.data(), count});
         for (int j = 0; j < up; ++j)
@@ -176,13 +177,13 @@ private:
             }
     }
 
-    glm::dvec3 directionOf(const Angle& azimuth, const Angle& elevation) const {
+    glm::dvec3 computeDirection(const Angle& azimuth, const Angle& elevation) const {
         return elevation.cosine * (azimuth.cosine * world_from_sonar_[0] + azimuth.sine * world_from_sonar_[1]) +
                elevation.sine * world_from_sonar_[2];
     }
 
     double mapped(uint32_t triangle, const Angle& azimuth, const Angle& elevation, double inverse_range) const {
-        const glm::dvec3 direction = directionOf(azimuth, elevation);
+        const glm::dvec3 direction = computeDirection(azimuth, elevation);
         return fan_.tree.mappedCosine(triangle, from_ + direction / inverse_range, direction);
     }
 
@@ -240,7 +241,7 @@ void EmbreeTracer::prepare(const sonar::SonarConfig& config) {
     const double half = types::radians(config.beam_height_deg) / 2, height = 2 * half / config.rows();
     for (int i = 0; i < config.rows(); ++i) {
         Strip& added = fan.rows.emplace_back(row(i * height - half, (i + 1) * height - half));
-        added.size *= receivedOf(config, (i + 0.5) * height - half);
+        added.size *= computeReceived(config, (i + 0.5) * height - half);
     }
     fan.beams = config.beams();
     fan.stripes = fan.groups() >= 4 * fan.workers.size() ? 1 : 4 * fan.workers.size();
@@ -327,10 +328,10 @@ public:
         }
         const auto direct = meet(from_, directions, none), reflected = meet(image_, below, to_surface);
         for (size_t i = 0; i < directions.size(); ++i) {
-            const bool is_direct = rangeOf(direct[i], from_, directions[i]) < to_surface[i];
+            const bool is_direct = computeRange(direct[i], from_, directions[i]) < to_surface[i];
             const glm::dvec3 &origin = is_direct ? from_ : image_, &d = is_direct ? directions[i] : below[i];
             const uint32_t met = is_direct ? direct[i] : std::isfinite(to_surface[i]) ? reflected[i] : RayTree::none;
-            points_[i] = {met, origin, d, rangeOf(met, origin, d), is_direct};
+            points_[i] = {met, origin, d, computeRange(met, origin, d), is_direct};
         }
         receiveBothWays();
         receiveOtherWays();
@@ -364,7 +365,7 @@ private:
     }
 
     /** Returns the range of the triangle's plane; infinite for none [m]. */
-    double rangeOf(uint32_t triangle, const glm::dvec3& from, const glm::dvec3& direction) const {
+    double computeRange(uint32_t triangle, const glm::dvec3& from, const glm::dvec3& direction) const {
         if (triangle == RayTree::none) return infinite;
         const RayTree::Triangle& plane = tree_[triangle];
         const double range = (plane.distance - glm::dot(plane.normal, from)) / glm::dot(plane.normal, direction);
@@ -404,7 +405,7 @@ private:
             const Point& point = points_[i];
             if (!point.isMet() || !isSent(out_of_sonar[i])) continue;
             const bool is_free = point.is_direct ? std::isfinite(to_surface[i]) && second[i] == point.triangle &&
-                                                       !(rangeOf(first[i], from_, out_of_sonar[i]) < to_surface[i])
+                                                       !(computeRange(first[i], from_, out_of_sonar[i]) < to_surface[i])
                                                  : first[i] == point.triangle;
             if (!is_free) continue;
             const glm::dvec3& normal = tree_[point.triangle].normal;

@@ -27,7 +27,7 @@ constexpr int mapped_fill[partings + 1] = {8, 16, 64};  ///< The same if each po
 static_assert(split * split == RayTree::packet);
 
 /** Returns a unit direction in the sonar's axes. */
-glm::dvec3 directionOf(double azimuth, double up) {
+glm::dvec3 computeDirection(double azimuth, double up) {
     const double level = std::sqrt(1 - up * up);
     return {level * std::cos(azimuth), level * std::sin(azimuth), up};
 }
@@ -42,7 +42,7 @@ struct Tile {
     }
     /** Returns the direction at fractions of the width and the height. */
     glm::dvec3 at(double across, double along) const {
-        return directionOf(azimuth + across * width, up + along * height);
+        return computeDirection(azimuth + across * width, up + along * height);
     }
 };
 
@@ -53,7 +53,7 @@ double boundary(int k, int n, uint64_t seed) {
     return (k + moved) / n;
 }
 
-double powerOf(const std::optional<acoustics::BeamLaw>& law, double angle) {
+double computePower(const std::optional<acoustics::BeamLaw>& law, double angle) {
     return law ? acoustics::BeamPattern(*law).power(angle) : 1;
 }
 
@@ -66,7 +66,8 @@ public:
         std::vector<double> all;
         for (int i = 0; i <= steps; ++i) {
             const double angle = std::asin(2.0 * i / steps - 1);
-            all.push_back(powerOf(pattern.transmit.elevation, angle) * powerOf(pattern.receive.elevation, angle));
+            all.push_back(computePower(pattern.transmit.elevation, angle) *
+                          computePower(pattern.receive.elevation, angle));
         }
         const double floor = std::pow(10, pattern.floor_db / 10);
         const auto received = std::ranges::find_if(all, [&](double power) { return power >= floor; }) - all.begin();
@@ -181,11 +182,11 @@ private:
             const glm::dvec3 ahead = world_from_sonar_ * direction;
             cosine = tree_.mappedCosine(number, from_ + range * ahead, ahead);
         }
-        sums_.echoes[binOf(range)] +=
+        sums_.echoes[findBin(range)] +=
             solid_angle * tree_.backscatter(number, cosine, world_from_sonar_ * direction, range) / (range * range);
     }
 
-    size_t binOf(double range) const {
+    size_t findBin(double range) const {
         return static_cast<size_t>(std::min(static_cast<int>(range / grid_.bin_width), grid_.bin_count - 1));
     }
 
@@ -193,7 +194,7 @@ private:
     void endAt(double range, double solid_angle) {
         if (sums_.ended.empty() || !(range > grid_.range_min)) return;
         const double end = std::min(range, grid_.range_max);
-        const size_t bin = binOf(end);
+        const size_t bin = findBin(end);
         sums_.ended[bin] += solid_angle;
         sums_.partial[bin] +=
             solid_angle * (1 / std::max(grid_.edge(static_cast<int>(bin)), grid_.range_min) - 1 / end);
@@ -225,7 +226,7 @@ struct Strip {
 };
 
 /** Returns the beams; with a pattern in azimuth eight strips per beam, or per its width if that is less, all around. */
-std::vector<Strip> stripsOf(const sonar::SonarConfig& config) {
+std::vector<Strip> makeStrips(const sonar::SonarConfig& config) {
     std::vector<Strip> strips;
     if (!config.beam_pattern || !config.beam_pattern->hasAzimuth()) {
         for (const sonar::Beam& beam : sonar::makeBeams(config)) strips.push_back({beam.low, beam.high});
@@ -241,7 +242,7 @@ std::vector<Strip> stripsOf(const sonar::SonarConfig& config) {
 }
 
 /** Returns the strips' weights in each beam; strips without weight are not traced. */
-std::vector<std::vector<double>> weightsOf(const sonar::SonarConfig& config, const std::vector<Strip>& strips) {
+std::vector<std::vector<double>> getWeights(const sonar::SonarConfig& config, const std::vector<Strip>& strips) {
     const sonar::BeamPatternConfig& pattern = *config.beam_pattern;
     const auto law = [](const std::optional<acoustics::BeamLaw>& of) {
         return of ? std::optional<acoustics::BeamPattern>(*of) : std::nullopt;
@@ -305,9 +306,9 @@ std::vector<double> PointTracer::render(const types::Pose& sonar, const sonar::S
     if (config.hasLayers()) throw std::invalid_argument("points support only homogeneous water, no layers");
     tree_.updateLaws(config);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
-    const std::vector<Strip> strips = stripsOf(config);
+    const std::vector<Strip> strips = makeStrips(config);
     const bool formed = config.beam_pattern && config.beam_pattern->hasAzimuth();
-    const auto weights = formed ? weightsOf(config, strips) : std::vector<std::vector<double>>{};
+    const auto weights = formed ? getWeights(config, strips) : std::vector<std::vector<double>>{};
     const auto isReceived = [&](size_t strip) {
         return !formed || std::ranges::any_of(weights, [&](const auto& beam) { return beam[strip] > 0; });
     };

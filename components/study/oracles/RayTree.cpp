@@ -145,7 +145,7 @@ void RayTree::add(uint32_t object, std::vector<glm::dvec3>& corners) {
         const types::Material& material = geometry_->materials[static_cast<size_t>(cluster.material)];
         const double mu = std::pow(10, material.lambert_db / 10);
         for (uint32_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; i += 3) {
-            const std::array<glm::dvec3, 3> triangle = cornersOf({object, i, cluster.material});
+            const std::array<glm::dvec3, 3> triangle = getCorners({object, i, cluster.material});
             const glm::dvec3 across = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
             const double length = glm::length(across);
             const glm::dvec3 normal = length > 0 ? across / length : glm::dvec3(0);
@@ -157,7 +157,7 @@ void RayTree::add(uint32_t object, std::vector<glm::dvec3>& corners) {
     }
 }
 
-std::array<glm::dvec3, 3> RayTree::cornersOf(const Source& source) const {
+std::array<glm::dvec3, 3> RayTree::getCorners(const Source& source) const {
     const types::Mesh& mesh = geometry_->meshes[static_cast<size_t>(geometry_->objects[source.object].mesh)];
     std::array<glm::dvec3, 3> corners;
     for (size_t k = 0; k < 3; ++k)
@@ -200,7 +200,7 @@ double RayTree::mappedCosine(uint32_t triangle, glm::dvec3 point, glm::dvec3 dir
     const types::Mesh& mesh = geometry_->meshes[static_cast<size_t>(geometry_->objects[source.object].mesh)];
     const types::Material& material = geometry_->materials[static_cast<size_t>(source.material)];
     const uint32_t* corners = &mesh.indices[source.first_index];
-    const glm::dvec3 weights = weightsAt(point, cornersOf(source));
+    const glm::dvec3 weights = weightsAt(point, getCorners(source));
     const glm::dvec4 along = mixed(mesh.tangents, corners, weights);
     const glm::dvec3 normal = glm::normalize(place.normals * mixed(mesh.normals, corners, weights));
     const glm::dvec3 leaning = glm::dmat3(place.origin_from_object) * glm::dvec3(along);

@@ -68,7 +68,7 @@ public:
     const glm::dvec3& origin() const { return origin_; }  ///< In the world [m].
     const Triangle& operator[](uint32_t triangle) const { return triangles_[triangle]; }
     /** Returns the object of a triangle: index into the geometry's objects [1]. */
-    uint32_t objectOf(uint32_t triangle) const { return sources_[triangle].object; }
+    uint32_t getObject(uint32_t triangle) const { return sources_[triangle].object; }
 
     /** Returns the cosine between a unit direction and the mapped normal at a point of a mapped triangle (about the
      *  origin). As in glTF: normal, tangent and uv of the corners weighted by the point's place, the map bilinear
@@ -97,7 +97,7 @@ private:
     };
     void add(uint32_t object, std::vector<glm::dvec3>& corners);
     /** Returns the corners about the origin [m]. */
-    std::array<glm::dvec3, 3> cornersOf(const Source& source) const;
+    std::array<glm::dvec3, 3> getCorners(const Source& source) const;
 
     types::GeometryPtr geometry_;
     glm::dvec3 origin_;

@@ -22,7 +22,8 @@ constexpr double tilted_tolerance = 1;  ///< For means over sidelobes, which are
 
 /** Returns the max error over facets around and frequencies; `numbers` are Fresnel numbers of a flat length [m];
  *  without it, at ranges of 5 and 100 m. */
-Outcome errorOf(const Shape& shape, double length, std::initializer_list<double> numbers, double allowed = tolerance) {
+Outcome computeError(const Shape& shape, double length, std::initializer_list<double> numbers,
+                     double allowed = tolerance) {
     double worst = 0;
     std::string where;
     Probe received;
@@ -43,8 +44,8 @@ Outcome errorOf(const Shape& shape, double length, std::initializer_list<double>
     return within(allowed, worst, "at most " + where, received);
 }
 
-Outcome far(const Shape& shape, double length) { return errorOf(shape, length, {0.05, 0.1}); }
-Outcome near(const Shape& shape, double length) { return errorOf(shape, length, {8, 20}); }
+Outcome far(const Shape& shape, double length) { return computeError(shape, length, {0.05, 0.1}); }
+Outcome near(const Shape& shape, double length) { return computeError(shape, length, {8, 20}); }
 
 Target cylinder(const Encounter& met, double tilt_deg) {
     return cylinderTarget(met, 0.1, 0.5, types::radians(tilt_deg));
@@ -54,7 +55,7 @@ using types::radians;
 
 const glm::dvec3 ball_at(9, 1, -0.5);
 sonar::SonarConfig smallFan() { return fan(60, 40, 16, 15); }
-types::GeometryPtr wallAndBall() { return sceneOf({facingWall(12), sphere(1.5, 48)}, {{0, 0, 0}, ball_at}); }
+types::GeometryPtr wallAndBall() { return makeScene({facingWall(12), sphere(1.5, 48)}, {{0, 0, 0}, ball_at}); }
 
 /** Passes if a changed scene has the echoes of wall and ball, to `allowed`. */
 Outcome sounds(double allowed, const types::GeometryPtr& changed, const std::string& got) {
@@ -65,14 +66,14 @@ Outcome sounds(double allowed, const types::GeometryPtr& changed, const std::str
 
 /** Returns wall and ball with `change` applied to the scene. */
 types::GeometryPtr changed(const auto& change) {
-    const auto geometry = copyOf(wallAndBall());
+    const auto geometry = makeCopy(wallAndBall());
     change(*geometry);
     return geometry;
 }
 
 Outcome insideAClosedMesh() {
     const sonar::SonarConfig config = fan(60, 40, 8, 8);
-    const types::Snapshot snapshot = lookingAt(sceneOf({sphere(5.05, 256)}));
+    const types::Snapshot snapshot = lookingAt(makeScene({sphere(5.05, 256)}));
     const Probe received = probe(config, snapshot), again = probe(config, snapshot);
     const double truth = radians(60) * 2 * std::sin(radians(20)) / (5.05 * 5.05);
     const double deviation = received.ping.bins == again.ping.bins ? off(received.energy(), truth) : INFINITY;
@@ -83,11 +84,11 @@ Outcome exactlyOnASurface() {
     const double lean = radians(30);
     const types::Mesh through = quad(glm::vec3(-20 * std::sin(lean), -20, -20 * std::cos(lean)), {0, 40, 0},
                                      glm::vec3(40 * std::sin(lean), 0, 40 * std::cos(lean)));
-    const Probe alone = probe(smallFan(), lookingAt(sceneOf({facingWall(12)})));
+    const Probe alone = probe(smallFan(), lookingAt(makeScene({facingWall(12)})));
     double worst = 0;
     Probe received;
     for (const types::Mesh& own : {levelGround(0), through, quad({0, 0, 0}, {0, 3, 0}, {0, 0, 3}), facingWall(0)}) {
-        received = probe(smallFan(), lookingAt(sceneOf({facingWall(12), own})));
+        received = probe(smallFan(), lookingAt(makeScene({facingWall(12), own})));
         worst = std::max(worst, received.isSound() ? difference(received.ping, alone.ping) : INFINITY);
     }
     return within(1e-3, worst,
@@ -121,7 +122,7 @@ Outcome nonManifold() {
 
 /** Returns an object's place with `transform` before the sphere's translation. */
 types::GeometryPtr placedBall(const types::Mesh& ball, const glm::dmat4& transform) {
-    const auto geometry = copyOf(sceneOf({facingWall(12), ball}));
+    const auto geometry = makeCopy(makeScene({facingWall(12), ball}));
     geometry->objects[1].world_from_object = glm::translate(glm::dmat4(1), ball_at) * transform;
     return geometry;
 }
@@ -147,7 +148,7 @@ Outcome stretched() {
 Outcome straightDown() {
     sonar::SonarConfig config = fan(40, 40, 1, 12);
     setSamples(config, 256, 64);
-    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5.05f)}), {}, 0.7, radians(90)));
+    const Probe received = probe(config, lookingAt(makeScene({levelGround(-5.05f)}), {}, 0.7, radians(90)));
     return within(1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 5.05)),
                   "a level bottom below a sonar that looks straight down", received);
 }
@@ -165,11 +166,11 @@ std::vector<StabilityCase> targetCases() {
     std::vector<StabilityCase> cases = {
         {61, "Sphere", expected,
          [=] {
-             return errorOf(sphere, 0, {5, 100});
+             return computeError(sphere, 0, {5, 100});
          }},
         {61, "Ellipsoid", expected,
          [=] {
-             return errorOf(egg, 0, {5, 100});
+             return computeError(egg, 0, {5, 100});
          }},
         {61, "Plate, far", expected, [=] { return far(plate, 0.5); }},
         {61, "Plate, near", expected, [=] { return near(plate, 0.3); }},
@@ -182,8 +183,8 @@ std::vector<StabilityCase> targetCases() {
     for (const double tilt : {1., 3., 10.})
         cases.push_back({61, fmt::format("Cylinder {:.0f} deg off broadside", tilt),
                          "to 1 dB with 32 to 2048 facets around, 100 kHz to 3 MHz; means of sidelobes", [=] {
-                             return errorOf([=](const Encounter& met) { return cylinder(met, tilt); }, 0, {50, 200},
-                                            tilted_tolerance);
+                             return computeError([=](const Encounter& met) { return cylinder(met, tilt); }, 0,
+                                                 {50, 200}, tilted_tolerance);
                          }});
     return cases;
 }

@@ -27,7 +27,7 @@ Probe twoMegahertzOn(SonarConfig& config, double wall, int bins) {
     config.water = {.temperature_celsius = 10, .salinity_psu = 35, .depth = 10, .ph = 8.1};
     config.absorption.emplace().frequency_khz = 2000;
     setSamples(config, 1024, 64);
-    return probe(config, lookingAt(sceneOf({facingWall(0)}, {{wall, 0, 0}})));
+    return probe(config, lookingAt(makeScene({facingWall(0)}, {{wall, 0, 0}})));
 }
 
 /** Returns a ping after a receiver. */
@@ -85,7 +85,7 @@ Outcome twoMegahertz(int bins, bool in_coarse_bins) {
 Outcome gain(double gain_db, double tolerance) {
     receiver::ReceiverConfig config;
     config.tvg = {.log_coefficient = 1000, .db_per_m = 1000, .max_db = gain_db};
-    const Probe echoes = probe(fan(60, 40, 8, 20), lookingAt(sceneOf({levelGround(-5)})));
+    const Probe echoes = probe(fan(60, 40, 8, 20), lookingAt(makeScene({levelGround(-5)})));
     receiver::Receiver receiver(config);
     types::Sonar ping;
     receiver.receive(echoes.ping, ping);
@@ -101,7 +101,7 @@ Outcome gain(double gain_db, double tolerance) {
 }
 
 Outcome weakAbsorption() {
-    const auto scene = lookingAt(sceneOf({levelGround(-5)}));
+    const auto scene = lookingAt(makeScene({levelGround(-5)}));
     SonarConfig config = fan(60, 40, 8, 50);
     const Probe plain = probe(config, scene);
     config.absorption.emplace().db_per_m = 0;
@@ -122,7 +122,7 @@ Outcome weakAbsorption() {
 
 /** Renders a plate of a material in front of a wall. */
 Probe plateBeforeWall(const SonarConfig& config, float lambert_db, float reflectivity) {
-    const auto geometry = copyOf(sceneOf({facingWall(10), facingWall(5.05f, 20)}));
+    const auto geometry = makeCopy(makeScene({facingWall(10), facingWall(5.05f, 20)}));
     geometry->materials.push_back(geometry->materials[0]);
     geometry->materials[1].lambert_db = lambert_db;
     geometry->materials[1].reflectivity = reflectivity;
@@ -159,7 +159,7 @@ constexpr double plate_at = 8.05;  ///< [m]
 
 /** Returns a bottom of -80 dB, and in front of it a plate of 2 x 2 m of +20 dB, the loudest that a file may have. */
 std::shared_ptr<types::Geometry> plateOverBottom() {
-    const auto geometry = copyOf(sceneOf({levelGround(-5), quad({plate_at, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
+    const auto geometry = makeCopy(makeScene({levelGround(-5), quad({plate_at, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
     geometry->materials.push_back(geometry->materials[0]);
     geometry->materials[0].lambert_db = -80;
     geometry->materials[1].lambert_db = 20;
@@ -179,7 +179,7 @@ double plateEnergy() {
     return 100 * sum * 4 / (cells * cells) / std::pow(plate_at, 4);
 }
 
-double energyOf(const Probe& echoes, uint32_t first, uint32_t last) {
+double sumEnergy(const Probe& echoes, uint32_t first, uint32_t last) {
     double sum = 0;
     for (uint32_t k = first; k < last; ++k) sum += echoes.ping.bins[k];
     return sum;
@@ -191,8 +191,8 @@ Outcome plateNextToBottom() {
     const Probe echoes = probe(config, lookingAt(plateOverBottom()));
     // The bottom from the aperture's edge on is visible below the plate, except where the plate hides it.
     const Truth bottom = planeTruth({0, 0, -1}, 5);
-    const double plate = off(energyOf(echoes, 80, 84), plateEnergy());
-    const double below = off(energyOf(echoes, 148, 160), 1e-8 * trueEnergy(config, 0, bottom, 14.8, 16));
+    const double plate = off(sumEnergy(echoes, 80, 84), plateEnergy());
+    const double below = off(sumEnergy(echoes, 148, 160), 1e-8 * trueEnergy(config, 0, bottom, 14.8, 16));
     return within(0.01, std::max(plate, below),
                   fmt::format("plate off by {:.1e}, the bottom from 14.8 to 16 m by {:.1e}", plate, below), echoes);
 }
@@ -206,7 +206,7 @@ void makeMirror(types::Material& material, float reflection, float slope) {
 
 /** A plane mirror's echo is that of the sonar's image, at twice the distance: R^2 / (2 D)^2. */
 Outcome mirrorAhead() {
-    const auto geometry = copyOf(sceneOf({facingWall(10)}));
+    const auto geometry = makeCopy(makeScene({facingWall(10)}));
     makeMirror(geometry->materials[0], 0.5f, 0);
     sonar::SonarConfig config = fan(20, 20, 1, 15);
     config.frequency_khz = 750;
@@ -223,7 +223,7 @@ Outcome mirrorAhead() {
 /** Tests a plate whose lobe is +60 dB at its peak, over a bottom of -80 dB. */
 Outcome glintNextToBottom() {
     constexpr double ahead = 8.05;  // [m]
-    const auto geometry = copyOf(sceneOf({levelGround(-5), quad({ahead, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
+    const auto geometry = makeCopy(makeScene({levelGround(-5), quad({ahead, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
     geometry->materials.push_back(geometry->materials[0]);
     geometry->materials[0].lambert_db = -80;
     makeMirror(geometry->materials[1], 1, 2.82e-4f);  // 1 / (4 pi s^2) is 1e6
@@ -231,13 +231,13 @@ Outcome glintNextToBottom() {
     sonar::SonarConfig config = fan(40, 40, 1, 16);
     setSamples(config, 512, 512);
     const Probe echoes = probe(config, lookingAt(geometry));
-    const auto sumOf = [&](size_t first, size_t last) {
+    const auto computeSum = [&](size_t first, size_t last) {
         double sum = 0;
         for (size_t k = first; k < last; ++k) sum += echoes.ping.bins[k];
         return sum;
     };
-    const double glint = std::abs(10 * std::log10(sumOf(80, 84) * 4 * ahead * ahead));
-    const double below = off(sumOf(148, 160), 1e-8 * trueEnergy(config, 0, planeTruth({0, 0, -1}, 5), 14.8, 16));
+    const double glint = std::abs(10 * std::log10(computeSum(80, 84) * 4 * ahead * ahead));
+    const double below = off(computeSum(148, 160), 1e-8 * trueEnergy(config, 0, planeTruth({0, 0, -1}, 5), 14.8, 16));
     return within(0.01, std::max(glint / 100, below),
                   fmt::format("glint off by {:.2g} dB, the bottom from 14.8 to 16 m by {:.1e}", glint, below), echoes);
 }

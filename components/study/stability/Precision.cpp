@@ -23,7 +23,7 @@ Outcome manySamplesInABin() {
     SonarConfig config = fan(20, 20, 1, 12);
     config.bin_count = 1;
     setSamples(config, 4000, 2500);
-    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    const Probe received = probe(config, lookingAt(makeScene({facingWall(10)})));
     return within(1e-6, worstBeam(received, config, planeTruth({1, 0, 0}, 10)),
                   "1e7 pixels of a wall in one bin, against the closed form", received);
 }
@@ -32,7 +32,7 @@ Outcome loudSamplesInABin() {
     SonarConfig config = fan(20, 20, 1, 12);
     config.bin_count = 1;
     setSamples(config, 2000, 1000);
-    const auto geometry = copyOf(sceneOf({facingWall(10)}));
+    const auto geometry = makeCopy(makeScene({facingWall(10)}));
     geometry->materials[0].lambert_db = 20;
     const Probe received = probe(config, lookingAt(geometry));
     return within(1e-6, std::abs(received.energy() / trueEnergy(config, 0, planeTruth({1, 0, 0}, 10)) / 100 - 1),
@@ -54,7 +54,7 @@ Probe planesBy(const char* device, sonar::Deposit where) {
     SonarConfig config = fan(130, 40, 61, 30);
     config.deposit = where;
     config.device = device;
-    return probe(config, lookingAt(sceneOf({levelGround(-4), facingWall(18)})));
+    return probe(config, lookingAt(makeScene({levelGround(-4), facingWall(18)})));
 }
 
 Outcome processorAndShader() {
@@ -74,7 +74,7 @@ Outcome softwareAndCard() {
 
 Outcome manyTriangles() {
     const types::Mesh ball = sphere(1, 224);  // 200,000 triangles
-    const auto geometry = std::make_shared<types::Geometry>(*sceneOf({ball}));
+    const auto geometry = std::make_shared<types::Geometry>(*makeScene({ball}));
     const size_t copies = 100'000'000 / geometry->triangleCount() + 1;
     for (size_t i = 1; i < copies; ++i) {
         types::Object& object = geometry->objects.emplace_back(geometry->objects[0]);
@@ -97,7 +97,7 @@ Outcome manyTriangles() {
 Outcome largeImage() {
     SonarConfig config = fan(20, 20, 1, 12);
     setSamples(config, 16384, 64);
-    const auto triangle = copyOf(sceneOf({quad({10, -400, -100}, {0, 800, 0}, {0, 0, 800})}));
+    const auto triangle = makeCopy(makeScene({quad({10, -400, -100}, {0, 800, 0}, {0, 0, 800})}));
     triangle->meshes[0].indices.resize(3);
     triangle->meshes[0].clusters[0].index_count = 3;
     const double start = seconds();
@@ -111,15 +111,15 @@ using types::radians;
 
 /** Returns ground, a ball, a wall and a tilted plate. */
 types::GeometryPtr harbour(glm::dvec3 origin) {
-    return sceneOf(
+    return makeScene(
         {levelGround(-5, 400), sphere(1.5, 64), facingWall(30, 12), quad({12, -9, -3}, {1, 5, 0}, {2, 0, 4})},
         {origin, origin + glm::dvec3(10, 3, -2), origin, origin});
 }
 
 /** Tests a plate 0.12 m to port and a wall 1999.85 m ahead to starboard. */
 Outcome tenCentimetresAndTwoKilometres() {
-    const auto geometry = sceneOf({quad({0.12f, 0.0f, -0.1f}, {0, 0.1f, 0}, {0, 0, 0.2f}),
-                                   quad({1999.85f, -300, -100}, {0, 300, 0}, {0, 0, 200})});
+    const auto geometry = makeScene({quad({0.12f, 0.0f, -0.1f}, {0, 0.1f, 0}, {0, 0, 0.2f}),
+                                     quad({1999.85f, -300, -100}, {0, 300, 0}, {0, 0, 200})});
     sonar::SonarConfig config = fan(2, 2, 2, 2000);
     config.range_min = 0.05;
     setSamples(config, 256, 16);
@@ -142,10 +142,10 @@ double leak(double distance, bool hidden_first, Probe& received) {
     };
     sonar::SonarConfig config = fan(30, 20, 8, 1000);
     config.range_min = 0.001;
-    const auto alone = sceneOf({plane(distance)}, {normal * distance});
+    const auto alone = makeScene({plane(distance)}, {normal * distance});
     std::vector<glm::dvec3> places = {normal * distance, normal * (distance * 1.0001)};
     if (hidden_first) std::swap(places[0], places[1]);
-    const auto both = copyOf(sceneOf({plane(distance), plane(distance)}, places));
+    const auto both = makeCopy(makeScene({plane(distance), plane(distance)}, places));
     both->materials.push_back(both->materials[0]);
     both->materials[1].lambert_db = 20;
     both->meshes[hidden_first ? 0 : 1].clusters[0].material = 1;
@@ -179,7 +179,7 @@ Outcome utmCoordinates() {
 
 Outcome instancesFarApart() {
     const auto ball = sphere(1.5, 64);
-    auto both = copyOf(sceneOf({ball, ball}, {{10, 0, 0}, {1e6 + 10, 0, 0}}));
+    auto both = makeCopy(makeScene({ball, ball}, {{10, 0, 0}, {1e6 + 10, 0, 0}}));
     both->objects[1].mesh = 0;
     const sonar::SonarConfig config = fan(20, 20, 8, 12);
     const Probe near = probe(config, lookingAt(both)), far = probe(config, lookingAt(both, {1e6, 0, 0}));
@@ -192,7 +192,7 @@ Outcome grazing(double incidence_deg) {
     const double height = 0.1, range = std::round(height / std::cos(radians(incidence_deg)));
     sonar::SonarConfig config = fan(10, 4, 4, std::ceil(1.1 * range));
     config.range_min = 0.05;
-    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-0.1f, 8000)})));
+    const Probe received = probe(config, lookingAt(makeScene({levelGround(-0.1f, 8000)})));
     const auto first = static_cast<uint32_t>(9 * range), last = static_cast<uint32_t>(11 * range);
     const Truth truth = planeTruth({0, 0, -1}, height);
     double energy = 0;
@@ -209,7 +209,7 @@ Outcome blankingThroughAPixel() {
     sonar::SonarConfig open = fan(10, 4, 4, 70), blanked = open;
     open.range_min = 0.05;
     blanked.range_min = 51.55;
-    const auto scene = lookingAt(sceneOf({levelGround(-0.1f, 8000)}));
+    const auto scene = lookingAt(makeScene({levelGround(-0.1f, 8000)}));
     const Probe received = probe(blanked, scene), whole = probe(open, scene);
     const double row = 2 * std::tan(radians(2)) / 256;  // of elevation
     const auto clear = static_cast<uint32_t>(10 / (1 / blanked.range_min - row / height)) + 1;
@@ -224,7 +224,7 @@ Outcome blankingThroughAPixel() {
 
 Outcome wallThroughThreeFrusta() {
     const sonar::SonarConfig config = fan(160, 20, 160, 100);
-    const Probe received = probe(config, lookingAt(sceneOf({facingWall(5, 400)})));
+    const Probe received = probe(config, lookingAt(makeScene({facingWall(5, 400)})));
     return within(
         1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 5)),
         fmt::format("worst of {} beams in {} frusta against the closed form", config.beam_count, received.plan.slabs),
@@ -233,14 +233,14 @@ Outcome wallThroughThreeFrusta() {
 
 Outcome groundThroughTheEyePlane() {
     const sonar::SonarConfig config = fan(360, 40, 180, 50);
-    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5)})));
+    const Probe received = probe(config, lookingAt(makeScene({levelGround(-5)})));
     return within(1e-3, worstBeam(received, config, planeTruth({0, 0, -1}, 5)),
                   "two triangles below and all around, worst of 180 beams against the closed form", received);
 }
 
 Outcome hugeSeaFloor(float width) {
     const sonar::SonarConfig config = fan(130, 40, 64, 50);
-    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5, width)}), {}, 0.3));
+    const Probe received = probe(config, lookingAt(makeScene({levelGround(-5, width)}), {}, 0.3));
     return within(0.01, worstBeam(received, config, planeTruth({0, 0, -1}, 5)),
                   "worst of 64 beams against the closed form", received);
 }
@@ -250,7 +250,7 @@ Outcome sliver() {
     sonar::SonarConfig config = fan(20, 20, 1, 12);
     setSamples(config, 64, 64);
     const double pixel = 2 * std::tan(radians(10)) / 64 * 10;
-    const auto geometry = sceneOf({quad({10, 0, -0.5f}, {0, static_cast<float>(pixel / 10), 0}, {0, 0, 1})});
+    const auto geometry = makeScene({quad({10, 0, -0.5f}, {0, static_cast<float>(pixel / 10), 0}, {0, 0, 1})});
     types::Snapshot snapshot = lookingAt(geometry);
     Probe received = probe(config, snapshot);
     sonar::SonarRenderer renderer(config, geometry);
@@ -278,7 +278,7 @@ Outcome wallsCrossingAtFrustumBorder() {
         return quad(glm::vec3(20 * n.y, -20 * n.x, -20), {-40 * n.y, 40 * n.x, 0}, {0, 0, 40});
     };
     const sonar::SonarConfig config = fan(80, 20, 40, 30);
-    const Probe received = probe(config, lookingAt(sceneOf({turned(one), turned(other)}, {{10, 0, 0}, {10, 0, 0}})));
+    const Probe received = probe(config, lookingAt(makeScene({turned(one), turned(other)}, {{10, 0, 0}, {10, 0, 0}})));
     const double distance = 10 * std::cos(lean);
     double worst = 0;
     for (uint32_t beam = 0; beam < 40; ++beam)  // at positive azimuths the plane whose normal leans to port is nearer

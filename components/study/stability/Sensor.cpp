@@ -96,10 +96,10 @@ using types::radians;
 /** Returns a room of 20 x 30 m, its bottom 4 m below the sonar, which is off its middle. No wall is at the edge of a
  *  bin, where the last digit of its distance would decide its bin. */
 types::GeometryPtr room() {
-    return sceneOf({levelGround(-4, 100), quad({12.03f, -14.03f, -4}, {0, 30, 0}, {0, 0, 20}),
-                    quad({-7.97f, -14.03f, -4}, {0, 30, 0}, {0, 0, 20}),
-                    quad({-7.97f, 15.97f, -4}, {20, 0, 0}, {0, 0, 20}),
-                    quad({-7.97f, -14.03f, -4}, {20, 0, 0}, {0, 0, 20})});
+    return makeScene({levelGround(-4, 100), quad({12.03f, -14.03f, -4}, {0, 30, 0}, {0, 0, 20}),
+                      quad({-7.97f, -14.03f, -4}, {0, 30, 0}, {0, 0, 20}),
+                      quad({-7.97f, 15.97f, -4}, {20, 0, 0}, {0, 0, 20}),
+                      quad({-7.97f, -14.03f, -4}, {20, 0, 0}, {0, 0, 20})});
 }
 
 /** Returns the relative L2 between beam `a` of one ping and beam `b` of another. */
@@ -134,7 +134,7 @@ Outcome wideFan(double fov_deg) {
 Outcome seams(double fov_deg) {
     sonar::SonarConfig config = fan(fov_deg, 40, 360, 50);
     setSamples(config, 512);
-    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5)})));
+    const Probe received = probe(config, lookingAt(makeScene({levelGround(-5)})));
     double worst = 0;
     for (uint32_t k = 0; k < 360; ++k)
         worst = std::max(worst, beamDifference(received.ping, k, received.ping, (k + 1) % 360));
@@ -148,7 +148,7 @@ Outcome seams(double fov_deg) {
 Outcome beamsBeforeAWall(int beams, double fov_deg) {
     sonar::SonarConfig config = fan(fov_deg, 20, beams, 25);
     setSamples(config, 64, std::max(2, 64 / beams));
-    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    const Probe received = probe(config, lookingAt(makeScene({facingWall(10)})));
     return within(1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 10)),
                   fmt::format("worst of {} beams against the closed form", beams), received);
 }
@@ -159,21 +159,21 @@ Outcome moreBeamsThanColumns() {
     for (size_t k = 0; k < 1000; ++k) config.bearings_deg[k] = 0.01 * (static_cast<double>(k) - 500);
     config.beam_width_deg = 1;
     setSamples(config, 256, 1);
-    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    const Probe received = probe(config, lookingAt(makeScene({facingWall(10)})));
     return within(1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 10)),
                   "1000 beams 1 deg wide and 0.01 deg apart, one column per beam's width: none empty", received);
 }
 
 Outcome thinAperture() {
     const sonar::SonarConfig config = fan(20, 0.01, 20, 15);
-    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    const Probe received = probe(config, lookingAt(makeScene({facingWall(10)})));
     return within(1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 10)), "0.01 deg on a wall", received);
 }
 
 Outcome oneRow() {
     sonar::SonarConfig config = fan(20, 10, 20, 15);
     setSamples(config, 1, 1);
-    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    const Probe received = probe(config, lookingAt(makeScene({facingWall(10)})));
     return within(0.01, worstBeam(received, config, planeTruth({1, 0, 0}, 10)),
                   "10 deg on a wall by one row and one column per beam", received);
 }
@@ -185,7 +185,7 @@ Outcome narrowBeam(double width_deg) {
     acoustics::BeamLaw& law = config.beam_pattern.emplace().receive.azimuth.emplace();
     law.weighting = acoustics::Weighting::Gaussian;
     law.width_deg = width_deg;
-    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5)})));
+    const Probe received = probe(config, lookingAt(makeScene({levelGround(-5)})));
     const double integral = radians(width_deg) / 2 * std::sqrt(std::numbers::pi / std::numbers::ln2);
     const double truth = planeTruth({0, 0, -1}, 5)({-integral / 2, integral / 2, radians(20)}, 0, 25);
     double worst = 0;
@@ -197,7 +197,7 @@ Outcome narrowBeam(double width_deg) {
 types::Sonar pulsed(double bins_long, bool whole) {
     sonar::SonarConfig config = fan(20, 20, 4, 25);
     if (whole) config.pulse.emplace().duration_us = bins_long * 200;  // a bin of 0.1 m at 1000 m/s, there and back
-    return probe(config, lookingAt(sceneOf({facingWall(12)}))).ping;
+    return probe(config, lookingAt(makeScene({facingWall(12)}))).ping;
 }
 
 /** Compares the sums of the bins with a pulse `bins_long` long and without a pulse. */
@@ -226,7 +226,7 @@ Outcome oneBin(const types::GeometryPtr& geometry, double pitch) {
 
 Outcome twentyThousandBins() {
     SonarConfig config = fan(20, 20, 20, 2000);
-    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5, 8000)})));
+    const Probe received = probe(config, lookingAt(makeScene({levelGround(-5, 8000)})));
     return within(1e-3, worstBeam(received, config, planeTruth({0, 0, -1}, 5)),
                   "20 beams over a bottom 5 m below, to 2 km", received);
 }
@@ -237,7 +237,7 @@ Outcome narrowBinsFarAway() {
     config.range_rounding = sonar::RangeRounding::Exact;
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const double distance = 1999.875;  // exact in float
-    const Probe received = probe(config, lookingAt(sceneOf({facingWall(static_cast<float>(distance))})));
+    const Probe received = probe(config, lookingAt(makeScene({facingWall(static_cast<float>(distance))})));
     const int bin = static_cast<int>(distance / grid.bin_width);
     Outcome outcome = within(
         0, std::abs(received.firstReturn(0) - bin),
@@ -249,7 +249,7 @@ Outcome narrowBinsFarAway() {
 Outcome noBlanking() {
     SonarConfig config = fan(60, 40, 16, 10), blanked = config;
     config.range_min = 0;
-    const auto geometry = sceneOf({levelGround(-2), facingWall(5)});
+    const auto geometry = makeScene({levelGround(-2), facingWall(5)});
     const Probe received = probe(config, lookingAt(geometry)), plain = probe(blanked, lookingAt(geometry));
     return within(1e-6, difference(received.ping, plain.ping), "range_min 0 where nothing is nearer than 0.1 m",
                   received);
@@ -276,9 +276,9 @@ std::vector<StabilityCase> sensorCases() {
          {23, "4096 beams", "to 1e-3 of the closed form", [] { return beamsBeforeAWall(4096, 120); }},
          {23, "More beams than columns", "no beam empty: each to 1e-3 of the closed form", moreBeamsThanColumns},
          {24, "One bin, before a wall", "the energy of many bins, to 1e-6",
-          [] { return oneBin(sceneOf({facingWall(10)}), 0); }},
+          [] { return oneBin(makeScene({facingWall(10)}), 0); }},
          {24, "One bin, over a grazed bottom", "the energy of many bins, to 1e-6",
-          [] { return oneBin(sceneOf({levelGround(-5)}), 0.1); }},
+          [] { return oneBin(makeScene({levelGround(-5)}), 0.1); }},
          {24, "20,000 bins", "every beam to 1e-3 of the closed form", twentyThousandBins},
          {25, "Bins near the resolution of float", "first return in its bin", narrowBinsFarAway},
          {27, "range_min of 0", "as with a blanking that hides nothing", noBlanking},

@@ -37,7 +37,7 @@ std::string json(const StabilityRow& row) {
     return fmt::format(
         R"({{"case": {}, "conditions": {{{}}}, "expected": {}, "got": {}, "deviation": {}, "verdict": {}}})",
         quoted(title(row)), conditions, quoted(row.expected), quoted(row.outcome.got), number(row.outcome.deviation),
-        quoted(nameOf(row.outcome.verdict)));
+        quoted(getName(row.outcome.verdict)));
 }
 
 /** Returns a cell of a markdown table. */
@@ -54,7 +54,7 @@ std::string markdown(const StabilityRow& row) {
     return fmt::format("| {} | {} | {} | {} | {} | {} |\n", cell(title(row)), cell(conditions), cell(row.expected),
                        cell(row.outcome.got),
                        isEvaluated(row.outcome) ? fmt::format("{:.2g}", row.outcome.deviation) : "",
-                       nameOf(row.outcome.verdict));
+                       getName(row.outcome.verdict));
 }
 
 size_t count(const std::vector<StabilityRow>& rows, Verdict verdict) {
@@ -82,7 +82,7 @@ bool isEvaluated(const Outcome& outcome) {
     return outcome.verdict == Verdict::Pass || outcome.verdict == Verdict::Fail;
 }
 
-const char* nameOf(Verdict verdict) {
+const char* getName(Verdict verdict) {
     switch (verdict) {
         case Verdict::Pass: return "pass";
         case Verdict::Fail: return "fail";

@@ -10,7 +10,7 @@ namespace insonify::study {
 
 enum class Verdict { Pass, Fail, NotRun };
 /** Returns "pass"; "fail"; "not run": this machine lacks a requirement. */
-const char* nameOf(Verdict verdict);
+const char* getName(Verdict verdict);
 
 /** Condition numbers of a case, by name. */
 using Conditions = std::vector<std::pair<std::string, double>>;

@@ -60,7 +60,7 @@ void main() {
   colour = texelFetch(colours, ivec2(int(bright * 255. + .5), 0), 0);
 }`;
 
-function programOf(gl) {
+function makeProgram(gl) {
   const program = gl.createProgram();
   for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
     const shader = gl.createShader(kind);
@@ -73,7 +73,7 @@ function programOf(gl) {
   return program;
 }
 
-function textureOf(gl, unit) {
+function makeTexture(gl, unit) {
   gl.activeTexture(gl.TEXTURE0 + unit);
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
   for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
@@ -82,8 +82,8 @@ function textureOf(gl, unit) {
 
 const table_size = 4096;
 /** Converts a place to metres ahead and to port, and back. */
-const metresOf = ({range, bearing}) => [range * Math.cos(bearing), range * Math.sin(bearing)];
-const placeOf = ([ahead, port]) => ({range: Math.hypot(ahead, port), bearing: Math.atan2(port, ahead)});
+const getMetres = ({range, bearing}) => [range * Math.cos(bearing), range * Math.sin(bearing)];
+const getPlace = ([ahead, port]) => ({range: Math.hypot(ahead, port), bearing: Math.atan2(port, ahead)});
 
 export class Fan {
   constructor(canvas, overlay) {
@@ -101,11 +101,11 @@ export class Fan {
     this.whole();
     const gl = this.gl = canvas.getContext('webgl2', {antialias: false, preserveDrawingBuffer: true});
     if (!gl) return;  // rings, cursor and levels work nonetheless
-    this.program = programOf(gl);
+    this.program = makeProgram(gl);
     this.uniforms = {};
     gl.useProgram(this.program);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    for (let unit = 0; unit < 3; ++unit) textureOf(gl, unit);
+    for (let unit = 0; unit < 3; ++unit) makeTexture(gl, unit);
     for (const [unit, name] of ['levels', 'beams', 'colours'].entries()) gl.uniform1i(this.at(name), unit);
     this.setColours('amber');
   }
@@ -194,7 +194,7 @@ export class Fan {
   }
 
   /** Returns the canvas pixel, from the lower left corner, that shows a place. */
-  pixelOf(range, bearing) {
+  findPixel(range, bearing) {
     const {scale, origin} = this.place();
     const p = this.polar ? [-turned(this.ping, bearing), range] : [-range * Math.sin(bearing + this.turn), range * Math.cos(bearing + this.turn)];
     return [origin[0] + p[0] * scale[0], origin[1] + p[1] * scale[1]];
@@ -238,13 +238,13 @@ export class Fan {
     const line = (places) => {
       context.beginPath();
       for (const [range, bearing] of places) {
-        const [x, y] = this.pixelOf(range, bearing);
+        const [x, y] = this.findPixel(range, bearing);
         context.lineTo(x, height - y);
       }
       context.stroke();
     };
     const label = (text, range, bearing, dx, dy) => {
-      const [x, y] = this.pixelOf(range, bearing), half = context.measureText(text).width / 2 + devicePixelRatio;
+      const [x, y] = this.findPixel(range, bearing), half = context.measureText(text).width / 2 + devicePixelRatio;
       const middle = x + dx * devicePixelRatio, right = this.overlay.width - half;
       if (x < this.overlay.width) context.fillText(text, Math.min(middle, right), height - y + dy * devicePixelRatio);
     };
@@ -272,7 +272,7 @@ export class Fan {
     context.strokeStyle = context.fillStyle = '#8df08a';
     for (const {name, range, bearing} of this.targets) {
       if (range > this.ping.bins * this.ping.bin_m) continue;
-      const [x, up] = this.pixelOf(range, bearing), y = this.overlay.height - up, size = 6 * devicePixelRatio;
+      const [x, up] = this.findPixel(range, bearing), y = this.overlay.height - up, size = 6 * devicePixelRatio;
       context.beginPath();
       context.arc(x, y, size, 0, 2 * Math.PI);
       context.stroke();
@@ -318,10 +318,10 @@ export class Fan {
 
   /** Draws the measurement: a straight line in the water, which is curved in the polar picture. */
   drawMarks(context, line, label) {
-    const ends = this.marks.map(metresOf), colour = '#f2b04a';
-    for (const mark of this.marks) this.drawCross(context, this.pixelOf(mark.range, mark.bearing), colour);
+    const ends = this.marks.map(getMetres), colour = '#f2b04a';
+    for (const mark of this.marks) this.drawCross(context, this.findPixel(mark.range, mark.bearing), colour);
     if (ends.length < 2) return;
-    const between = (share) => placeOf(ends[0].map((a, i) => a + share * (ends[1][i] - a)));
+    const between = (share) => getPlace(ends[0].map((a, i) => a + share * (ends[1][i] - a)));
     context.strokeStyle = context.fillStyle = colour;
     line(Array.from({length: 65}, (_, i) => between(i / 64)).map(({range, bearing}) => [range, bearing]));
     const middle = between(0.5);
@@ -331,7 +331,7 @@ export class Fan {
    *  null without two marks. */
   measured() {
     if (this.marks.length < 2) return null;
-    const [a, b] = this.marks.map(metresOf), way = placeOf([b[0] - a[0], b[1] - a[1]]);
+    const [a, b] = this.marks.map(getMetres), way = getPlace([b[0] - a[0], b[1] - a[1]]);
     return {distance: way.range, bearing: way.bearing};
   }
   measuredText() {
@@ -358,14 +358,14 @@ export class Fan {
     if (under >= 0 && under !== null) this.profiled = under;
     const beam = Math.min(this.profiled ?? Math.floor(ping.beams / 2), ping.beams - 1), levels = ping.data.subarray(beam * ping.bins, (beam + 1) * ping.bins);
     const context = canvas.getContext('2d'), low = this.top_db - this.span_db, high = Math.max(this.top_db, ping.top_db);
-    const decibels = (level) => ping.top_db - (255 - level) * ping.step_db, yOf = (db) => h - 2 - (h - 6) * Math.max(0, Math.min(1, (db - low) / (high - low)));
+    const decibels = (level) => ping.top_db - (255 - level) * ping.step_db, toY = (db) => h - 2 - (h - 6) * Math.max(0, Math.min(1, (db - low) / (high - low)));
     context.strokeStyle = '#45535f';
     context.beginPath();
-    for (let db = Math.ceil(low / 20) * 20; db < high; db += 20) context.rect(0, yOf(db), w, 0);
+    for (let db = Math.ceil(low / 20) * 20; db < high; db += 20) context.rect(0, toY(db), w, 0);
     context.stroke();
     context.strokeStyle = '#f2b04a';
     context.beginPath();
-    levels.forEach((level, i) => context.lineTo((i + 0.5) / ping.bins * w, level ? yOf(decibels(level)) : h - 2));
+    levels.forEach((level, i) => context.lineTo((i + 0.5) / ping.bins * w, level ? toY(decibels(level)) : h - 2));
     context.stroke();
     const at = levels.reduce((best, level, i) => level > levels[best] ? i : best, 0), bearing = (ping.edges[2 * beam] + ping.edges[2 * beam + 1]) / 2;
     if (this.cursor) {

@@ -43,7 +43,7 @@ export function numberText(text, unit) {
 }
 
 /** Returns the key names of a block in flow YAML, without those of nested blocks. */
-function keysOf(block) {
+function getKeys(block) {
   let outer = block.slice(1, -1), before;
   do {
     before = outer;
@@ -60,22 +60,22 @@ function setting({type, unit}, before, after) {
   if (type === 'text' || type === 'text, optional') return JSON.stringify(after);  // it may contain YAML syntax: "a: b #c"
   if (/^(double|integer)/.test(type)) return numberText(after, unit);
   if (!type.startsWith('block') || !isBlock(text) || !isBlock(before ?? '')) return after;
-  const kept = keysOf(text), gone = keysOf(before).filter((key) => !kept.includes(key)).map((key) => `${key}: null`);
+  const kept = getKeys(text), gone = getKeys(before).filter((key) => !kept.includes(key)).map((key) => `${key}: null`);
   return `{${[text.slice(1, -1).trim(), ...gone].filter((part) => part).join(', ')}}`;
 }
 
 /** Order of properties: these first, the others in the order of the task. */
 export const rank = ({name}) => (['range', 'gain_db', 'gain', 'frequency_khz'].indexOf(name) + 1) || 99;
 
-const valuesOf = (status, task) => status?.tasks.find((one) => one.name === task)?.properties ?? {};
+const readValues = (status, task) => status?.tasks.find((one) => one.name === task)?.properties ?? {};
 let last_id = 0;
 
 /** A property's field: its input, and why its last change was refused. Typed text stays in the input until Enter, or
  *  leaving it, sets the property, or Escape restores the value. A property that no running task takes is read-only. */
-export function fieldOf(link, task, property, control) {
+export function getField(link, task, property, control) {
   const input = inputFor(property), id = `refused_${++last_id}`, said = element('span', {className: 'refused', id, role: 'alert'});
   let is_edited = false, unanswered = 0, is_left_alone = false;
-  const held = () => valuesOf(field.status, task)[property.name];
+  const held = () => readValues(field.status, task)[property.name];
   const field = {input, said, update(status) {
     field.status = status;
     if (!is_edited && !unanswered) put(input, held());
@@ -147,7 +147,7 @@ export class Properties {
     if (this.status) this.update(this.status);
   }
   row(task, property) {
-    const field = fieldOf(this.link, task, property, this.control), cell = (text, kind = '') => element('td', {className: kind}, text);
+    const field = getField(this.link, task, property, this.control), cell = (text, kind = '') => element('td', {className: kind}, text);
     const bounds = property.min === null && property.max === null ? '' : ` (${property.min ?? '-inf'} to ${property.max ?? 'inf'})`;
     const fixed = property.fixed ? '; can be set while the task is stopped, in the deployment' : '';
     this.fields.push(field);
@@ -190,7 +190,7 @@ export class First {
     for (const field of this.fields) field.update(status);
   }
   build(found) {
-    this.fields = found.map(([, {task, property}]) => fieldOf(this.link, task, property, this.control));
+    this.fields = found.map(([, {task, property}]) => getField(this.link, task, property, this.control));
     this.place.replaceChildren(...found.map(([label, {task, property}], i) =>
         element('label', {title: `${task}.${property.name}: ${property.doc}`}, label, this.fields[i].input, property.unit, ' ', this.fields[i].said)));
   }

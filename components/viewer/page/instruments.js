@@ -5,7 +5,7 @@ import {upstream} from './status.js';
 
 /** Converts a pose in the world of x north, y west, z up: heading clockwise from north [0, 360), pitch positive down,
  *  roll positive to starboard [deg], z [m]; depth [m] if the surface is known. */
-export function attitudeOf({position, orientation: [x, y, z, w]}, water_surface) {
+export function computeAttitude({position, orientation: [x, y, z, w]}, water_surface) {
   const north = 1 - 2 * (y * y + z * z), west = 2 * (x * y + w * z), up = 2 * (x * z - w * y);
   return {
     heading: (Math.atan2(-west, north) * degrees + 360) % 360,

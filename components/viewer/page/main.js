@@ -3,12 +3,12 @@ import {byId, element} from './dom.js';
 import {Fan, names} from './fan.js';
 import {First, Properties} from './fields.js';
 import {Hands} from './hands.js';
-import {Alarm, Controls, Explanation, Timelines, Watch, attitudeOf, showAttitude} from './instruments.js';
+import {Alarm, Controls, Explanation, Timelines, Watch, computeAttitude, showAttitude} from './instruments.js';
 import {Link} from './link.js';
-import {History, Places, Scan, pingOf, strongLevel} from './ping.js';
+import {History, Places, Scan, makePing, strongLevel} from './ping.js';
 import {change, fillDialog, lengthText, onSettings, settings} from './settings.js';
 import {Rates, showStatus} from './status.js';
-import {Targets, datumOf, savePicture} from './targets.js';
+import {Targets, findDatum, savePicture} from './targets.js';
 import {World, loadThree} from './world.js';
 
 const seconds = () => performance.now() / 1e3;
@@ -32,7 +32,7 @@ const properties = new Properties(link), controls = new Controls(link, byId('con
 const first = new First(link, byId('first')), timelines = new Timelines(link, byId('timelines'));
 const redraw = () => { needs_drawing = true; };
 const hands = new Hands(fan, redraw), explanation = new Explanation(link, byId('explained'));
-const targets = new Targets(byId('marked'), showTargets, () => datumOf(properties.status));
+const targets = new Targets(byId('marked'), showTargets, () => findDatum(properties.status));
 
 const show = {
   interfaces(message) {
@@ -61,7 +61,7 @@ const show = {
 
 function take(message) {
   if (message.type) return show[message.type]?.(message);
-  if (message.kind === 1) return setPing(pingOf(message));
+  if (message.kind === 1) return setPing(makePing(message));
   if (message.kind === 3) return show.snapshot({...message.json, buffer: message.buffer, start: message.start});
   scenes.set(message.json.source, message);
   showScene();
@@ -89,7 +89,7 @@ function place() {
 }
 /** Turns the pictures as the settings say, and shows targets where the sonar sees them now. */
 function orient() {
-  fan.orient(settings.up === 'north', snapshot ? attitudeOf(snapshot).heading : undefined);
+  fan.orient(settings.up === 'north', snapshot ? computeAttitude(snapshot).heading : undefined);
   if (world) world.is_north_up = settings.up === 'north';
   fan.targets = targets.seenFrom(snapshot);
   redraw();
@@ -102,7 +102,7 @@ function showTargets() {
 /** Returns the attitude of the vehicle at the time of the ping, else of the sonar; null if unknown. */
 function attitude() {
   const {ping} = fan, connections = properties.status?.connections ?? [], pose = ping && poses.of(ping, connections), found = pose ?? snapshot;
-  return found ? {...attitudeOf(found, snapshot?.water_surface), speed: pose && poses.speed(pose), source: found.source} : null;
+  return found ? {...computeAttitude(found, snapshot?.water_surface), speed: pose && poses.speed(pose), source: found.source} : null;
 }
 
 function setPing(ping) {

@@ -2,7 +2,7 @@
 import {owner, upstream} from './status.js';
 
 /** Converts a message. Beams are from starboard to port; `edges` has the starboard and the port edge of each [rad]. */
-export function pingOf(message) {
+export function makePing(message) {
   return {...message.json, data: new Uint8Array(message.buffer, message.start)};
 }
 

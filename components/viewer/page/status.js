@@ -111,11 +111,11 @@ function showPlan(status) {
     if (omitted.length) parts.push(['h3', {}, 'omitted'], ['dl', {}, ...omitted]);
     for (const notice of plan.notices) parts.push(['div', {class: 'RunTimeError'}, notice]);
   }
-  patch(byId('plan'), [...parts, ...lossesOf(status.connections)]);
+  patch(byId('plan'), [...parts, ...computeLosses(status.connections)]);
 }
 
 /** Lists lost samples, and samples replaced by newer samples as configured. */
-function lossesOf(connections) {
+function computeLosses(connections) {
   const lost = connections.filter((one) => isLoss(one) && one.lost), parts = [['h3', {}, 'lost samples']];
   for (const one of lost) parts.push(['div', {class: 'refused'}, `${one.lost}  ${one.from} > ${one.to} (${one.policy})`]);
   if (!lost.length) parts.push(['div', {class: 'dim'}, 'none']);

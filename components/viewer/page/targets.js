@@ -1,6 +1,6 @@
 // Target marks, and what the page saves as files: targets as CSV and GeoJSON, the picture as PNG.
 import {byId, element, patch} from './dom.js';
-import {attitudeOf, attitudeTexts} from './instruments.js';
+import {computeAttitude, attitudeTexts} from './instruments.js';
 import {bearingText, change, degrees, lengthIn, lengthUnit, settings} from './settings.js';
 
 /** Rotates a vector by a quaternion [x, y, z, w]. */
@@ -9,12 +9,12 @@ function rotated([x, y, z, w], [a, b, c]) {
   return [a + w * u + y * t - z * v, b + w * v + z * u - x * t, c + w * t + x * v - y * u];
 }
 /** Returns the position in the world of a place in the middle plane of a fan [m]: range and bearing give no elevation. */
-export function positionOf({range, bearing}, {position, orientation}) {
+export function getPosition({range, bearing}, {position, orientation}) {
   const away = rotated(orientation, [range * Math.cos(bearing), range * Math.sin(bearing), 0]);
   return position.map((p, i) => p + away[i]);
 }
 /** Returns range and bearing at which a sonar sees a position. */
-export function placeOf(at, {position, orientation: [x, y, z, w]}) {
+export function getPlace(at, {position, orientation: [x, y, z, w]}) {
   const [ahead, port, up] = rotated([-x, -y, -z, w], at.map((a, i) => a - position[i]));
   return {range: Math.hypot(ahead, port, up), bearing: Math.atan2(port, ahead)};
 }
@@ -22,7 +22,7 @@ export function placeOf(at, {position, orientation: [x, y, z, w]}) {
 const equator = 6378137, flattening = 1 / 298.257223563, e2 = flattening * (2 - flattening);  // WGS 84
 /** Returns the world's origin on the earth, {latitude_deg, longitude_deg, height_m} on WGS 84: the `datum` of a
  *  deployment, which its tasks have; undefined: it has none. */
-export function datumOf(status) {
+export function findDatum(status) {
   for (const {properties} of status?.tasks ?? []) {
     let found = null;
     try { found = JSON.parse(properties.datum); } catch { /* it has none */ }
@@ -57,8 +57,8 @@ const rounded = (number, digits) => number === undefined || number === null ? ''
 const csvCell = (text) => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 
 /** Returns the table that other programs read: a line per target, empty where something was unknown.
- *  @param datum that of datumOf(); undefined: unknown */
-export function csvOf(targets, datum) {
+ *  @param datum that of findDatum(); undefined: unknown */
+export function toCsv(targets, datum) {
   const head = ['name', 'time', 'source', 'range_m', 'bearing_starboard_deg', 'sonar_heading_deg', 'bearing_true_deg', 'north_m', 'east_m', 'up_m', 'depth_m',
                 'latitude_deg', 'longitude_deg', 'height_m'];
   const lines = targets.map(({name, time_us, source, range, bearing, heading, position, depth}) => {
@@ -72,7 +72,7 @@ export function csvOf(targets, datum) {
 
 /** Returns the targets that have a position as GeoJSON (RFC 7946). Without a datum their coordinates are metres east,
  *  north and up of the world's origin, and a member `frame` of the collection says so. */
-export function geoJsonOf(targets, datum) {
+export function toGeoJson(targets, datum) {
   const features = targets.filter(({position}) => position).map(({name, time_us, source, range, bearing, heading, position, depth}) => {
     const {latitude, longitude, height} = datum ? onEarth(position, datum) : {longitude: -position[1], latitude: position[0], height: position[2]};
     const digits = datum ? 8 : 3, coordinates = [+longitude.toFixed(digits), +latitude.toFixed(digits), +height.toFixed(3)];
@@ -93,11 +93,11 @@ function isTarget(one) {
 
 /** The targets that the operator has marked. They are remembered until they are removed. */
 export class Targets {
-  /** @param changed called when the list has changed  @param datum returns that of datumOf() */
+  /** @param changed called when the list has changed  @param datum returns that of findDatum() */
   constructor(section, changed, datum) {
     Object.assign(this, {section, changed, datum});
-    byId('csv').onclick = () => download('targets.csv', csvOf(this.list, this.datum()), 'text/csv');
-    byId('geojson').onclick = () => download('targets.geojson', geoJsonOf(this.list, this.datum()), 'application/geo+json');
+    byId('csv').onclick = () => download('targets.csv', toCsv(this.list, this.datum()), 'text/csv');
+    byId('geojson').onclick = () => download('targets.geojson', toGeoJson(this.list, this.datum()), 'application/geo+json');
     byId('targets').onclick = ({target}) => {
       if (target.dataset.remove !== undefined) this.set(this.list.filter((_, i) => i !== Number(target.dataset.remove)));
     };
@@ -112,14 +112,14 @@ export class Targets {
   }
   /** Marks a place of a ping. @param snapshot where the sonar was; undefined: unknown */
   add({range, bearing}, ping, snapshot) {
-    const numbers = this.list.map(({name}) => Number(/^T(\d+)$/.exec(name)?.[1] ?? 0)), position = snapshot ? positionOf({range, bearing}, snapshot) : null;
+    const numbers = this.list.map(({name}) => Number(/^T(\d+)$/.exec(name)?.[1] ?? 0)), position = snapshot ? getPosition({range, bearing}, snapshot) : null;
     const depth = position && snapshot.water_surface !== undefined ? snapshot.water_surface - position[2] : null;
     this.set([...this.list, {name: `T${Math.max(0, ...numbers) + 1}`, time_us: ping.time_us, source: ping.source, range, bearing,
-                             heading: snapshot ? +attitudeOf(snapshot).heading.toFixed(3) : null, position, depth}]);
+                             heading: snapshot ? +computeAttitude(snapshot).heading.toFixed(3) : null, position, depth}]);
   }
   /** Returns the targets as a sonar at a snapshot sees them. */
   seenFrom(snapshot) {
-    return this.list.map((one) => ({name: one.name, ...(one.position && snapshot ? placeOf(one.position, snapshot) : one)}));
+    return this.list.map((one) => ({name: one.name, ...(one.position && snapshot ? getPlace(one.position, snapshot) : one)}));
   }
   /** Shows the list; the section is there while it has something to show. */
   show() {
@@ -140,7 +140,7 @@ export class Targets {
 const caption_px = 22;
 
 /** Returns the picture with its overlays, and a line that names the ping. */
-function pictureOf(fan, attitude) {
+function makePicture(fan, attitude) {
   const {width, height} = fan.canvas, caption = caption_px * devicePixelRatio;
   const canvas = element('canvas', {width, height: height + caption}), context = canvas.getContext('2d');
   context.fillStyle = '#0a0d10';
@@ -158,5 +158,5 @@ export async function savePicture(fan, attitude) {
   if (!fan.ping) return;
   const {source, time_us} = fan.ping;
   fan.draw();
-  download(`${source}_${time_us}.png`, await new Promise((done) => pictureOf(fan, attitude).toBlob(done, 'image/png')), 'image/png');
+  download(`${source}_${time_us}.png`, await new Promise((done) => makePicture(fan, attitude).toBlob(done, 'image/png')), 'image/png');
 }

@@ -38,7 +38,7 @@ struct CopyTest : testing::Test {
             log.flush();  // one chunk each
         }
         log.close();
-        whole = bytesOf(folder / "whole.0.mcap");
+        whole = toBytes(folder / "whole.0.mcap");
         for (const Place& place : recordsIn(whole))
             if (place.op == Op::Chunk) chunks.push_back(place);
     }
@@ -75,7 +75,7 @@ TEST_F(CopyTest, AWholeFileIsCopiedMessageForMessage) {
     const auto before = openLog(folder / "whole.0.mcap"), after = openLog(copy());
     ASSERT_EQ(after->samples().size(), 6u);
     for (size_t i = 0; i < 6; ++i) {
-        const auto a = before->bytesOf(before->samples()[i]), b = after->bytesOf(after->samples()[i]);
+        const auto a = before->toBytes(before->samples()[i]), b = after->toBytes(after->samples()[i]);
         EXPECT_TRUE(std::ranges::equal(a, b)) << i;
         EXPECT_EQ(before->samples()[i].received, after->samples()[i].received);
     }

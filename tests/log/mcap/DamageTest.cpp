@@ -17,7 +17,7 @@ struct DamageTest : testing::Test {
         for (const SampleRef& at : log->samples()) log->verify(at);
         return log->samples().size();
     }
-    std::string verdictOf(const std::vector<char>& bytes) {
+    std::string getVerdict(const std::vector<char>& bytes) {
         writeBytes(path_, bytes);
         return verdict();
     }
@@ -44,7 +44,7 @@ struct DamageTest : testing::Test {
 };
 
 TEST_F(DamageTest, AWholeFileIsValid) {
-    EXPECT_EQ(verdictOf(whole_), "");
+    EXPECT_EQ(getVerdict(whole_), "");
     EXPECT_EQ(readAll(whole_), 5u);
 }
 
@@ -111,18 +111,18 @@ TEST_F(DamageTest, RandomChangesNeverHarm) {
 TEST_F(DamageTest, TheFirstWrongByteIsNamed) {
     std::vector<char> changed = whole_;
     changed.at(changed.size() - 1) = 'x';
-    EXPECT_EQ(verdictOf(changed),
+    EXPECT_EQ(getVerdict(changed),
               "byte " + std::to_string(whole_.size() - 8) + ": the file does not end as an MCAP file");
     changed = whole_;
     changed.at(8) = 2;
-    EXPECT_EQ(verdictOf(changed), "byte 8: the first record is no header");
+    EXPECT_EQ(getVerdict(changed), "byte 8: the first record is no header");
     changed = whole_;
     changed.resize(changed.size() + 1);
-    EXPECT_EQ(verdictOf(changed), "byte " + std::to_string(whole_.size()) + ": the file continues after its end");
+    EXPECT_EQ(getVerdict(changed), "byte " + std::to_string(whole_.size()) + ": the file continues after its end");
 }
 
 TEST_F(DamageTest, RefusesOtherFiles) {
-    EXPECT_THAT(verdictOf({'x', 'y'}), testing::EndsWith("damaged.mcap: is no MCAP file"));
+    EXPECT_THAT(getVerdict({'x', 'y'}), testing::EndsWith("damaged.mcap: is no MCAP file"));
     EXPECT_THROW(openLog(folder_ / "none.mcap"), types::ConfigError);
 }
 
@@ -135,11 +135,11 @@ TEST_F(DamageTest, AChunkThatWouldGrowBeyondItsLimitIsNotDecompressed) {
         chunk.size = (uint64_t{256} << 20) + 1;
         std::vector<char> room;
         const std::vector<char> stored(64);
-        EXPECT_THAT([&] { recordsOf(chunk, stored, room); },
+        EXPECT_THAT([&] { getRecords(chunk, stored, room); },
                     testing::ThrowsMessage<FormatError>(testing::HasSubstr("more than 256 MiB is not read")));
         EXPECT_EQ(room.capacity(), 0u);
         chunk.size = 1000;
-        EXPECT_THAT([&] { recordsOf(chunk, stored, room); },
+        EXPECT_THAT([&] { getRecords(chunk, stored, room); },
                     testing::ThrowsMessage<FormatError>(testing::HasSubstr("cannot be decompressed")));
     }
 }

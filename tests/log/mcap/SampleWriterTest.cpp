@@ -13,7 +13,7 @@ namespace insonify::log::mcap {
 namespace {
 
 template <class T>
-std::vector<T> samplesOf(log::Reader& log, const std::string& stream) {
+std::vector<T> getSamples(log::Reader& log, const std::string& stream) {
     std::vector<T> samples;
     log.forEach<T>(stream, [&](const T& sample, const SampleRef&) { samples.push_back(sample); });
     return samples;
@@ -42,9 +42,9 @@ TEST(SampleWriterTest, PingsAndPosesAreReadBackUnchanged) {
     ASSERT_EQ(log->samples().size(), 5u);
     EXPECT_EQ(log->samples()[0].time.microseconds, 1);
     EXPECT_EQ(log->samples()[0].received.microseconds, 10'000'001);
-    const auto pings = samplesOf<types::Sonar>(*log, "sonar.ping");
+    const auto pings = getSamples<types::Sonar>(*log, "sonar.ping");
     for (int64_t i = 1; i <= 3; ++i) expectSame(pings.at(static_cast<size_t>(i - 1)), smallPing(i));
-    const auto poses = samplesOf<types::Pose>(*log, "vehicle.pose");
+    const auto poses = getSamples<types::Pose>(*log, "vehicle.pose");
     EXPECT_EQ(poses.at(1).time.microseconds, 2);
     EXPECT_EQ(poses[1].position, smallPose(2).position);
     EXPECT_EQ(poses[1].orientation, smallPose(2).orientation);
@@ -56,8 +56,8 @@ TEST(SampleWriterTest, ByDefaultPingsKeepTheirBinsAndPosesAreEastNorthUp) {
     const Folder folder;
     smallFile(folder / "x.mcap", {});
     const auto log = openLog(folder / "x.mcap");
-    expectSame(samplesOf<types::Sonar>(*log, "sonar.ping").at(0), smallPing(1));
-    const types::Pose pose = samplesOf<types::Pose>(*log, "vehicle.pose").at(0);
+    expectSame(getSamples<types::Sonar>(*log, "sonar.ping").at(0), smallPing(1));
+    const types::Pose pose = getSamples<types::Pose>(*log, "vehicle.pose").at(0);
     EXPECT_EQ(pose.position, smallPose(1).position);
     EXPECT_NEAR(std::abs(glm::dot(pose.orientation, smallPose(1).orientation)), 1, 1e-15);
     EXPECT_EQ(ros::MessageOptions().world_frame, ros::WorldFrame::Enu);
@@ -66,9 +66,9 @@ TEST(SampleWriterTest, ByDefaultPingsKeepTheirBinsAndPosesAreEastNorthUp) {
 
 /** Returns the messages of a stream, in order. */
 template <class Message>
-std::vector<Message> messagesOf(log::Reader& log, const std::string& stream) {
+std::vector<Message> getMessages(log::Reader& log, const std::string& stream) {
     std::vector<Message> messages;
-    log.forEachRef(stream, [&](const SampleRef& at) { ros::decode(log.bytesOf(at), messages.emplace_back()); });
+    log.forEachRef(stream, [&](const SampleRef& at) { ros::decode(log.toBytes(at), messages.emplace_back()); });
     return messages;
 }
 
@@ -76,7 +76,7 @@ TEST(SampleWriterTest, FramesThatTfRefusesAreRefused) {
     McapConfig config;
     config.frame_id = "/sonar";
     config.streams = {{"sonar.ping", {{}, "my sonar", {}}}, {"vehicle.pose", {{}, {}, ""}}};
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 testing::ElementsAre(testing::HasSubstr("frame_id: is \"/sonar\"; must be a name without spaces"),
                                      testing::HasSubstr("streams.sonar.ping.frame_id: is \"my sonar\""),
                                      testing::HasSubstr("streams.vehicle.pose.child_frame_id: is \"\"")));
@@ -86,7 +86,7 @@ TEST(SampleWriterTest, AStreamMayHaveItsOwnTopicFramesAndFrequency) {
     const Folder folder;
     McapConfig config;
     config.streams = {{"sonar.ping", {"/auv/sonar", "sonar_link", {}}}, {"vehicle.pose", {"auv/pose", "odom", "auv"}}};
-    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
+    EXPECT_THAT(test::countRefusals(config), testing::IsEmpty());
     {
         SampleWriter log(folder / "x.mcap", config);
         const size_t ping = log.addStream<types::Sonar>("sonar.ping", {{"insonify_frequency_khz", "750"}});
@@ -102,13 +102,13 @@ TEST(SampleWriterTest, AStreamMayHaveItsOwnTopicFramesAndFrequency) {
     EXPECT_EQ(log.channel(2).topic, "/other/sonar/ping");
     EXPECT_EQ(log.streams()[2].name, "/other/sonar.ping");
     const auto open = openLog(folder / "x.mcap");
-    const auto ping = messagesOf<ros::ProjectedSonarImage>(*open, "sonar.ping").at(0);
+    const auto ping = getMessages<ros::ProjectedSonarImage>(*open, "sonar.ping").at(0);
     EXPECT_EQ(ping.header.frame_id, "sonar_link");
     EXPECT_EQ(ping.ping_info.frequency, 750e3f);
-    const auto pose = messagesOf<ros::Odometry>(*open, "vehicle.pose").at(0);
+    const auto pose = getMessages<ros::Odometry>(*open, "vehicle.pose").at(0);
     EXPECT_EQ(pose.header.frame_id, "odom");
     EXPECT_EQ(pose.child_frame_id, "auv");
-    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*open, "/other/sonar.ping").at(0).ping_info.frequency, 0);
+    EXPECT_EQ(getMessages<ros::ProjectedSonarImage>(*open, "/other/sonar.ping").at(0).ping_info.frequency, 0);
 }
 
 TEST(SampleWriterTest, NamespaceAndFramePrefixApplyToTopicsAndFrames) {
@@ -129,12 +129,12 @@ TEST(SampleWriterTest, NamespaceAndFramePrefixApplyToTopicsAndFrames) {
     EXPECT_EQ(raw.channel(1).topic, "/far");
     EXPECT_EQ(raw.channel(2).topic, "/auv1/a/pose");
     const auto log = openLog(folder / "x.mcap");
-    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*log, "a.ping").at(0).header.frame_id, "auv1/link");
-    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*log, "b.ping").at(0).header.frame_id, "auv1/sonar");
-    const auto pose = messagesOf<ros::Odometry>(*log, "a.pose").at(0);
+    EXPECT_EQ(getMessages<ros::ProjectedSonarImage>(*log, "a.ping").at(0).header.frame_id, "auv1/link");
+    EXPECT_EQ(getMessages<ros::ProjectedSonarImage>(*log, "b.ping").at(0).header.frame_id, "auv1/sonar");
+    const auto pose = getMessages<ros::Odometry>(*log, "a.pose").at(0);
     EXPECT_EQ(pose.header.frame_id, "world");
     EXPECT_EQ(pose.child_frame_id, "auv1/body");
-    EXPECT_EQ(messagesOf<ros::Odometry>(*log, "b.pose").at(0).header.frame_id, "odom");
+    EXPECT_EQ(getMessages<ros::Odometry>(*log, "b.pose").at(0).header.frame_id, "odom");
 }
 
 TEST(SampleWriterTest, ReadsAFrequencyInAnyLocale) {
@@ -147,7 +147,7 @@ TEST(SampleWriterTest, ReadsAFrequencyInAnyLocale) {
         log.write(ping, {2}, smallPing(1));
     }
     const auto log = openLog(folder / "x.mcap");
-    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*log, "sonar.ping").at(0).ping_info.frequency, 500);
+    EXPECT_EQ(getMessages<ros::ProjectedSonarImage>(*log, "sonar.ping").at(0).ping_info.frequency, 500);
 }
 
 TEST(SampleWriterTest, AStreamIsFoundByItsConfiguredTopic) {
@@ -161,11 +161,11 @@ TEST(SampleWriterTest, AStreamIsFoundByItsConfiguredTopic) {
         log.write(given, {2}, smallPing(1));
     }
     const auto log = openLog(folder / "x.mcap");
-    EXPECT_EQ(log->indexOf("/auv/sonar"), 0u);
-    EXPECT_EQ(log->indexOf("receiver.ping"), 0u);
-    EXPECT_EQ(log->indexOf("/sonar/ping"), 1u);
+    EXPECT_EQ(log->findIndex("/auv/sonar"), 0u);
+    EXPECT_EQ(log->findIndex("receiver.ping"), 0u);
+    EXPECT_EQ(log->findIndex("/sonar/ping"), 1u);
     EXPECT_FALSE(log->find("/auv/pose"));
-    EXPECT_EQ(samplesOf<types::Sonar>(*log, "/auv/sonar").size(), 1u);
+    EXPECT_EQ(getSamples<types::Sonar>(*log, "/auv/sonar").size(), 1u);
 }
 
 TEST(SampleWriterTest, TwoStreamsOnOneTopicAreRefused) {
@@ -174,7 +174,7 @@ TEST(SampleWriterTest, TwoStreamsOnOneTopicAreRefused) {
     config.streams["receiver.ping"].topic = "/sonar/ping";
     SampleWriter log(folder / "x.mcap", config);
     log.addStream<types::Sonar>("receiver.ping");
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { log.addStream<types::Sonar>("sonar.ping"); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { log.addStream<types::Sonar>("sonar.ping"); }),
                 testing::HasSubstr("sonar.ping: its topic /sonar/ping belongs to another stream"));
 }
 
@@ -183,7 +183,7 @@ TEST(SampleWriterTest, ReportsInvalidAndDuplicateTopics) {
     config.streams["a.ping"].topic = "/auv/1sonar";
     config.streams["b.ping"].topic = "/auv/sonar";
     config.streams["c.ping"].topic = "auv/sonar";
-    EXPECT_THAT(test::refusalsOf(config),
+    EXPECT_THAT(test::countRefusals(config),
                 testing::ElementsAre(testing::StartsWith("streams.a.ping.topic: "),
                                      "streams.c.ping.topic: is /auv/sonar, the topic of b.ping; must be another"));
 }
@@ -196,7 +196,8 @@ TEST(SampleWriterTest, NanosecondsOfAReadStampAreKept) {
         log.write(log.addStream<types::Sonar>("sonar.ping"), {9'000'000}, smallPing(7'123'456));
     }
     const auto log = openLog(folder / "x.mcap");
-    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*log, "sonar.ping").at(0).header.stamp, (ros::Time{7, 123'456'789}));
+    EXPECT_EQ(getMessages<ros::ProjectedSonarImage>(*log, "sonar.ping").at(0).header.stamp,
+              (ros::Time{7, 123'456'789}));
     const Reader raw(folder / "x.mcap");
     EXPECT_EQ(raw.message(raw.samples().at(0)).publish_ns, 7'123'456'789u);
 }
@@ -219,8 +220,8 @@ TEST(SampleWriterTest, ReadsOtherOrdersAndAxesAsWritten) {
     config.world_frame = ros::WorldFrame::Ned;
     smallFile(folder / "x.mcap", config);
     const auto log = openLog(folder / "x.mcap");
-    expectSame(samplesOf<types::Sonar>(*log, "sonar.ping").at(0), smallPing(1));
-    EXPECT_EQ(samplesOf<types::Pose>(*log, "vehicle.pose").at(0).orientation, smallPose(1).orientation);
+    expectSame(getSamples<types::Sonar>(*log, "sonar.ping").at(0), smallPing(1));
+    EXPECT_EQ(getSamples<types::Pose>(*log, "vehicle.pose").at(0).orientation, smallPose(1).orientation);
 }
 
 TEST(SampleWriterTest, EveryTypeOfALogHasItsMessage) {
@@ -255,16 +256,16 @@ TEST(SampleWriterTest, EveryTypeOfALogHasItsMessage) {
         add("a.beam", beam);
     }
     const auto log = openLog(folder / "x.mcap");
-    EXPECT_EQ(samplesOf<double>(*log, "a.double"), std::vector{0.25});
-    EXPECT_EQ(samplesOf<float>(*log, "a.float"), std::vector{0.5f});
-    EXPECT_EQ(samplesOf<int32_t>(*log, "a.int"), std::vector{-3});
-    EXPECT_EQ(samplesOf<int64_t>(*log, "a.long"), std::vector{int64_t{-4}});
-    EXPECT_EQ(samplesOf<bool>(*log, "a.bool"), std::vector{true});
-    EXPECT_EQ(samplesOf<std::string>(*log, "a.text"), std::vector<std::string>{"word"});
-    EXPECT_EQ(samplesOf<types::Angle>(*log, "a.angle").at(0).rad, 0.75);
-    EXPECT_EQ(samplesOf<types::Time>(*log, "a.time").at(0).microseconds, 1'500'000);
-    EXPECT_EQ(samplesOf<types::Image>(*log, "a.image").at(0).image, (std::vector<uint8_t>{1, 2, 3, 4, 5, 6}));
-    EXPECT_EQ(samplesOf<types::Sonar>(*log, "a.beam").at(0).bins, (std::vector<float>{0, 1}));
+    EXPECT_EQ(getSamples<double>(*log, "a.double"), std::vector{0.25});
+    EXPECT_EQ(getSamples<float>(*log, "a.float"), std::vector{0.5f});
+    EXPECT_EQ(getSamples<int32_t>(*log, "a.int"), std::vector{-3});
+    EXPECT_EQ(getSamples<int64_t>(*log, "a.long"), std::vector{int64_t{-4}});
+    EXPECT_EQ(getSamples<bool>(*log, "a.bool"), std::vector{true});
+    EXPECT_EQ(getSamples<std::string>(*log, "a.text"), std::vector<std::string>{"word"});
+    EXPECT_EQ(getSamples<types::Angle>(*log, "a.angle").at(0).rad, 0.75);
+    EXPECT_EQ(getSamples<types::Time>(*log, "a.time").at(0).microseconds, 1'500'000);
+    EXPECT_EQ(getSamples<types::Image>(*log, "a.image").at(0).image, (std::vector<uint8_t>{1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(getSamples<types::Sonar>(*log, "a.beam").at(0).bins, (std::vector<float>{0, 1}));
     EXPECT_FALSE(check(folder / "x.mcap").diagnostic);
 }
 
@@ -274,7 +275,7 @@ TEST(SampleWriterTest, ASampleWithoutAMessageIsAnError) {
     const size_t stream = log.addStream<types::Image>("fan.image", {});
     types::Image jpeg;
     jpeg.frame_mode = types::ImageMode{258};
-    EXPECT_THAT(test::errorOf<std::runtime_error>([&] { log.write(stream, {1}, jpeg); }),
+    EXPECT_THAT(test::computeError<std::runtime_error>([&] { log.write(stream, {1}, jpeg); }),
                 testing::EndsWith("x.mcap: a sample of fan.image cannot be written as a message: a picture of mode 258 "
                                   "with 0 bytes a pixel is not known: mono8, mono16, rgb8 and bgr8 are"));
 }
@@ -296,7 +297,7 @@ TEST(SampleWriterTest, ALogOfSeveralFilesIsOneBagAndEachFileIsReadableAlone) {
         EXPECT_EQ(log->samples().size(), count);
         EXPECT_EQ(log->streams().at(0).metadata.at("insonify_seed"), "7");
     }
-    const std::vector<char> bytes = bytesOf(folder / "metadata.yaml");
+    const std::vector<char> bytes = toBytes(folder / "metadata.yaml");
     const std::string bag(bytes.begin(), bytes.end());
     EXPECT_THAT(bag, testing::HasSubstr("    - \"x.0.mcap\"\n    - \"x.1.mcap\"\n"));
     EXPECT_THAT(bag, testing::HasSubstr("  duration:\n    nanoseconds: 1999999000\n"));
@@ -328,7 +329,7 @@ TEST(SampleWriterTest, TheMetadataOfAnotherBagIsNotOverwritten) {
     const Folder folder;
     smallFile(folder / "x.0.mcap");
     smallFile(folder / "x.0.mcap");  // the same file again
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { smallFile(folder / "y.0.mcap"); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { smallFile(folder / "y.0.mcap"); }),
                 testing::HasSubstr("describes another bag, of \"x.0.mcap\"; give \"y.0.mcap\" a "
                                    "folder of its own, as in bag/y.0.mcap"));
 }
@@ -343,7 +344,7 @@ TEST(SampleWriterTest, MoreThanAChunkIsReadBack) {
         EXPECT_GT(log.kept(), 3u);
     }
     const auto log = openLog(folder / "x.mcap");
-    EXPECT_EQ(samplesOf<std::string>(*log, "a.text"), std::vector(10, text));
+    EXPECT_EQ(getSamples<std::string>(*log, "a.text"), std::vector(10, text));
     EXPECT_FALSE(check(folder / "x.mcap").diagnostic);
 }
 

@@ -49,7 +49,7 @@ inline std::vector<char> smallFile(const std::filesystem::path& path, const Mcap
         log.write(ping, received, smallPing(i));
     }
     log.close();
-    return bytesOf(path);
+    return toBytes(path);
 }
 
 }  // namespace insonify::log::mcap

@@ -44,7 +44,7 @@ std::vector<std::string> childrenOn(const std::filesystem::path& path, const std
     return names;
 }
 
-types::Pose poseOf(int64_t time, const std::string& body, const std::string& world = "world") {
+types::Pose getPose(int64_t time, const std::string& body, const std::string& world = "world") {
     types::Pose pose = smallPose(time);
     pose.source_frame = body;
     pose.target_frame = world;
@@ -111,7 +111,7 @@ TEST_F(TransformsTest, AFramePrefixAppliesToABodyWithoutAName) {
     ASSERT_TRUE(config.names.setFramePrefix("auv1"));
     {
         SampleWriter log(path, config);
-        log.write(log.addStream<types::Pose>("vehicle.pose"), {1}, poseOf(1, "", ""));
+        log.write(log.addStream<types::Pose>("vehicle.pose"), {1}, getPose(1, "", ""));
     }
     EXPECT_THAT(childrenOn(path, "/tf"), ElementsAre("map auv1/base_link"));
 }
@@ -136,19 +136,19 @@ TEST_F(TransformsTest, AFrameHasOneParentAndOnlyValidPoses) {
                      third = log.addStream<types::Pose>("third.pose");
         log.write(ping, {1}, smallPing(1));
         log.write(other, {1}, smallPing(1));
-        log.write(truth, {1}, poseOf(1, "truth"));
-        types::Pose lost = poseOf(1, "body");
+        log.write(truth, {1}, getPose(1, "truth"));
+        types::Pose lost = getPose(1, "body");
         lost.position.x = types::Pose::unknown;
         log.write(pose, {1}, lost);
-        lost = poseOf(2, "body");
+        lost = getPose(2, "body");
         lost.orientation = {0, 0, 0, 0};
         log.write(pose, {2}, lost);
-        log.write(third, {2}, poseOf(2, "world", "world"));
-        log.write(pose, {3}, poseOf(3, "body"));
-        log.write(pose, {4}, poseOf(3, "body"));
-        log.write(third, {4}, poseOf(4, "body"));
-        log.write(third, {4}, poseOf(4, "sonar"));
-        log.write(unnamed, {5}, poseOf(5, "", ""));
+        log.write(third, {2}, getPose(2, "world", "world"));
+        log.write(pose, {3}, getPose(3, "body"));
+        log.write(pose, {4}, getPose(3, "body"));
+        log.write(third, {4}, getPose(4, "body"));
+        log.write(third, {4}, getPose(4, "sonar"));
+        log.write(unnamed, {5}, getPose(5, "", ""));
     }
     EXPECT_THAT(childrenOn(path, "/tf"), ElementsAre("world truth", "world body", "map base_link"));
     EXPECT_THAT(childrenOn(path, "/tf_static"), ElementsAre("body sonar")) << "for the body in the pings";
@@ -161,10 +161,10 @@ TEST_F(TransformsTest, APoseOfTheSonarItselfHasTheAxesOfItsPings) {
         SampleWriter log(path, {});
         log.addStream<types::Sonar>("sonar.ping", with_mount);
         const size_t pose = log.addStream<types::Pose>("sonar.pose"), body = log.addStream<types::Pose>("vehicle.pose");
-        types::Pose ahead = poseOf(1, "sonar");
+        types::Pose ahead = getPose(1, "sonar");
         ahead.orientation = {1, 0, 0, 0};
         log.write(pose, {1}, ahead);
-        log.write(body, {1}, poseOf(1, "body"));
+        log.write(body, {1}, getPose(1, "body"));
     }
     EXPECT_THAT(childrenOn(path, "/tf"), ElementsAre("world sonar", "world body"));
     EXPECT_THAT(childrenOn(path, "/tf_static"), IsEmpty()) << "a frame has one parent";

@@ -81,12 +81,12 @@ TEST_F(CheckTest, NamesErrorsInADeclaration) {
     EXPECT_THAT(wrongIn(with(whole, first + 2, uint16_t{1})).message, HasSubstr("it must be 0: in order"));
     EXPECT_EQ(wrongIn(with(whole, first + 8, char{2})).byte, first + 8);
     EXPECT_EQ(wrongIn(with(whole, first + 9, uint32_t{1} << 20)).byte, first + 9);
-    const auto byteOf = [&](const char* text) {
+    const auto findByte = [&](const char* text) {
         return static_cast<uint64_t>(std::string_view(whole.data(), whole.size()).find(text));
     };
-    EXPECT_THAT(wrongIn(with(whole, byteOf("<typelib>"), '[')).message, HasSubstr("must be typelib's XML"));
-    const uint64_t metadata = byteOf("rock_cxx_type_name");
-    EXPECT_EQ(wrongIn(with(whole, metadata, ' ')).byte, byteOf("rock_orocos_type_name")) << "where indentation ends";
+    EXPECT_THAT(wrongIn(with(whole, findByte("<typelib>"), '[')).message, HasSubstr("must be typelib's XML"));
+    const uint64_t metadata = findByte("rock_cxx_type_name");
+    EXPECT_EQ(wrongIn(with(whole, metadata, ' ')).byte, findByte("rock_orocos_type_name")) << "where indentation ends";
 }
 
 TEST_F(CheckTest, RejectsTimesThatRunBackwards) {
@@ -95,7 +95,7 @@ TEST_F(CheckTest, RejectsTimesThatRunBackwards) {
 }
 
 TEST_F(CheckTest, RejectsAnIndexOfAnotherLog) {
-    std::vector<char> index = bytesOf(folder / "whole.0.idx");
+    std::vector<char> index = toBytes(folder / "whole.0.idx");
     writeBytes(folder / "whole.0.idx", with(index, 25, uint64_t{0}));
     EXPECT_FALSE(check(folder / "whole.0.log").diagnostic) << "copying a log changes its time";
     writeBytes(folder / "whole.0.idx", with(index, index.size() - 1, char{77}));

@@ -27,7 +27,7 @@ struct CopyTest : testing::Test {
         writeBytes(folder / "x.0.log", bytes);
         return copied({}, AtDamage::Skip);
     }
-    std::vector<int64_t> timesOf(const std::string& stream) const {
+    std::vector<int64_t> getTimes(const std::string& stream) const {
         std::vector<int64_t> times;
         Reader(folder / "y.0.log").forEachRef(stream, [&](const SampleRef& at) {
             times.push_back(at.time.microseconds);
@@ -41,16 +41,16 @@ struct CopyTest : testing::Test {
 
 TEST_F(CopyTest, AWholeLogIsCopiedBitForBit) {
     EXPECT_THAT(repaired(whole).lost, IsEmpty());
-    EXPECT_EQ(bytesOf(folder / "y.0.log"), whole);
+    EXPECT_EQ(toBytes(folder / "y.0.log"), whole);
 }
 
 TEST_F(CopyTest, ASpanOfTimeOrNumbersAndSomeStreamsCanBeCutOut) {
     writeBytes(folder / "x.0.log", whole);
     EXPECT_EQ(copied({.from = {2}, .until = {3}}).samples, 2u);
-    EXPECT_THAT(timesOf("sonar.ping"), ElementsAre(2));
-    EXPECT_THAT(timesOf("vehicle.pose"), ElementsAre(2));
+    EXPECT_THAT(getTimes("sonar.ping"), ElementsAre(2));
+    EXPECT_THAT(getTimes("vehicle.pose"), ElementsAre(2));
     EXPECT_EQ(copied({.streams = {"sonar.ping"}, .first = 1, .last = 3}).samples, 2u);
-    EXPECT_THAT(timesOf("sonar.ping"), ElementsAre(2, 3));
+    EXPECT_THAT(getTimes("sonar.ping"), ElementsAre(2, 3));
     EXPECT_EQ(Reader(folder / "y.0.log").streams().size(), 1u);
     EXPECT_EQ(copied({.first = 4}).samples, 1u) << "numbers of all streams together";
     EXPECT_EQ(copied({.from = {100}}).samples, 0u);
@@ -61,7 +61,7 @@ TEST_F(CopyTest, KeepsSamplesBehindADamagedBlock) {
     std::fill_n(damaged.begin() + static_cast<ptrdiff_t>(blocks[1]), 20, '\x5a');
     const Copied result = repaired(damaged);
     EXPECT_EQ(result.samples, 4u);
-    EXPECT_THAT(timesOf("sonar.ping"), ElementsAre(2, 3));
+    EXPECT_THAT(getTimes("sonar.ping"), ElementsAre(2, 3));
     ASSERT_EQ(result.lost.size(), 1u);
     EXPECT_THAT(result.lost[0], HasSubstr("bytes " + std::to_string(blocks[1]) + " to " + std::to_string(blocks[2])));
     EXPECT_THAT(result.lost[0], HasSubstr("there is no block"));
@@ -82,7 +82,7 @@ TEST_F(CopyTest, ADamagedPrologueCostsNoSample) {
     std::vector<char> damaged = whole;
     damaged[2] = 'X';
     EXPECT_EQ(repaired(damaged).samples, 5u);
-    EXPECT_EQ(bytesOf(folder / "y.0.log"), whole);
+    EXPECT_EQ(toBytes(folder / "y.0.log"), whole);
 }
 
 TEST_F(CopyTest, ADamagedSampleIsOmittedAndReported) {
@@ -112,10 +112,10 @@ TEST_F(CopyTest, CompressedSamplesAreDecompressed) {
     Writer log(folder / "x.0.log");
     log.write(log.addStream<types::Pose>("vehicle.pose"), {1}, {1}, packed);
     log.close();
-    std::vector<char> bytes = bytesOf(folder / "x.0.log");
+    std::vector<char> bytes = toBytes(folder / "x.0.log");
     bytes[sampleBlocks(folder / "x.0.log")[0] + 28] = 1;
     EXPECT_EQ(repaired(bytes).samples, 1u);
-    EXPECT_EQ(bytesOf(folder / "y.0.log")[sampleBlocks(folder / "y.0.log")[0] + 28], 0) << "the flag";
+    EXPECT_EQ(toBytes(folder / "y.0.log")[sampleBlocks(folder / "y.0.log")[0] + 28], 0) << "the flag";
 }
 
 TEST_F(CopyTest, TheFilesOfALogBecomeOne) {
@@ -126,8 +126,8 @@ TEST_F(CopyTest, TheFilesOfALogBecomeOne) {
     next.close();
     EXPECT_EQ(copyLog({folder / "x.0.log", folder / "x.1.log"}, folder / "y.0.log").samples, 7u);
     EXPECT_FALSE(check(folder / "y.0.log").diagnostic);
-    EXPECT_THAT(timesOf("sonar.ping"), ElementsAre(1, 2, 3, 5));
-    EXPECT_THAT(timesOf("new.stream"), ElementsAre(4));
+    EXPECT_THAT(getTimes("sonar.ping"), ElementsAre(1, 2, 3, 5));
+    EXPECT_THAT(getTimes("new.stream"), ElementsAre(4));
 }
 
 /** Two streams without samples; a.b has that type. */
@@ -142,7 +142,7 @@ TEST_F(CopyTest, StreamsOfOneNameAreNotJoinedWhenTheirTypesOrLayoutsDiffer) {
     const auto message = [&](const std::string& type, const std::string& registry, const Selection& selection) {
         writeStream(folder / "x.0.log", "/double", "<typelib/>");
         writeStream(folder / "x.1.log", type, registry);
-        return test::errorOf<types::ConfigError>([&] {
+        return test::computeError<types::ConfigError>([&] {
             copyLog({folder / "x.0.log", folder / "x.1.log"}, folder / "y.0.log", {.selection = selection});
         });
     };
@@ -157,7 +157,7 @@ TEST_F(CopyTest, StreamsOfOneNameAreNotJoinedWhenTheirTypesOrLayoutsDiffer) {
 
 TEST_F(CopyTest, ALogIsNotCopiedOntoItself) {
     EXPECT_THROW(copyLog({folder / "whole.0.log"}, folder / "whole.0.log"), types::ConfigError);
-    EXPECT_EQ(bytesOf(folder / "whole.0.log"), whole);
+    EXPECT_EQ(toBytes(folder / "whole.0.log"), whole);
     EXPECT_THROW(copyLog({folder / "whole.0.log"}, folder / "y.0.log", {.selection = {.streams = {"no.such"}}}),
                  types::ConfigError);
     writeBytes(folder / "noise.0.log", std::vector<char>(100, 'x'));

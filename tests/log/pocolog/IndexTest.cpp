@@ -35,8 +35,8 @@ TEST(IndexTest, HasTheBlocksOfTheLogAndItsSize) {
     log.write(stream, {1'000'000}, 0.5);
     log.write(stream, {2'000'000}, 0.75);
     log.close();
-    const std::vector<char> bytes = bytesOf(folder / "x.0.log");
-    const std::vector<char> index = bytesOf(folder / "x.0.idx");
+    const std::vector<char> bytes = toBytes(folder / "x.0.log");
+    const std::vector<char> index = toBytes(folder / "x.0.idx");
     ASSERT_EQ(index.size(), 13 + 4 + 3 * 8 + 64 + 2 * 16u);
     EXPECT_EQ(number(index, 17), bytes.size());
     EXPECT_EQ(number(index, 41), sizeof(Prologue));

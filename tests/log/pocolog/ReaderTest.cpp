@@ -43,7 +43,7 @@ void appendSample(std::vector<char>& bytes, const std::vector<char>& data, bool 
 }
 
 std::string messageFor(const std::filesystem::path& path) {
-    return test::errorOf<types::ConfigError>([&] { Reader reader(path); });
+    return test::computeError<types::ConfigError>([&] { Reader reader(path); });
 }
 
 TEST(ReaderTest, SamplesOfAllStreamsAreInFileOrder) {
@@ -146,7 +146,8 @@ TEST(ReaderTest, AMissingStreamIsReportedWithTheExistingStreams) {
     writeBytes(folder / "x.0.log", foreignLog("/double"));
     Reader reader(folder / "x.0.log");
     EXPECT_EQ(reader.find("sonar.ping"), nullptr);
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { reader.indexOf("sonar.ping"); }), HasSubstr("other.port"));
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { reader.findIndex("sonar.ping"); }),
+                HasSubstr("other.port"));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ inline std::vector<char> smallLog(const Folder& folder) {
         log.write(ping, {i}, smallPing(i));
     }
     log.close();
-    return bytesOf(folder / "whole.0.log");
+    return toBytes(folder / "whole.0.log");
 }
 
 /** Returns the positions of the blocks of the small log's samples [B]. */

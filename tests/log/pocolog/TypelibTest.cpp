@@ -11,43 +11,43 @@ namespace {
 using testing::HasSubstr;
 
 template <class T>
-std::vector<size_t> offsetsOf() {
+std::vector<size_t> getOffsets() {
     std::vector<size_t> offsets;
     Extent extent;
-    forEachField<T>([&]<class F>(const types::Field&, F&) { offsets.push_back(extent.append(extentOf<F>())); });
+    forEachField<T>([&]<class F>(const types::Field&, F&) { offsets.push_back(extent.append(getExtent<F>())); });
     return offsets;
 }
 
 TEST(TypelibTest, SonarHasRocksOffsetsAndSize) {
-    EXPECT_THAT(offsetsOf<types::Sonar>(), testing::ElementsAre(0, 8, 32, 40, 48, 56, 80, 84, 88, 96));
-    EXPECT_EQ(extentOf<types::Sonar>().size, 120u);
+    EXPECT_THAT(getOffsets<types::Sonar>(), testing::ElementsAre(0, 8, 32, 40, 48, 56, 80, 84, 88, 96));
+    EXPECT_EQ(getExtent<types::Sonar>().size, 120u);
 }
 
 TEST(TypelibTest, RigidBodyStateHasRocksOffsetsAndSize) {
-    EXPECT_THAT(offsetsOf<types::Pose>(), testing::ElementsAre(0, 8, 40, 72, 96, 168, 200, 272, 296, 368, 392));
-    EXPECT_EQ(extentOf<types::Pose>().size, 464u);
+    EXPECT_THAT(getOffsets<types::Pose>(), testing::ElementsAre(0, 8, 40, 72, 96, 168, 200, 272, 296, 368, 392));
+    EXPECT_EQ(getExtent<types::Pose>().size, 464u);
 }
 
 TEST(TypelibTest, FrameHasRocksOffsetsAndSize) {
-    EXPECT_THAT(offsetsOf<types::Image>(), testing::ElementsAre(0, 8, 16, 40, 64, 68, 72, 76, 80, 84));
-    EXPECT_EQ(extentOf<types::Image>().size, 88u);
+    EXPECT_THAT(getOffsets<types::Image>(), testing::ElementsAre(0, 8, 16, 40, 64, 68, 72, 76, 80, 84));
+    EXPECT_EQ(getExtent<types::Image>().size, 88u);
 }
 
 TEST(TypelibTest, NavigationReadingsHaveRocksOffsets) {
-    EXPECT_THAT(offsetsOf<types::ImuSensors>(), testing::ElementsAre(0, 8, 32, 56));
-    EXPECT_EQ(extentOf<types::ImuSensors>().size, 80u);
+    EXPECT_THAT(getOffsets<types::ImuSensors>(), testing::ElementsAre(0, 8, 32, 56));
+    EXPECT_EQ(getExtent<types::ImuSensors>().size, 80u);
     EXPECT_EQ(typelibName<types::ImuSensors>(), "/base/samples/IMUSensors_m") << "of Eigen's vectors";
-    EXPECT_THAT(offsetsOf<types::Pressure>(), testing::ElementsAre(0, 8)) << "its base class first";
-    EXPECT_EQ(extentOf<types::Pressure>().size, 16u);
+    EXPECT_THAT(getOffsets<types::Pressure>(), testing::ElementsAre(0, 8)) << "its base class first";
+    EXPECT_EQ(getExtent<types::Pressure>().size, 16u);
     EXPECT_EQ(typelibName<types::Pressure>(), "/base/samples/Pressure");
 }
 
 TEST(TypelibTest, ScansAndBeamsHaveRocksOffsetsAndSize) {
-    EXPECT_THAT(offsetsOf<types::SonarBeam>(), testing::ElementsAre(0, 8, 16, 24, 28, 32, 40));
-    EXPECT_EQ(extentOf<types::SonarBeam>().size, 64u);
-    EXPECT_THAT(offsetsOf<types::SonarScan>(),
+    EXPECT_THAT(getOffsets<types::SonarBeam>(), testing::ElementsAre(0, 8, 16, 24, 28, 32, 40));
+    EXPECT_EQ(getExtent<types::SonarBeam>().size, 64u);
+    EXPECT_THAT(getOffsets<types::SonarScan>(),
                 testing::ElementsAre(0, 8, 32, 56, 58, 64, 72, 80, 88, 96, 104, 112, 113));
-    EXPECT_EQ(extentOf<types::SonarScan>().size, 120u);
+    EXPECT_EQ(getExtent<types::SonarScan>().size, 120u);
 }
 
 TEST(TypelibTest, OnlyTypesWithOpaquesHaveASuffixAndOnlyOnTheLog) {
@@ -68,7 +68,7 @@ TEST(TypelibTest, NumbersHaveTypelibsNormalisedNames) {
 }
 
 TEST(TypelibTest, TheRegistryOfSonarIsTheMinimalOneThatRocksReadersAccept) {
-    EXPECT_EQ(registryOf<types::Sonar>(),
+    EXPECT_EQ(makeRegistry<types::Sonar>(),
               R"(<?xml version="1.0"?>
 <typelib>
   <numeric name="/int64_t" category="sint" size="8"/>
@@ -101,7 +101,7 @@ TEST(TypelibTest, TheRegistryOfSonarIsTheMinimalOneThatRocksReadersAccept) {
 }
 
 TEST(TypelibTest, TheRegistryOfAPoseHasTheWrappersOfEigen) {
-    const std::string xml = registryOf<types::Pose>();
+    const std::string xml = makeRegistry<types::Pose>();
     EXPECT_THAT(xml, HasSubstr("<compound name=\"/wrappers/Matrix&lt;/double,3,1&gt;\" size=\"24\">\n"
                                "    <field name=\"data\" type=\"/double[3]\" offset=\"0\"/>"));
     EXPECT_THAT(xml, HasSubstr("<compound name=\"/wrappers/Matrix&lt;/double,3,3&gt;\" size=\"72\">\n"
@@ -113,7 +113,7 @@ TEST(TypelibTest, TheRegistryOfAPoseHasTheWrappersOfEigen) {
 }
 
 TEST(TypelibTest, TheRegistryOfAFrameListsTheSymbolsOfItsEnums) {
-    const std::string xml = registryOf<types::Image>();
+    const std::string xml = makeRegistry<types::Image>();
     EXPECT_THAT(xml, HasSubstr("<enum name=\"/base/samples/frame/frame_mode_t\">"));
     EXPECT_THAT(xml, HasSubstr("<value symbol=\"MODE_BGR\" value=\"4\"/>"));
     EXPECT_THAT(xml, HasSubstr("<value symbol=\"STATUS_INVALID\" value=\"2\"/>"));

@@ -18,7 +18,7 @@ TEST(WriterTest, AFileIsAPrologueThenBlocks) {
     Writer log(folder / "x.0.log");
     log.write(log.addStream<double>("a.b"), {1'500'000}, 1.0);
     log.close();
-    const std::vector<char> bytes = bytesOf(folder / "x.0.log");
+    const std::vector<char> bytes = toBytes(folder / "x.0.log");
     const std::string_view text(bytes.data(), bytes.size());
     EXPECT_EQ(text.substr(0, 16), std::string_view("POCOSIM\0\2\0\0\0\0\0\0\0", 16));
     EXPECT_EQ(text.substr(16, 4), std::string_view("\1\xff\0\0", 4));
@@ -45,7 +45,7 @@ TEST(WriterTest, AStreamHasTheMetadataOfRocksTools) {
                                                          {"rock_timestamp_field", "time"},
                                                          {"insonify_seed", "7"}}));
     EXPECT_EQ(reader.streams()[0].type, "/base/samples/RigidBodyState_m");
-    EXPECT_EQ(reader.layout(0), registryOf<types::Pose>());
+    EXPECT_EQ(reader.layout(0), makeRegistry<types::Pose>());
 }
 
 TEST(WriterTest, TimesInTheHeadersNeverRunBackwardsButTheStampStays) {
@@ -105,7 +105,7 @@ TEST(WriterTest, DoesNotOverwriteALogDuringItsWriting) {
     Writer log(folder / "x.0.log");
     log.write(log.addStream<double>("a.b"), {1}, 1.0);
     log.flush();
-    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { Writer(folder / "x.0.log"); }),
+    EXPECT_THAT(test::computeError<types::ConfigError>([&] { Writer(folder / "x.0.log"); }),
                 testing::HasSubstr("another logger writes it"));
     EXPECT_EQ(Reader(folder / "x.0.log").samples().size(), 1u);
     log.close();
@@ -124,7 +124,8 @@ TEST(WriterTest, ReportsAFullDeviceWithTheSystemsReason) {
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
     Writer log(folder / "x.0.log");
     log.addStream<double>("a.b");
-    EXPECT_THAT(test::errorOf<std::runtime_error>([&] { log.flush(); }), testing::HasSubstr("No space left on device"));
+    EXPECT_THAT(test::computeError<std::runtime_error>([&] { log.flush(); }),
+                testing::HasSubstr("No space left on device"));
 }
 
 /** Writes samples of 1000 bytes, with a flush after each, to a file limited to 20000 bytes; exits 0 when the error is

@@ -11,8 +11,8 @@
 namespace insonify::sonar {
 namespace {
 
-using test::pingOf;
-using test::snapshotOf;
+using test::makePing;
+using test::makeSnapshot;
 
 constexpr types::Shell thin_screen{0.002, 1190, 2700, 1340, 5e-3, false};
 
@@ -24,7 +24,7 @@ types::GeometryPtr withMirror(std::vector<types::Mesh> screens, const types::She
     screens.push_back(test::wall(10));
     screens.push_back(test::ground(-4));
     for (types::Cluster& cluster : screens.back().clusters) cluster.material = 2;
-    const auto scene = std::make_shared<types::Geometry>(*shellsOf(std::move(screens), shells, shell));
+    const auto scene = std::make_shared<types::Geometry>(*makeShells(std::move(screens), shells, shell));
     scene->materials.push_back(scene->materials.front());
     scene->materials[2].lambert_db = -200;
     scene->materials[2].mirror = true;
@@ -40,13 +40,13 @@ SonarConfig mirroring(double height_deg) {
 }
 /** Returns the energy of the paths by mirrors only. */
 double energyByMirrors(SonarConfig config, const types::GeometryPtr& scene, double pitch, double from, double to) {
-    const double all = energyOf(pingOf(config, snapshotOf(scene, {}, 0, pitch)), 0, from, to);
+    const double all = sumEnergy(makePing(config, makeSnapshot(scene, {}, 0, pitch)), 0, from, to);
     config.multipath.reset();
-    return all - energyOf(pingOf(config, snapshotOf(scene, {}, 0, pitch)), 0, from, to);
+    return all - sumEnergy(makePing(config, makeSnapshot(scene, {}, 0, pitch)), 0, from, to);
 }
 
 /** Out and back by the mirror through a screen before it, or behind it, at 35 deg. */
-TEST(WallWaysTest, APathByAMirrorIsWeakenedByEachWallOfItsLegs) {
+TEST(WallPathsTest, APathByAMirrorIsWeakenedByEachWallOfItsLegs) {
     const double pitch = 35 * std::numbers::pi / 180, cosine = std::cos(pitch);
     const SonarConfig config = mirroring(2);
     const double open = energyByMirrors(config, withMirror({}), pitch, 11, 14);
@@ -61,7 +61,7 @@ TEST(WallWaysTest, APathByAMirrorIsWeakenedByEachWallOfItsLegs) {
 }
 
 /** All paths, including those with one direct leg and one leg by the mirror, are weakened by the walls of both legs. */
-TEST(WallWaysTest, TheDirectLegIsWeakenedToo) {
+TEST(WallPathsTest, TheDirectLegIsWeakenedToo) {
     const SonarConfig config = mirroring(85);
     const auto share = [&](const types::Mesh& mesh) {
         return energyByMirrors(config, withMirror({mesh}), 0, 10.2, 13.5) /
@@ -78,28 +78,28 @@ TEST(WallWaysTest, TheDirectLegIsWeakenedToo) {
     EXPECT_LT(direct, 1);
 }
 
-TEST(WallWaysTest, AnOpaqueWallIsAnOrdinarySurfaceBitForBit) {
+TEST(WallPathsTest, AnOpaqueWallIsAnOrdinarySurfaceBitForBit) {
     types::Shell air = thin_screen;
     air.has_air = true;
     for (const types::Shell& shell : {air, types::Shell{0.1, 1300, 900, 0, 0.2, false}}) {
         SonarConfig config = mirroring(85), none = config;
         none.max_walls = 0;
         const auto scene = withMirror({screenAt(8, -3.9f, 50)}, shell);
-        EXPECT_EQ(pingOf(config, snapshotOf(scene)).bins, pingOf(none, snapshotOf(scene)).bins);
+        EXPECT_EQ(makePing(config, makeSnapshot(scene)).bins, makePing(none, makeSnapshot(scene)).bins);
     }
 }
 
 /** The water surface is a mirror above a tank made of a shell; the path crosses its walls up and down. */
-TEST(WallWaysTest, TheWaterSurfaceIsVisibleThroughAWall) {
+TEST(WallPathsTest, TheWaterSurfaceIsVisibleThroughAWall) {
     SonarConfig config = wallSonar(2, 2, 1);
     config.multipath.emplace().surface.emplace();
     const auto level = [&](const types::GeometryPtr& scene) {
-        auto snapshot = snapshotOf(scene, {0, 0, -4}, 0, -35 * std::numbers::pi / 180);
+        auto snapshot = makeSnapshot(scene, {0, 0, -4}, 0, -35 * std::numbers::pi / 180);
         snapshot.water_surface = 0.0;
-        return energyOf(pingOf(config, snapshot), 0, 11, 14);
+        return sumEnergy(makePing(config, snapshot), 0, 11, 14);
     };
-    const double open = level(shellsOf({test::wall(10)}, 0));
-    const double through = level(shellsOf({screenAt(3, -50, -0.1f), test::wall(10)}, 1, thin_screen));
+    const double open = level(makeShells({test::wall(10)}, 0));
+    const double through = level(makeShells({screenAt(3, -50, -0.1f), test::wall(10)}, 1, thin_screen));
     ASSERT_GT(open, 0);
     EXPECT_NEAR(through / open / twoWays(std::cos(35 * std::numbers::pi / 180)), 1, 0.02);
 }

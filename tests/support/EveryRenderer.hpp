@@ -7,7 +7,7 @@
 namespace insonify::test {
 
 /** By rays; rasterised with sums on the processor; rasterised with sums on the (software) device. */
-inline std::vector<sonar::SonarConfig> everyWay(const sonar::SonarConfig& config) {
+inline std::vector<sonar::SonarConfig> everyRenderer(const sonar::SonarConfig& config) {
     std::vector<sonar::SonarConfig> all(3, config);
     all[0].visibility = sonar::Visibility::Cpu;
     all[1].visibility = all[2].visibility = sonar::Visibility::Gl;

@@ -5,7 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "tests/sonar/TriedWays.hpp"
+#include "tests/sonar/TriedPaths.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Scenes.hpp"
 
@@ -44,7 +44,7 @@ types::Mesh cells(const glm::dvec3& corner, const glm::dvec3& a, const glm::dvec
             const uint32_t k = i * (n + 1) + j;
             indices.insert(indices.end(), {k, k + n + 1, k + 1, k + 1, k + n + 1, k + n + 2});
         }
-    return test::meshOf(positions, indices);
+    return test::getMesh(positions, indices);
 }
 
 types::Mesh joined(const std::vector<types::Mesh>& meshes) {
@@ -55,7 +55,7 @@ types::Mesh joined(const std::vector<types::Mesh>& meshes) {
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
         for (const uint32_t index : mesh.indices) indices.push_back(before + index);
     }
-    return test::meshOf(positions, indices);
+    return test::getMesh(positions, indices);
 }
 
 /** Four walls and a bottom about the origin. */
@@ -81,7 +81,7 @@ types::Mesh strewn(Generator& random, int count, double size) {
         const auto last = static_cast<uint32_t>(positions.size()) - 1;
         indices.insert(indices.end(), {last, last - 1, last});
     }
-    return test::meshOf(positions, indices);
+    return test::getMesh(positions, indices);
 }
 
 /** Objects with one mirror material each. With `obstacle` the last is no mirror. */
@@ -117,28 +117,28 @@ struct Case {
     bool moving = false;  ///< The second object has a new place in most pings.
 };
 
-void expectSame(const TargetPath& way, const TargetPath& tried, double tolerance) {
-    EXPECT_EQ(way.reflections, tried.reflections);
-    EXPECT_EQ(way.by_surface, tried.by_surface);
-    EXPECT_NEAR(way.length, tried.length, tolerance);
-    EXPECT_LE(glm::distance(way.direction, tried.direction), tolerance);
-    EXPECT_NEAR(way.power, tried.power, tolerance);
-    EXPECT_NEAR(way.sine_grazing, tried.sine_grazing, tolerance);
+void expectSame(const TargetPath& path, const TargetPath& tried, double tolerance) {
+    EXPECT_EQ(path.reflections, tried.reflections);
+    EXPECT_EQ(path.by_surface, tried.by_surface);
+    EXPECT_NEAR(path.length, tried.length, tolerance);
+    EXPECT_LE(glm::distance(path.direction, tried.direction), tolerance);
+    EXPECT_NEAR(path.power, tried.power, tolerance);
+    EXPECT_NEAR(path.sine_grazing, tried.sine_grazing, tolerance);
 }
 
 /** Returns the number of paths by two mirrors. */
 size_t expectAsTried(const Case& one, Generator& random) {
-    TargetPaths ways(bouncingSonar(one.surface), *one.geometry);
+    TargetPaths paths(bouncingSonar(one.surface), *one.geometry);
     size_t twice = 0;
     for (int ping = 0; ping < 6; ++ping) {
-        types::Snapshot snapshot = test::snapshotOf(one.geometry, uniformVector(random, one.size), 0.7 * ping, 0.2);
+        types::Snapshot snapshot = test::makeSnapshot(one.geometry, uniformVector(random, one.size), 0.7 * ping, 0.2);
         if (one.surface) snapshot.water_surface = one.size + 0.3;
         if (one.moving && ping % 3 > 0) snapshot.moved = {{1, uniformPlace(random, one.size)}};
-        ways.place(snapshot, range_max);
-        TriedWays all(snapshot, one.surface, 2 * range_max);
+        paths.place(snapshot, range_max);
+        TriedPaths all(snapshot, one.surface, 2 * range_max);
         for (int i = 0; i < 8; ++i) {
             const glm::dvec3 point = uniformVector(random, one.size);
-            const std::vector<TargetPath>& found = ways.waysTo(point);
+            const std::vector<TargetPath>& found = paths.pathsTo(point);
             const std::vector<TargetPath> tried = all.to(point);
             EXPECT_EQ(found.size(), tried.size()) << one.name << ", ping " << ping << ", target " << i;
             if (found.size() != tried.size()) return 0;
@@ -151,7 +151,7 @@ size_t expectAsTried(const Case& one, Generator& random) {
     return twice;
 }
 
-TEST(TargetWaysTest, MatchAllSequencesOfTriangles) {
+TEST(TargetPathsTest, MatchAllSequencesOfTriangles) {
     Generator random(11);
     const glm::dmat4 turned = glm::rotate(glm::dmat4(1), 0.3, glm::dvec3(1, 2, 3));
     const Case cases[] = {
@@ -182,8 +182,8 @@ types::Mesh halvedWall(bool other_winding = false) {
 
 /** The same wall, with a corner of the triangles of its upper half on an edge of the lower. */
 types::Mesh wallWithTJunction() {
-    return test::meshOf({{4, -3, -3}, {4, 3, -3}, {4, 3, 0}, {4, -3, 0}, {4, 0, 0}, {4, 3, 3}, {4, -3, 3}},
-                        {0, 1, 2, 0, 2, 3, 3, 4, 6, 4, 5, 6, 4, 2, 5});
+    return test::getMesh({{4, -3, -3}, {4, 3, -3}, {4, 3, 0}, {4, -3, 0}, {4, 0, 0}, {4, 3, 3}, {4, -3, 3}},
+                         {0, 1, 2, 0, 2, 3, 3, 4, 6, 4, 5, 6, 4, 2, 5});
 }
 
 struct Wall {
@@ -191,7 +191,7 @@ struct Wall {
     std::vector<types::Mesh> meshes;  ///< One per object.
 };
 
-TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOnePath) {
+TEST(TargetPathsTest, AMirrorPointOnACommonEdgeIsOnePath) {
     Generator random(3);
     types::Mesh half = halvedWall(), other_half = half;
     half.indices.resize(3);
@@ -207,16 +207,16 @@ TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOnePath) {
             const glm::dmat4 place = turn == 0 ? glm::dmat4(1) : uniformPlace(random, 20);
             const auto inWorld = [&](const glm::dvec3& point) { return glm::dvec3(place * glm::dvec4(point, 1)); };
             const auto geometry = mirrors(wall.meshes, std::vector(wall.meshes.size(), place));
-            TargetPaths ways(bouncingSonar(), *geometry);
-            ways.place(test::snapshotOf(geometry, inWorld({0, 1, 0.5})), range_max);
-            const std::vector<TargetPath>& found = ways.waysTo(inWorld({0, -1, -0.5}));
+            TargetPaths paths(bouncingSonar(), *geometry);
+            paths.place(test::makeSnapshot(geometry, inWorld({0, 1, 0.5})), range_max);
+            const std::vector<TargetPath>& found = paths.pathsTo(inWorld({0, -1, -0.5}));
             ASSERT_EQ(found.size(), 2u) << wall.name << ", turn " << turn;
             EXPECT_EQ(found[1].reflections, 1);
             EXPECT_NEAR(found[1].length, 2 * std::sqrt(16 + 1 + 0.25), 1e-9);
         }
 }
 
-TEST(TargetWaysTest, TheIntersectionOfTwoMirrorsIsOnePathByBoth) {
+TEST(TargetPathsTest, TheIntersectionOfTwoMirrorsIsOnePathByBoth) {
     Generator random(5);
     const types::Mesh corner =
         joined({test::quad({4, -4, -4}, {0, 8, 0}, {0, 0, 8}), test::quad({-4, 4, -4}, {8, 0, 0}, {0, 0, 8})});
@@ -224,9 +224,9 @@ TEST(TargetWaysTest, TheIntersectionOfTwoMirrorsIsOnePathByBoth) {
         const glm::dmat4 place = turn == 0 ? glm::dmat4(1) : uniformPlace(random, 20);
         const auto inWorld = [&](const glm::dvec3& point) { return glm::dvec3(place * glm::dvec4(point, 1)); };
         const auto geometry = mirrors({corner}, {place});
-        TargetPaths ways(bouncingSonar(), *geometry);
-        ways.place(test::snapshotOf(geometry, inWorld({0, 0, 1})), range_max);
-        const std::vector<TargetPath>& found = ways.waysTo(inWorld({2, 2, -1}));
+        TargetPaths paths(bouncingSonar(), *geometry);
+        paths.place(test::makeSnapshot(geometry, inWorld({0, 0, 1})), range_max);
+        const std::vector<TargetPath>& found = paths.pathsTo(inWorld({2, 2, -1}));
         ASSERT_EQ(found.size(), 4u) << turn;
         const auto by_both = std::ranges::find(found, 2, &TargetPath::reflections);
         ASSERT_NE(by_both, found.end());
@@ -234,44 +234,44 @@ TEST(TargetWaysTest, TheIntersectionOfTwoMirrorsIsOnePathByBoth) {
     }
 }
 
-TEST(TargetWaysTest, ATargetOnAMirrorHasNoPathByIt) {
+TEST(TargetPathsTest, ATargetOnAMirrorHasNoPathByIt) {
     Generator random(6);
     for (int turn = 0; turn < 100; ++turn) {
         const glm::dmat4 place = uniformPlace(random, 20);
         const auto inWorld = [&](const glm::dvec3& point) { return glm::dvec3(place * glm::dvec4(point, 1)); };
         const auto geometry = mirrors({halvedWall()}, {place});
-        TargetPaths ways(bouncingSonar(), *geometry);
-        ways.place(test::snapshotOf(geometry, inWorld({0, 0, 0})), range_max);
-        EXPECT_EQ(ways.waysTo(inWorld({4, 1, 0.3})).size(), 1u) << turn;
+        TargetPaths paths(bouncingSonar(), *geometry);
+        paths.place(test::makeSnapshot(geometry, inWorld({0, 0, 0})), range_max);
+        EXPECT_EQ(paths.pathsTo(inWorld({4, 1, 0.3})).size(), 1u) << turn;
     }
 }
 
-TEST(TargetWaysTest, AreInTheOrderOfTheirMirrorsInTheScene) {
+TEST(TargetPathsTest, AreInTheOrderOfTheirMirrorsInTheScene) {
     Generator random(7);
     const auto geometry = mirrors({tank(3, random)});
-    TargetPaths ways(bouncingSonar(true), *geometry);
-    types::Snapshot snapshot = test::snapshotOf(geometry, {-3, 1, 0.5});
+    TargetPaths paths(bouncingSonar(true), *geometry);
+    types::Snapshot snapshot = test::makeSnapshot(geometry, {-3, 1, 0.5});
     snapshot.water_surface = 2.5;
-    ways.place(snapshot, range_max);
-    const std::vector<TargetPath>& found = ways.waysTo({4, -2, -1});
+    paths.place(snapshot, range_max);
+    const std::vector<TargetPath>& found = paths.pathsTo({4, -2, -1});
     EXPECT_TRUE(std::ranges::is_sorted(found, {}, &TargetPath::mirrors));
     EXPECT_EQ(found[0].reflections, 0);
     EXPECT_THAT(found[1].mirrors, testing::ElementsAre(1u, 0u)) << "the surface before all triangles";
     EXPECT_EQ(found.size(), 1u + 6 + 18) << "two walls in one of both orders, or in both where they are opposite";
 }
 
-TEST(TargetWaysTest, AllocateNothingAfterTheFirstPing) {
+TEST(TargetPathsTest, AllocateNothingAfterTheFirstPing) {
     Generator random(8);
     for (const auto& geometry : {mirrors({tank(6, random)}), mirrors({tank(1, random), test::sphere(1, 8)})}) {
-        TargetPaths ways(bouncingSonar(true), *geometry);
-        types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 20});
+        TargetPaths paths(bouncingSonar(true), *geometry);
+        types::Snapshot snapshot = test::makeSnapshot(geometry, {0, 0, 20});
         snapshot.water_surface = 2.8;
         snapshot.moved.reserve(1);
         for (int ping = 0; ping < 30; ++ping) {
             test::takeCounted();
             test::countHere(true);
-            ways.place(snapshot, range_max);
-            for (int i = 0; i < 10; ++i) ways.waysTo(uniformVector(random, 2.7));
+            paths.place(snapshot, range_max);
+            for (int i = 0; i < 10; ++i) paths.pathsTo(uniformVector(random, 2.7));
             test::countHere(false);
             EXPECT_TRUE(test::takeCounted().empty() || ping == 0) << ping;
             snapshot.sonar.position = uniformVector(random, 2.7);

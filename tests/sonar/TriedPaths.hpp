@@ -12,24 +12,24 @@
 namespace insonify::sonar {
 
 /** Tries all sequences of up to two triangles, each with its own plane, and every leg against every triangle. */
-class TriedWays {
+class TriedPaths {
 public:
-    TriedWays(const types::Snapshot& snapshot, bool by_surface, double longest)
+    TriedPaths(const types::Snapshot& snapshot, bool by_surface, double longest)
         : snapshot_(snapshot), longest_(longest) {
         if (by_surface) mirrors_.push_back({{{0, 0, 1}, *snapshot.water_surface}, 1, {}, true});
         for (size_t object = 0; object < snapshot.geometry->objects.size(); ++object) addObject(object);
     }
 
     std::vector<TargetPath> to(const glm::dvec3& point) {
-        ways_.clear();
-        if (!mirrors_.empty() && mirrors_[0].is_surface && !(point.z < mirrors_[0].plane.distance)) return ways_;
+        paths_.clear();
+        if (!mirrors_.empty() && mirrors_[0].is_surface && !(point.z < mirrors_[0].plane.distance)) return paths_;
         add(point, {});
         for (const Mirror& first : mirrors_) {
             add(point, {&first});
             for (const Mirror& second : mirrors_)
                 if (&second != &first) add(point, {&first, &second});
         }
-        return ways_;
+        return paths_;
     }
 
 private:
@@ -82,11 +82,11 @@ private:
         std::vector<glm::dvec3> images(chain.size() + 1, point);
         for (size_t k = chain.size(); k-- > 0;) images[k] = chain[k]->plane.image(images[k + 1]);
         const glm::dvec3& sonar = snapshot_.sonar.position;
-        TargetPath way;
-        way.length = glm::distance(sonar, images[0]);
-        if (!(way.length > 0 && way.length <= longest_)) return;
-        way.direction = glm::conjugate(snapshot_.sonar.orientation) * ((images[0] - sonar) / way.length);
-        way.reflections = static_cast<int>(chain.size());
+        TargetPath path;
+        path.length = glm::distance(sonar, images[0]);
+        if (!(path.length > 0 && path.length <= longest_)) return;
+        path.direction = glm::conjugate(snapshot_.sonar.orientation) * ((images[0] - sonar) / path.length);
+        path.reflections = static_cast<int>(chain.size());
         glm::dvec3 from = sonar;
         for (size_t k = 0; k < chain.size(); ++k) {
             const Mirror& mirror = *chain[k];
@@ -95,19 +95,19 @@ private:
             if (!(here * there < 0)) return;
             const glm::dvec3 at = from + here / (here - there) * (images[k] - from);
             if (!holds(mirror, at) || !isOpen(from, at)) return;
-            way.power *= mirror.power;
-            way.by_surface |= mirror.is_surface;
-            if (mirror.is_surface) way.sine_grazing = std::abs(here) / glm::distance(from, at);
+            path.power *= mirror.power;
+            path.by_surface |= mirror.is_surface;
+            if (mirror.is_surface) path.sine_grazing = std::abs(here) / glm::distance(from, at);
             from = at;
         }
-        if (isOpen(from, point)) ways_.push_back(way);
+        if (isOpen(from, point)) paths_.push_back(path);
     }
 
     const types::Snapshot& snapshot_;
     double longest_;  ///< [m]
     std::vector<Mirror> mirrors_;
     std::vector<std::array<glm::dvec3, 3>> triangles_;
-    std::vector<TargetPath> ways_;
+    std::vector<TargetPath> paths_;
 };
 
 }  // namespace insonify::sonar

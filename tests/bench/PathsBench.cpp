@@ -1,4 +1,4 @@
-// Processor time, in one thread, of the ways to 50 point targets by up to two mirrors:
+// Processor time, in one thread, of the paths to 50 point targets by up to two mirrors:
 //   ways_bench PINGS      prints JSON, milliseconds a ping by scene. Sonar and targets have new places in each ping.
 #include <fmt/core.h>
 #include <time.h>
@@ -46,10 +46,10 @@ types::Mesh tank(double rough) {
     wall(-half, aside, up);
     wall(-half + ahead, aside, up);
     wall(-half, ahead, aside);
-    return study::meshOf(positions, indices);
+    return study::getMesh(positions, indices);
 }
 
-types::GeometryPtr mirrorOf(types::Mesh mesh) {
+types::GeometryPtr makeMirror(types::Mesh mesh) {
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.emplace_back().mirror = true;
     geometry->objects.emplace_back();
@@ -65,10 +65,10 @@ double processorMs() {
 }
 
 void bench(const char* name, types::Mesh mesh, int pings) {
-    const types::GeometryPtr geometry = mirrorOf(std::move(mesh));
+    const types::GeometryPtr geometry = makeMirror(std::move(mesh));
     sonar::SonarConfig config;
     config.multipath.emplace().bounces = 2;
-    sonar::TargetPaths ways(config, *geometry);
+    sonar::TargetPaths paths(config, *geometry);
     Random random(2);
     const auto place = [&] {
         return glm::dvec3(uniform(random, -2.9, 2.9), uniform(random, -2.9, 2.9), uniform(random, -2.9, 2.9));
@@ -79,13 +79,13 @@ void bench(const char* name, types::Mesh mesh, int pings) {
         types::Snapshot snapshot;
         snapshot.sonar.position = place();
         const double begin = processorMs();
-        ways.place(snapshot, range_max);
-        for (int target = 0; target < targets; ++target) found += ways.waysTo(place()).size();
+        paths.place(snapshot, range_max);
+        for (int target = 0; target < targets; ++target) found += paths.pathsTo(place()).size();
         ms.push_back(processorMs() - begin);
     }
     std::ranges::sort(ms);
-    fmt::print(R"("{}": {{"median_ms": {:.4f}, "max_ms": {:.4f}, "ways": {:.2f}}})", name, ms[ms.size() / 2], ms.back(),
-               static_cast<double>(found) / pings / targets);
+    fmt::print(R"("{}": {{"median_ms": {:.4f}, "max_ms": {:.4f}, "paths": {:.2f}}})", name, ms[ms.size() / 2],
+               ms.back(), static_cast<double>(found) / pings / targets);
 }
 
 }  // namespace
