@@ -379,6 +379,16 @@ void addLibraryCommands(CLI::App& app, Action& action, const std::string& word) 
     }
 }
 
+/** Returns the version, and on further lines the commit, and the parts that are here and absent. */
+std::string describeVersion(const std::string& commit) {
+    std::string text = INSONIFY_VERSION, here, absent;
+    for (const loader::Component& part : loader::components())
+        (loader::isPresent(part.name) ? here : absent) += std::string(" ") + part.name;
+    if (!commit.empty()) text += "\ncommit " + commit;
+    text += "\nparts:" + (here.empty() ? " none" : here);
+    return absent.empty() ? text : text + "\nabsent:" + absent;
+}
+
 /** Whether the core's commands suffice for a command line. */
 bool isOfCore(const CLI::App& app, const std::string& word) {
     static constexpr std::string_view of_all[] = {"completion", "man"};
@@ -406,10 +416,10 @@ int guarded(CLI::App& app, Action& action, int argc, char** argv) {
 
 }  // namespace
 
-int runCommandLine(int argc, char** argv) {
+int runCommandLine(int argc, char** argv, const char* commit) {
     console::prepareConsole();
     CLI::App app{"Simulates imaging sonars in real time, from a 3-D scene", "insonify"};
-    app.set_version_flag("--version", INSONIFY_VERSION);
+    app.set_version_flag("--version", [commit] { return describeVersion(commit); });
     app.require_subcommand(1);
     Action action;
     addInitCommand(app, action);

@@ -21,8 +21,9 @@ std::vector<std::string> withRosWords(const std::vector<std::string>& words);
 void applyRosArguments(const std::vector<std::string>& words, framework::DeploymentSpec& spec);
 
 /** Runs the `insonify` command. Results are printed to stdout, diagnostics to stderr; nothing is thrown. Exit code: 0
- *  done; 1 failed while running; 2 wrong usage, file or configuration. */
-int runCommandLine(int argc, char** argv);
+ *  done; 1 failed while running; 2 wrong usage, file or configuration.
+ *  @param commit that --version prints; empty: not known. */
+int runCommandLine(int argc, char** argv, const char* commit);
 
 using console::Action;
 

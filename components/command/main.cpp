@@ -1,5 +1,7 @@
 #include <malloc.h>
 
+#include <insonify_commit.hpp>  // made by the build
+
 #include "components/command/CommandLine.hpp"
 
 namespace {
@@ -17,5 +19,5 @@ void keepFreedMemory() {
 
 int main(int argc, char** argv) {
     keepFreedMemory();
-    return insonify::command::runCommandLine(argc, argv);
+    return insonify::command::runCommandLine(argc, argv, INSONIFY_COMMIT);
 }

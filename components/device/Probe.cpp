@@ -173,16 +173,16 @@ bool canAsk(const Probe& probe, const ProbeAddress& address) {
 
 /** Returns one probe per line, where a port is given. */
 std::vector<Probe> questionsFor(const ProbeAddress& address) {
-    std::vector<Probe> asked;
+    std::vector<Probe> request;
     for (Probe& probe : allProbes()) {
         const auto same = [&](const Probe& other) {
             return other.protocol == probe.protocol && other.line == probe.line && address.port != 0;
         };
         const bool elsewhere = address.port != 0 && probe.line == Probe::Line::Broadcast;
-        if (canAsk(probe, address) && !elsewhere && std::ranges::none_of(asked, same))
-            asked.push_back(std::move(probe));
+        if (canAsk(probe, address) && !elsewhere && std::ranges::none_of(request, same))
+            request.push_back(std::move(probe));
     }
-    return asked;
+    return request;
 }
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
@@ -307,7 +307,7 @@ std::vector<ProbeOutcome> probe(const ProbeAddress& address, std::chrono::millis
     for (const Probe& question : questionsFor(address)) {
         if (answered.contains(getName(question, address))) continue;
         outcomes.push_back(ask(question, address, patience));
-        if (!outcomes.back().device.empty()) answered.insert(outcomes.back().asked);
+        if (!outcomes.back().device.empty()) answered.insert(outcomes.back().request);
     }
     return outcomes;
 }

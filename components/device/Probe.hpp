@@ -39,10 +39,10 @@ ProbeAddress probeAddress(const std::string& text);
 
 /** The result of one probe. */
 struct ProbeOutcome {
-    std::string protocol, asked;  ///< "UDP 127.0.0.1:12345"
-    std::string device;           ///< Empty: no answer.
-    std::string failure;          ///< The reason of no answer; then
-    std::string advice;           ///< a possible cause.
+    std::string protocol, request;  ///< "UDP 127.0.0.1:12345"
+    std::string device;             ///< Empty: no answer.
+    std::string failure;            ///< The reason of no answer; then
+    std::string advice;             ///< a possible cause.
 };
 
 /** Probes an address until an answer or the end of `patience`. Of broadcasts, only those count that the address sent or

@@ -87,8 +87,8 @@ std::optional<double> Bottom::rangeOfScene(const glm::dvec3& from, const glm::dv
             !types::meetsBox(from, way, (placed.low + placed.high) / 2.0, (placed.high - placed.low) / 2.0))
             continue;
         double share = 1;
-        types::anyTriangleMet(*placed.mesh, placed.world_from_object, from, way, [&](double met, bool, size_t) {
-            share = std::min(share, met);
+        types::anyTriangleMet(*placed.mesh, placed.world_from_object, from, way, [&](double range, bool, size_t) {
+            share = std::min(share, range);
             return false;
         });
         is_met = is_met || share < 1;
@@ -140,11 +140,11 @@ double Dvl::range(size_t beam, const Motion& motion, const Bottom& bottom) const
     if (config_.errors.dropout > uniform(config_.sensor.randomSeed(), getChannel(Dropout, beam), motion.time))
         return types::Pose::unknown;
     const glm::dvec3 direction = motion.orientation * beams_[beam];
-    const auto met = bottom.range(motion.position, direction, config_.max_altitude / cosine_);
-    if (!met || *met * cosine_ < config_.min_altitude) return types::Pose::unknown;
+    const auto range = bottom.range(motion.position, direction, config_.max_altitude / cosine_);
+    if (!range || *range * cosine_ < config_.min_altitude) return types::Pose::unknown;
     const double noise =
         config_.errors.range_noise * normal(config_.sensor.randomSeed(), getChannel(Range, beam), motion.time);
-    return std::max(*met + noise, 0.0);
+    return std::max(*range + noise, 0.0);
 }
 
 double Dvl::variance(double velocity) const {

@@ -84,11 +84,11 @@ private:
     std::vector<std::vector<double>> times_;
 };
 
-thread_local std::string said;
+thread_local std::string last_error;
 
 const char* keep(const Json& json) {
-    said = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    return said.c_str();
+    last_error = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return last_error.c_str();
 }
 
 void keepError(const char* kind, const std::exception& error, const types::Diagnostics& diagnostics = {}) {
@@ -200,7 +200,7 @@ private:
 
 }  // namespace
 
-const char* insonify_error() { return said.c_str(); }
+const char* insonify_error() { return last_error.c_str(); }
 
 void insonify_free(Handle* handle) {
     const auto* stepped = dynamic_cast<const Stepped*>(handle);

@@ -298,6 +298,50 @@ StudyScene roughFloor(int points) {
             {}};
 }
 
+/** Returns the normals of sand ripples of 0.1 m along x, which meander, at 256 x 256 places of a square of 0.8 m. */
+types::NormalMap rippleMap() {
+    constexpr int size = 256, crests = 8;
+    types::NormalMap map{size, size, {}, true, true};
+    for (int row = 0; row < size; ++row)
+        for (int column = 0; column < size; ++column) {
+            const double u = 2 * std::numbers::pi * column / size, v = 2 * std::numbers::pi * row / size;
+            const double slope = 0.35 * std::sin(crests * u + std::sin(v)) + 0.15 * std::sin(3 * u - 2 * v);
+            const glm::dvec3 normal = glm::normalize(glm::dvec3(slope, 0.1 * std::cos(v) * slope, 1));
+            for (int axis = 0; axis < 3; ++axis)
+                map.rgb.push_back(static_cast<uint8_t>(std::lround((normal[axis] + 1) / 2 * 255)));
+        }
+    return map;
+}
+
+/** Gives a mesh of heights over x and y smooth normals, and coordinates on a map of `side` metres. */
+void layMap(types::Mesh& mesh, float side) {
+    mesh.normals.assign(mesh.positions.size(), glm::vec3(0));
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const auto at = [&](size_t k) { return mesh.positions[mesh.indices[i + k]]; };
+        const glm::vec3 normal = glm::cross(at(1) - at(0), at(2) - at(0));
+        for (size_t k = 0; k < 3; ++k) mesh.normals[mesh.indices[i + k]] += normal;
+    }
+    for (size_t i = 0; i < mesh.positions.size(); ++i) {
+        const glm::vec3 normal = mesh.normals[i] = glm::normalize(mesh.normals[i]);
+        mesh.tangents.emplace_back(glm::normalize(glm::vec3(1, 0, 0) - normal.x * normal), 1.0f);
+        mesh.uvs.push_back(glm::vec2(mesh.positions[i]) / side);
+    }
+}
+
+StudyScene rippledFloor(int points) {
+    StudyScene scene = roughFloor(points);
+    scene.name = "rippled_floor";
+    scene.doc = "a fractal floor 3 m below with sand ripples of 0.1 m as a normal map";
+    const auto geometry = makeCopy(scene.snapshot.geometry);
+    types::Mesh mesh = geometry->meshes[0];
+    layMap(mesh, 0.8f);
+    geometry->meshes = {mesh};
+    geometry->normal_maps = {rippleMap()};
+    geometry->materials[0].normal_map = 0;
+    scene.snapshot.geometry = geometry;
+    return scene;
+}
+
 StudyScene benchFloor(int cells) {
     const double square = 0.5 * std::numbers::sqrt2;  // circumradius of a square of 1 m
     const std::array kinds = {sphere(1, 9), prism(square, -0.5, 0.5, 4, std::numbers::pi / 4), prism(0.3, -1, 2, 16)};
@@ -325,6 +369,7 @@ StudyScene benchFloor(int cells) {
 
 const std::vector<SceneMaker>& computedScenes() {
     static const std::vector<SceneMaker> scenes = {{"rough_floor", [] { return roughFloor(); }},
+                                                   {"rippled_floor", [] { return rippledFloor(); }},
                                                    {"bench_floor", [] { return benchFloor(); }}};
     return scenes;
 }

@@ -52,12 +52,16 @@ struct SceneMaker {
  *  sphere_lobe, two_spheres, volume_over_bottom, shadow_screen. */
 const std::vector<SceneMaker>& closedFormScenes();
 
-/** Returns the scenes without a closed form: rough_floor, bench_floor. */
+/** Returns the scenes without a closed form: rough_floor, rippled_floor (a fractal floor with a normal map),
+ *  bench_floor. */
 const std::vector<SceneMaker>& computedScenes();
 
 /** Returns a fractal floor (FractalFloor.hpp) of 2 (points - 1)^2 triangles, by default 522,242, seen from 3 m above
  *  it, 8 deg down: 128 beams over 90 x 20 deg, 400 bins to 40 m. */
 StudyScene roughFloor(int points = 512);
+
+/** Returns the same floor, of 130,050 triangles by default, with sand ripples of 0.1 m as a normal map. */
+StudyScene rippledFloor(int points = 256);
 
 /** Returns the scene of scripts/scenes/make_bench_scene.py: a rolling floor with 20 objects, seen at grazing angles, of
  * 80,000 triangles at 200 cells. Objects have the same places, with slightly different numbers of triangles. */

@@ -63,55 +63,56 @@ types::Mesh revolved(const std::vector<glm::dvec2>& profile, int around, double 
     return getMesh(std::move(positions), std::move(indices));
 }
 
-Target ellipsoidTarget(const Encounter& met, double ahead, double aside, double up) {
+Target ellipsoidTarget(const Encounter& encounter, double ahead, double aside, double up) {
     constexpr int whole_up_to = 256;  // finer facets only about the nearest point
-    const double arc = met.around > whole_up_to ? pi / 4 : pi;
+    const double arc = encounter.around > whole_up_to ? pi / 4 : pi;
     std::vector<glm::dvec2> profile;
-    const int rings = std::max(2, static_cast<int>(std::ceil(met.around / 2.0 * arc / pi)));
+    const int rings = std::max(2, static_cast<int>(std::ceil(encounter.around / 2.0 * arc / pi)));
     for (int i = 0; i <= rings; ++i) {
         const double polar = pi / 2 + arc * (static_cast<double>(i) / rings - 0.5);
         const bool pole = arc >= pi && (i == 0 || i == rings);
         profile.push_back({pole ? 0 : std::sin(polar), -std::cos(polar)});
     }
-    const glm::dmat4 place = glm::scale(movedTo(met.range + ahead), glm::dvec3(ahead, aside, up));
-    return {shiny(revolved(profile, met.around, met.turn, 2 * arc), place), 2 * std::max(aside, up),
-            decibels(curvedSection(met.range, aside * aside / ahead, up * up / ahead))};
+    const glm::dmat4 place = glm::scale(movedTo(encounter.range + ahead), glm::dvec3(ahead, aside, up));
+    return {shiny(revolved(profile, encounter.around, encounter.turn, 2 * arc), place), 2 * std::max(aside, up),
+            decibels(curvedSection(encounter.range, aside * aside / ahead, up * up / ahead))};
 }
 
-Target cylinderTarget(const Encounter& met, double radius, double length, double tilt) {
-    const glm::dmat4 place = glm::rotate(movedTo(met.range + radius), tilt, glm::dvec3(0, 1, 0));
-    const double far = radius * length * length / (2 * met.wavelength()) * std::pow(std::cos(tilt), 2) *
-                       diffraction(2 * pi / met.wavelength() * length * std::sin(tilt));
-    const double near = curvedSection(met.range, radius, INFINITY);
-    return {shiny(revolved({{radius, -length / 2}, {radius, length / 2}}, met.around, met.turn, 2 * pi), place), length,
-            decibels(tilt != 0 || met.fresnelNumber(length) < 1 ? far : near)};
+Target cylinderTarget(const Encounter& encounter, double radius, double length, double tilt) {
+    const glm::dmat4 place = glm::rotate(movedTo(encounter.range + radius), tilt, glm::dvec3(0, 1, 0));
+    const double far = radius * length * length / (2 * encounter.wavelength()) * std::pow(std::cos(tilt), 2) *
+                       diffraction(2 * pi / encounter.wavelength() * length * std::sin(tilt));
+    const double near = curvedSection(encounter.range, radius, INFINITY);
+    return {
+        shiny(revolved({{radius, -length / 2}, {radius, length / 2}}, encounter.around, encounter.turn, 2 * pi), place),
+        length, decibels(tilt != 0 || encounter.fresnelNumber(length) < 1 ? far : near)};
 }
 
-Target plateTarget(const Encounter& met, double width, double height) {
+Target plateTarget(const Encounter& encounter, double width, double height) {
     const auto half_width = static_cast<float>(width / 2), half_height = static_cast<float>(height / 2);
-    const double far = std::pow(width * height / met.wavelength(), 2),
-                 near = curvedSection(met.range, INFINITY, INFINITY);
+    const double far = std::pow(width * height / encounter.wavelength(), 2),
+                 near = curvedSection(encounter.range, INFINITY, INFINITY);
     return {shiny(quad({0, -half_width, -half_height}, {0, 2 * half_width, 0}, {0, 0, 2 * half_height}),
-                  movedTo(met.range)),
-            std::max(width, height), decibels(met.fresnelNumber(std::max(width, height)) < 1 ? far : near)};
+                  movedTo(encounter.range)),
+            std::max(width, height), decibels(encounter.fresnelNumber(std::max(width, height)) < 1 ? far : near)};
 }
 
-Target coneTarget(const Encounter& met, double radius, double height) {
+Target coneTarget(const Encounter& encounter, double radius, double height) {
     const double slope = std::atan(radius / height), side = std::hypot(radius, height);
     const glm::dmat4 turned = glm::rotate(glm::dmat4(1), -slope, glm::dvec3(0, 1, 0));
     const glm::dvec4 middle = turned * glm::dvec4(-radius / 2, 0, height / 2, 0);
     glm::dmat4 place = turned;
-    place[3] = glm::dvec4(met.range, 0, 0, 1) - middle;
-    const double far = 2 * std::pow(side, 3) * std::tan(slope) / (9 * met.wavelength());
-    const double near = curvedSection(met.range, radius / 2 / std::cos(slope), INFINITY);
-    return {shiny(revolved({{radius, 0}, {0, height}}, met.around, met.turn, 2 * pi), place), side,
-            decibels(met.fresnelNumber(side) < 1 ? far : near)};
+    place[3] = glm::dvec4(encounter.range, 0, 0, 1) - middle;
+    const double far = 2 * std::pow(side, 3) * std::tan(slope) / (9 * encounter.wavelength());
+    const double near = curvedSection(encounter.range, radius / 2 / std::cos(slope), INFINITY);
+    return {shiny(revolved({{radius, 0}, {0, height}}, encounter.around, encounter.turn, 2 * pi), place), side,
+            decibels(encounter.fresnelNumber(side) < 1 ? far : near)};
 }
 
-Target hullTarget(const Encounter& met, double radius, double length) {
+Target hullTarget(const Encounter& encounter, double radius, double length) {
     const double nose = 2 * radius, tail = 3 * radius;
     std::vector<glm::dvec2> profile = {{0, -length / 2 - tail}};
-    const int rings = std::clamp(met.around / 4, 4, 64);
+    const int rings = std::clamp(encounter.around / 4, 4, 64);
     for (int i = 0; i <= rings; ++i) {
         const double angle = pi / 2 * i / rings;
         if (i == 0) profile.push_back({radius, -length / 2});
@@ -126,31 +127,32 @@ Target hullTarget(const Encounter& met, double radius, double length) {
         const double at = beyond <= 0 ? radius
                           : z < 0     ? radius * (1 - beyond / tail)
                                       : radius * std::sqrt(std::max(0.0, 1 - std::pow(beyond / nose, 2)));
-        sum += std::sqrt(at) * step * std::polar(1.0, 4 * pi / met.wavelength() * (radius - at));
+        sum += std::sqrt(at) * step * std::polar(1.0, 4 * pi / encounter.wavelength() * (radius - at));
     }
-    const double far = std::norm(sum) / (2 * met.wavelength()), near = curvedSection(met.range, radius, INFINITY);
-    return {shiny(revolved(profile, met.around, met.turn, 2 * pi), movedTo(met.range + radius)), length + 2 * tail,
-            decibels(met.fresnelNumber(length) < 1 ? far : near)};
+    const double far = std::norm(sum) / (2 * encounter.wavelength()),
+                 near = curvedSection(encounter.range, radius, INFINITY);
+    return {shiny(revolved(profile, encounter.around, encounter.turn, 2 * pi), movedTo(encounter.range + radius)),
+            length + 2 * tail, decibels(encounter.fresnelNumber(length) < 1 ? far : near)};
 }
 
-sonar::SonarConfig targetSonar(const Encounter& met, const Target& target, int samples) {
+sonar::SonarConfig targetSonar(const Encounter& encounter, const Target& target, int samples) {
     sonar::SonarConfig config;
     config.speed_of_sound = 1500;
     config.range_rounding = sonar::RangeRounding::Exact;
-    config.bin_count = static_cast<int>(met.range + target.size) + 2;
+    config.bin_count = static_cast<int>(encounter.range + target.size) + 2;
     config.range = config.bin_count;
     config.beam_count = 1;
-    config.field_of_view_deg = config.beam_height_deg = 2 * std::atan(0.6 * target.size / met.range) * 180 / pi;
-    config.frequency_khz = met.frequency_khz;
+    config.field_of_view_deg = config.beam_height_deg = 2 * std::atan(0.6 * target.size / encounter.range) * 180 / pi;
+    config.frequency_khz = encounter.frequency_khz;
     config.visibility = sonar::Visibility::Cpu;
     setSamples(config, samples, samples);
     return config;
 }
 
-double targetError(const Encounter& met, const Target& target, const sonar::SonarConfig& config) {
+double targetError(const Encounter& encounter, const Target& target, const sonar::SonarConfig& config) {
     Probe received;
     sonar::SonarRenderer(config, target.scene).render(lookingAt(target.scene), received.ping);
-    return decibels(received.energy() * std::pow(met.range, 4)) - target.strength_db;
+    return decibels(received.energy() * std::pow(encounter.range, 4)) - target.strength_db;
 }
 
 }  // namespace insonify::study

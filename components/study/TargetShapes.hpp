@@ -32,17 +32,17 @@ struct Target {
  *  [rad]. */
 types::Mesh revolved(const std::vector<glm::dvec2>& profile, int around, double turn, double arc);
 
-Target ellipsoidTarget(const Encounter& met, double ahead, double aside, double up);  ///< Semi-axes [m].
-Target cylinderTarget(const Encounter& met, double radius, double length, double tilt);
-Target plateTarget(const Encounter& met, double width, double height);
+Target ellipsoidTarget(const Encounter& encounter, double ahead, double aside, double up);  ///< Semi-axes [m].
+Target cylinderTarget(const Encounter& encounter, double radius, double length, double tilt);
+Target plateTarget(const Encounter& encounter, double width, double height);
 /** Returns a cone, perpendicular to the middle of its side. */
-Target coneTarget(const Encounter& met, double radius, double height);
+Target coneTarget(const Encounter& encounter, double radius, double height);
 /** Returns a cylinder with an ellipsoidal nose and a conical tail, broadside. */
-Target hullTarget(const Encounter& met, double radius, double length);
+Target hullTarget(const Encounter& encounter, double radius, double length);
 
 /** Returns a sonar of one beam that contains all of a target, with `samples` rows and columns. */
-sonar::SonarConfig targetSonar(const Encounter& met, const Target& target, int samples);
+sonar::SonarConfig targetSonar(const Encounter& encounter, const Target& target, int samples);
 /** Returns 10 log10 of the ping's sum over 1 / range^4, minus the target's strength [dB]. */
-double targetError(const Encounter& met, const Target& target, const sonar::SonarConfig& config);
+double targetError(const Encounter& encounter, const Target& target, const sonar::SonarConfig& config);
 
 }  // namespace insonify::study

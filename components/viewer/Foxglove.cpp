@@ -15,8 +15,8 @@ using Json = nlohmann::json;
 bool isId(const Json& value) { return value.is_number_unsigned() && value.get<uint64_t>() <= UINT32_MAX; }
 
 /** Returns an empty list if the key is absent or not a list. */
-Json listIn(const Json& said, const char* key) {
-    Json list = said.value(key, Json());
+Json listIn(const Json& message, const char* key) {
+    Json list = message.value(key, Json());
     return list.is_array() ? list : Json::array();
 }
 
@@ -66,9 +66,9 @@ std::string timeMessage(uint64_t nanoseconds) {
 
 namespace {
 
-ParameterRequest::Kind getKind(const Json& said) {
+ParameterRequest::Kind getKind(const Json& message) {
     using enum ParameterRequest::Kind;
-    const Json op = said.is_object() ? said.value("op", Json()) : Json();
+    const Json op = message.is_object() ? message.value("op", Json()) : Json();
     return op == "getParameters"                 ? Get
            : op == "setParameters"               ? Set
            : op == "subscribeParameterUpdates"   ? Subscribe
@@ -93,16 +93,16 @@ std::pair<std::string, std::string> setting(const Json& one) {
 }  // namespace
 
 ParameterRequest readParameterRequest(std::string_view text) {
-    const Json said = console::readJson<Json>(text);
+    const Json message = console::readJson<Json>(text);
     ParameterRequest request;
-    request.kind = getKind(said);
+    request.kind = getKind(message);
     if (request.kind == ParameterRequest::Kind::Other) return request;
-    if (const Json id = said.value("id", Json()); id.is_string()) request.id = id.get<std::string>();
+    if (const Json id = message.value("id", Json()); id.is_string()) request.id = id.get<std::string>();
     if (request.kind == ParameterRequest::Kind::Set) {
-        for (const Json& one : listIn(said, "parameters")) request.values.push_back(setting(one));
+        for (const Json& one : listIn(message, "parameters")) request.values.push_back(setting(one));
         return request;
     }
-    for (const Json& name : listIn(said, "parameterNames")) {
+    for (const Json& name : listIn(message, "parameterNames")) {
         if (!name.is_string()) throw std::invalid_argument("names a parameter with a value that is not a text");
         request.names.push_back(name.get<std::string>());
     }
@@ -137,15 +137,16 @@ void ParameterSubscriptions::take(const ParameterRequest& request) {
 // -- subscriptions ----------------------------------------------------------------------------------------------------
 
 std::string Subscriptions::take(std::string_view text) {
-    const Json said = console::readJson<Json>(text);
-    if (!said.is_object() || !said.contains("op") || !said["op"].is_string()) return "is not a JSON object with an op";
-    if (said["op"] == "unsubscribe") {
-        for (const Json& id : listIn(said, "subscriptionIds"))
+    const Json message = console::readJson<Json>(text);
+    if (!message.is_object() || !message.contains("op") || !message["op"].is_string())
+        return "is not a JSON object with an op";
+    if (message["op"] == "unsubscribe") {
+        for (const Json& id : listIn(message, "subscriptionIds"))
             if (isId(id)) channel_of_.erase(id.get<uint32_t>());
         return "";
     }
-    if (said["op"] != "subscribe") return "";
-    for (const Json& one : listIn(said, "subscriptions")) {
+    if (message["op"] != "subscribe") return "";
+    for (const Json& one : listIn(message, "subscriptions")) {
         if (!one.is_object() || !isId(one.value("id", Json())) || !isId(one.value("channelId", Json())))
             return "a subscription needs an id and a channelId, both integers";
         if (std::string diagnostic = add(one["id"].get<uint32_t>(), one["channelId"].get<uint32_t>());

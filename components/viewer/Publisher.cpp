@@ -152,19 +152,19 @@ std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, 
 }
 
 void readRequest(const std::string& text, Request& request) {
-    const Json said = console::readJson<Json>(text);
-    if (!said.is_object()) throw std::invalid_argument("is not a JSON object");
-    const Json id = said.value("id", Json(0u));
+    const Json message = console::readJson<Json>(text);
+    if (!message.is_object()) throw std::invalid_argument("is not a JSON object");
+    const Json id = message.value("id", Json(0u));
     if (!id.is_number_unsigned()) throw std::invalid_argument("id is not an integer");
     request.id = id.get<uint64_t>();
-    if (said.contains("pause") && said["pause"].is_boolean()) {
+    if (message.contains("pause") && message["pause"].is_boolean()) {
         request.kind = Request::Kind::Pause;
-        request.on = said["pause"].get<bool>();
-    } else if (said.contains("step")) {
+        request.on = message["pause"].get<bool>();
+    } else if (message.contains("step")) {
         request.kind = Request::Kind::Step;
-    } else if (said.contains("call") && said["call"].is_string()) {
-        request.operation = said["call"].get<std::string>();
-        const Json arguments = said.value("arguments", Json::array());
+    } else if (message.contains("call") && message["call"].is_string()) {
+        request.operation = message["call"].get<std::string>();
+        const Json arguments = message.value("arguments", Json::array());
         if (!arguments.is_array()) throw std::invalid_argument("arguments are not a list");
         for (const Json& argument : arguments) {
             if (!argument.is_string()) throw std::invalid_argument("an argument is not a text");

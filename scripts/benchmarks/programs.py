@@ -1,4 +1,4 @@
-"""Programs of tests/bench: the framework's ports, the logger, and ways by mirrors."""
+"""Programs of tests/bench: the framework's ports, the logger, and paths by mirrors."""
 import json
 import subprocess
 import tempfile
@@ -60,22 +60,22 @@ def show_oculus(oculus):
               f"{row['after_change_ms']:7.1f}: {row['after_change_ms'] / row['median_ms']:.2f} times")
 
 
-def measure_ways(options):
-    """Results of ways_bench for at most 100 pings: processor time of the ways to 50 targets."""
-    done = subprocess.run([ROOT / "build/bin/ways_bench", str(min(options.pings, 100))], stdout=subprocess.PIPE)
+def measure_paths(options):
+    """Results of paths_bench for at most 100 pings: processor time of the paths to 50 targets."""
+    done = subprocess.run([ROOT / "build/bin/paths_bench", str(min(options.pings, 100))], stdout=subprocess.PIPE)
     if done.returncode != 0:
-        fail("ways_bench", done.returncode)
+        fail("paths_bench", done.returncode)
     return json.loads(done.stdout)
 
 
-def show_ways(scenes):
+def show_paths(scenes):
     for name, found in scenes.items():
-        print(f"ways to 50 targets, two bounces, {name:24}{found['median_ms']:9.3f} ms a ping, max {found['max_ms']:.3f}, "
-              f"{found['ways']:.1f} ways a target")
+        print(f"paths to 50 targets, two bounces, {name:24}{found['median_ms']:9.3f} ms a ping, max {found['max_ms']:.3f}, "
+              f"{found['paths']:.1f} paths a target")
 
 
 def measure_scenes(_options):
-    """Results of scene_bench for a mission over tiles of a survey, for ways over borders of cells, and for the memory of
+    """Results of scene_bench for a mission over tiles of a survey, for paths over borders of cells, and for the memory of
     1 and of 16 sonars of one scene."""
     def measured(*arguments):
         done = subprocess.run([ROOT / "build/bin/scene_bench", *arguments], stdout=subprocess.PIPE, text=True)

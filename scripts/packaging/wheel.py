@@ -86,6 +86,7 @@ def make_archive(folder: pathlib.Path) -> None:
 for old in (*PACKAGES.glob("*.whl"), *PACKAGES.glob("*.tar.zst")):
     old.unlink()
 whole = make()
+shutil.copy(next(whole.glob("*.dist-info/sboms/*.cdx.json")), STAGE / "copied.cdx.json")  # for sbom.py
 if "wheel" in sys.argv:
     run("wheel", "pack", whole, "--dest-dir", PACKAGES)
 if "archive" in sys.argv:

@@ -1,5 +1,5 @@
 // Processor time, in one thread, of the paths to 50 point targets by up to two mirrors:
-//   ways_bench PINGS      prints JSON, milliseconds a ping by scene. Sonar and targets have new places in each ping.
+//   paths_bench PINGS      prints JSON, milliseconds a ping by scene. Sonar and targets have new places in each ping.
 #include <fmt/core.h>
 #include <time.h>
 

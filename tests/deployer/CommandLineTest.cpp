@@ -1,5 +1,10 @@
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <sstream>
+
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Paths.hpp"
 
@@ -49,6 +54,30 @@ TEST(CommandLineTest, HelpNamesEveryCommand) {
     EXPECT_EQ(outcome.code, 0);
     for (const char* command : {"run", "check", "plan", "describe", "log", "replay"})
         EXPECT_THAT(outcome.out, HasSubstr(std::string("\n  ") + command + " "));
+}
+
+TEST(CommandLineTest, TheVersionHasTheCommitAndTheParts) {
+    const TestFolder folder;
+    const Outcome outcome = callInsonify(folder, {"--version"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    std::istringstream lines(outcome.out);
+    std::string version, line;
+    std::getline(lines, version);
+    EXPECT_THAT(version, testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+    std::map<std::string, std::set<std::string>> words;
+    while (std::getline(lines, line)) {
+        std::istringstream each(line);
+        std::string head, word;
+        for (each >> head; each >> word;) words[head].insert(word);
+    }
+    if (fs::exists(insonify::test::sourceFile(".git")) && std::system("git --version > /dev/null 2>&1") == 0)
+        EXPECT_THAT(outcome.out, testing::ContainsRegex("\ncommit [0-9a-f]{10} of [0-9]{4}-[0-9]{2}-[0-9]{2}"));
+    const json libraries = json::parse(callInsonify(folder, {"libraries", "--json"}).out);
+    std::set<std::string> present;
+    for (const json& each : libraries)
+        if (each["state"] == "here") present.insert(each["name"]);
+    EXPECT_EQ(words["parts:"], present);
+    for (const std::string& absent : words["absent:"]) EXPECT_FALSE(present.contains(absent)) << absent;
 }
 
 TEST(CommandLineTest, FailsWhenResultsCannotBeWritten) {

@@ -61,17 +61,17 @@ types::Snapshot wallAt(double range) {
 
 /** Returns the ping of a sonar that takes a request, in codes: the largest where there is an echo.
  *  @param range of the wall [m] */
-std::shared_ptr<types::Sonar> answerTo(const types::SonarSettings& asked, double range, const Case& each) {
+std::shared_ptr<types::Sonar> answerTo(const types::SonarSettings& request, double range, const Case& each) {
     sonar::SonarConfig config = narrowBeam(each);
-    config.range = asked.range;
-    config.bin_count = static_cast<int>(asked.bin_count);
-    if (asked.speed_of_sound > 0) config.speed_of_sound = asked.speed_of_sound;
+    config.range = request.range;
+    config.bin_count = static_cast<int>(request.bin_count);
+    if (request.speed_of_sound > 0) config.speed_of_sound = request.speed_of_sound;
     config.bearings_deg = {0};
     const types::Snapshot snapshot = wallAt(range);
     sonar::SonarRenderer renderer(config, snapshot.geometry, {.threads = 1});
     auto ping = std::make_shared<types::Sonar>();
     renderer.render(snapshot, *ping);
-    ping->time = asked.time;
+    ping->time = request.time;
     for (float& bin : ping->bins) bin = bin > 0 ? 65535 : 0;
     return ping;
 }
@@ -87,10 +87,10 @@ double findFirst(const Bytes& bytes) {
 types::SonarSettings answered(PingDevice& device, PingBench& bench, const Case& each, double target) {
     types::SonarSettings last;
     double range = 0;
-    for (auto asked = bench.asked(); asked; asked = bench.asked()) {
-        if (std::isnan(last.range)) range = target * asked->range * each.speed / 1500;  // requested at 1500 m/s first
-        last = *asked;
-        device.setPing(answerTo(*asked, range, each), bench.now());
+    for (auto request = bench.request(); request; request = bench.request()) {
+        if (std::isnan(last.range)) range = target * request->range * each.speed / 1500;  // requested at 1500 m/s first
+        last = *request;
+        device.setPing(answerTo(*request, range, each), bench.now());
     }
     bench.wait(1);
     return last;
@@ -104,9 +104,9 @@ TEST(DriverRangeTest, ThePing360sDriverFindsTheEchoByItsSamplePeriod) {
         const auto period =
             static_cast<uint16_t>(std::max(80.0, std::round(2 * each.reach / each.speed / samples / 25e-9)));
         bench.say(Ping360Transducer{1, 0, {1, 50, period, 750, samples}, 1, 0});
-        const types::SonarSettings asked = answered(device, bench, each, each.target);
+        const types::SonarSettings request = answered(device, bench, each, each.target);
         const double bin = period * 25e-9 * each.speed / 2, target = each.target * samples * bin;
-        EXPECT_NEAR(asked.range, samples * bin, 1e-6 * asked.range) << "at the water's speed";
+        EXPECT_NEAR(request.range, samples * bin, 1e-6 * request.range) << "at the water's speed";
         EXPECT_NEAR(findFirst(bench.only<Ping360DeviceData>().data) * bin, target, each.tolerance(bin, target))
             << target << " of " << each.reach << " m at " << each.speed << " m/s, " << each.is_exact;
     }
@@ -156,17 +156,17 @@ TEST(DriverRangeTest, TheOculussDriverFindsTheEchoByTheRangeResolution) {
             fire.range = std::min(100.0, 10 * each.reach);  // [%]
         }
         device.received(1, toBytes(fire));
-        const auto asked = device.tick(now).ask;
-        ASSERT_TRUE(asked);
-        const double target = std::max(0.05, each.target * asked->range);
-        const auto result = oculusResult(device.ping(*answerTo(*asked, target, each)));
+        const auto request = device.tick(now).ask;
+        ASSERT_TRUE(request);
+        const double target = std::max(0.05, each.target * request->range);
+        const auto result = oculusResult(device.ping(*answerTo(*request, target, each)));
         ASSERT_TRUE(result);
         const OculusPing ping = makePing(*result);
         const auto first = std::ranges::find_if(ping.codes, [](uint32_t code) { return code > 0; });
         const double bin = ping.range_resolution;
-        EXPECT_LE(std::abs(bin * asked->bin_count - asked->range), asked->bin_count * 1e-6 * ping.speed_of_sound);
+        EXPECT_LE(std::abs(bin * request->bin_count - request->range), request->bin_count * 1e-6 * ping.speed_of_sound);
         EXPECT_NEAR((static_cast<double>(first - ping.codes.begin()) + 0.5) * bin, target, 0.5 * bin + 2e-5 * target)
-            << asked->range << " m, mode " << int{fire.mode};
+            << request->range << " m, mode " << int{fire.mode};
         EXPECT_EQ(ping.speed_of_sound,
                   static_cast<double>(static_cast<float>(fire.speed_of_sound > 0 ? fire.speed_of_sound : each.speed)));
     }
@@ -178,9 +178,9 @@ TEST(DriverRangeTest, TheMicronsDriverFindsTheEchoByTheSamplingInterval) {
     for (const Case& each : cases(2, 75, 1400, 1600)) {
         types::Time now{1'700'000'000'000'000};
         Bytes sent;
-        std::optional<types::SonarSettings> asked;
+        std::optional<types::SonarSettings> request;
         MicronEmulator device({.speed_of_sound = each.speed, .centring_time = 0},
-                              {[&](const types::SonarSettings& settings) { asked = settings; },
+                              {[&](const types::SonarSettings& settings) { request = settings; },
                                [&](Client, Bytes bytes) { sent.insert(sent.end(), bytes.begin(), bytes.end()); },
                                [](const std::string& text) { ADD_FAILURE() << text; }});
         const Client client{0, 1};
@@ -195,9 +195,9 @@ TEST(DriverRangeTest, TheMicronsDriverFindsTheEchoByTheSamplingInterval) {
                           .low_resolution = draw.once(3)});
         driver.request();
         device.tick(now);
-        ASSERT_TRUE(asked);
-        const double target = each.target * asked->range;
-        device.setPing(*answerTo(*asked, target, each));
+        ASSERT_TRUE(request);
+        const double target = each.target * request->range;
+        device.setPing(*answerTo(*request, target, each));
         device.tick(now + types::Time::fromSeconds(1));
         const auto beam = driver.beam();
         const double bin = beam.sampling_interval * each.speed / 2;
@@ -240,7 +240,7 @@ public:
         const auto image = std::get<RangePixels>(ripMessages(packets_.at(0)).at(0));
         return image.pixels.at(4) * static_cast<double>(image.pixel_scale);
     }
-    const types::SonarSettings& asked() const { return asked_; }
+    const types::SonarSettings& request() const { return requests_; }
     double bin() const { return sonar::makeBinGrid(sonar_.sonarConfig()).bin_width; }  ///< [m]
 
 private:
@@ -249,11 +249,11 @@ private:
     test::Writer<types::SonarSettings> settings_;
     test::Reader<types::DepthMapPtr> maps_;
     sonar::Sonar3dTask sonar_{"sonar"};
-    types::SonarSettings asked_;
+    types::SonarSettings requests_;
     std::vector<Bytes> packets_;
     Sonar3dEmulator device_{{.longest_range = 65},
                             {[this](const types::SonarSettings& settings) {
-                                 asked_ = settings;
+                                 requests_ = settings;
                                  settings_.port.write(settings);
                              },
                              [this](const std::string&, uint16_t, Bytes packet) { packets_.push_back(packet); },
@@ -275,7 +275,7 @@ TEST(DriverRangeTest, TheSonar3dsClientFindsTheWallAtItsPixel) {
         EXPECT_NEAR(range, target, 0.505 * bench.bin() + 2e-5 * target + 0.51e-3)
             << each.reach << " m, " << each.is_exact;
         if (!automatic) {
-            EXPECT_EQ(bench.asked().speed_of_sound, each.speed);
+            EXPECT_EQ(bench.request().speed_of_sound, each.speed);
         }
     }
 }

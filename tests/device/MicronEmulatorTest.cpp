@@ -34,9 +34,9 @@ struct MicronEmulatorTest : ::testing::Test {
     /** Advances to the next due time; the sonar answers at once. */
     void wait() {
         emulator_.tick(now_);
-        if (answers_ && !asked_.empty()) {
+        if (answers_ && !requests_.empty()) {
             nextBytes();
-            asked_.pop_back();
+            requests_.pop_back();
         }
         if (const auto due = emulator_.tick(now_)) now_ = std::max(now_, *due);
         emulator_.tick(now_);
@@ -62,14 +62,14 @@ struct MicronEmulatorTest : ::testing::Test {
     const Client client{0, 1}, other{0, 2};
     types::Time now_{1'700'000'000'000'000};
     std::map<Client, Bytes> sent_;
-    std::vector<types::SonarSettings> asked_, all_asked_;
+    std::vector<types::SonarSettings> requests_, all_asked_;
     std::vector<std::string> warnings_;
     bool answers_ = true;
     types::Sonar ping_ = makePing(std::vector<float>(200, 65535));
     MicronEmulator emulator_{
         {.centring_time = 0},
         {[this](const types::SonarSettings& settings) {
-             asked_.push_back(settings);
+             requests_.push_back(settings);
              all_asked_.push_back(settings);
          },
          [this](Client to, Bytes bytes) { sent_[to].insert(sent_[to].end(), bytes.begin(), bytes.end()); },
@@ -108,14 +108,14 @@ TEST_F(MicronEmulatorTest, RequestsTheCommandedSettingsFromTheSonar) {
     emulator_.received(client, command.message().packet(), now_);
     driver_.request();
     advance(0);
-    ASSERT_EQ(asked_.size(), 1u);
-    EXPECT_EQ(asked_[0].time, now_);
-    EXPECT_NEAR(asked_[0].range, 250 * 64e-6 * 1500 / 2, 1e-9);
-    EXPECT_EQ(asked_[0].bin_count, 250u);
-    EXPECT_NEAR(asked_[0].frequency_khz, 580, 1e-4);
-    EXPECT_NEAR(asked_[0].gain_db, 8, 1e-9) << "50 % of 80 dB, relative to the usual 40 %";
-    EXPECT_EQ(asked_[0].bearing.rad, 0) << "ahead";
-    EXPECT_EQ(asked_[0].speed_of_sound, 1500);
+    ASSERT_EQ(requests_.size(), 1u);
+    EXPECT_EQ(requests_[0].time, now_);
+    EXPECT_NEAR(requests_[0].range, 250 * 64e-6 * 1500 / 2, 1e-9);
+    EXPECT_EQ(requests_[0].bin_count, 250u);
+    EXPECT_NEAR(requests_[0].frequency_khz, 580, 1e-4);
+    EXPECT_NEAR(requests_[0].gain_db, 8, 1e-9) << "50 % of 80 dB, relative to the usual 40 %";
+    EXPECT_EQ(requests_[0].bearing.rad, 0) << "ahead";
+    EXPECT_EQ(requests_[0].speed_of_sound, 1500);
 }
 
 TEST_F(MicronEmulatorTest, ALineIsAnsweredOnceSoundIsBackAndTheMotorHasArrived) {
@@ -124,7 +124,7 @@ TEST_F(MicronEmulatorTest, ALineIsAnsweredOnceSoundIsBackAndTheMotorHasArrived) 
     types::Time asked_at = now_;
     driver_.request();
     advance(0);
-    ASSERT_EQ(asked_.size(), 1u);
+    ASSERT_EQ(requests_.size(), 1u);
     nextBytes();
     advance(listening - 1e-4);
     EXPECT_TRUE(sent_[client].empty()) << "sound is not back";
@@ -134,9 +134,9 @@ TEST_F(MicronEmulatorTest, ALineIsAnsweredOnceSoundIsBackAndTheMotorHasArrived) 
     sent_.clear();
     driver_.request();
     advance(travel - 1e-4);
-    EXPECT_EQ(asked_.size(), 1u) << "the motor turns";
+    EXPECT_EQ(requests_.size(), 1u) << "the motor turns";
     advance(1e-4);
-    ASSERT_EQ(asked_.size(), 2u);
+    ASSERT_EQ(requests_.size(), 2u);
     advance(2 * listening);
     EXPECT_TRUE(sent_[client].empty()) << "the ping has not arrived";
     nextBytes();
@@ -222,7 +222,7 @@ TEST_F(MicronEmulatorTest, RefusesImpossibleCommands) {
     EXPECT_TRUE(configured([](auto&) {}));
     driver_.request();
     advance(0);
-    ASSERT_EQ(asked_.size(), 1u);
+    ASSERT_EQ(requests_.size(), 1u);
     EXPECT_FALSE(configured([](auto& command) { command.bins = 0; }));
     sent_.clear();
     nextBytes();
@@ -266,7 +266,7 @@ TEST_F(MicronEmulatorTest, ARebootDuringAPingRestartsTheHead) {
     driver_.configure({});
     driver_.request();
     advance(0);
-    ASSERT_EQ(asked_.size(), 1u);
+    ASSERT_EQ(requests_.size(), 1u);
     driver_.reboot();
     nextBytes();
     advance(0.1);
@@ -278,7 +278,7 @@ TEST_F(MicronEmulatorTest, ARebootDuringAPingRestartsTheHead) {
 
 TEST_F(MicronEmulatorTest, McGillsDriverOpensARecentringHeadAndScansLines) {
     MicronEmulator recentring(
-        {}, {[this](const types::SonarSettings& settings) { asked_.push_back(settings); },
+        {}, {[this](const types::SonarSettings& settings) { requests_.push_back(settings); },
              [this](Client to, Bytes bytes) { sent_[to].insert(sent_[to].end(), bytes.begin(), bytes.end()); },
              [this](const std::string& text) { warnings_.push_back(text); }});
     std::swap(emulator_, recentring);
@@ -316,30 +316,30 @@ TEST_F(MicronEmulatorTest, ACommandDuringBootIsAcceptedAndItsLineWaits) {
     driver_.configure({});
     driver_.request();
     advance(0.4);
-    EXPECT_TRUE(asked_.empty());
+    EXPECT_TRUE(requests_.empty());
     advance(0.1);
-    EXPECT_EQ(asked_.size(), 1u);
+    EXPECT_EQ(requests_.size(), 1u);
 }
 
 TEST_F(MicronEmulatorTest, RequestsAMissingPingAgainAndAnswersTheLineLate) {
     driver_.configure({});
     for (size_t outage = 1; outage <= 2; ++outage) {
         answers_ = false;
-        asked_.clear();
+        requests_.clear();
         sent_.clear();
         driver_.request();
         for (int i = 0; i < 13; ++i) advance(0.5);
-        EXPECT_EQ(asked_.size(), 3u) << "at once, and when two seconds have passed without a ping";
-        for (const types::SonarSettings& each : asked_) EXPECT_EQ(each.bearing.rad, asked_.front().bearing.rad);
+        EXPECT_EQ(requests_.size(), 3u) << "at once, and when two seconds have passed without a ping";
+        for (const types::SonarSettings& each : requests_) EXPECT_EQ(each.bearing.rad, requests_.front().bearing.rad);
         EXPECT_EQ(sent_[client].size(), size_t{22} * 4) << "mtAlive at 3, 4, 5 and 6 s, since the first ping is late";
         ASSERT_EQ(warnings_.size(), outage);
         EXPECT_THAT(warnings_.back(), HasSubstr("a requested ping did not arrive"));
         sent_.clear();
-        ping_.time = asked_.front().time - types::Time{1};
+        ping_.time = requests_.front().time - types::Time{1};
         emulator_.setPing(ping_);
         emulator_.tick(now_);
         EXPECT_THAT(sent_[client], IsEmpty()) << "an earlier ping has another bearing";
-        ping_.time = asked_.front().time;
+        ping_.time = requests_.front().time;
         emulator_.setPing(ping_);
         EXPECT_EQ(driver_.beam().bins.size(), 200u) << "the first requested ping, late";
         answers_ = true;
@@ -361,7 +361,7 @@ TEST_F(MicronEmulatorTest, ACommandEndsALineThatIsNotAnswered) {
     EXPECT_THAT(sent_[client], IsEmpty()) << "a head that scans and is not late sends no mtAlive";
     driver_.reboot();
     answers_ = true;
-    asked_.clear();
+    requests_.clear();
     driver_.configure({});
     driver_.request();
     EXPECT_EQ(driver_.beam().bins.size(), 200u);

@@ -29,15 +29,15 @@ struct OculusEmulatorTest : ::testing::Test {
     void connect() { emulator_.opened(1); }
     void fire(const OculusFire& settings) { emulator_.received(1, toBytes(settings)); }
     /** Returns the sonar's answer to a request. */
-    types::Sonar echoes(const types::SonarSettings& asked) const {
+    types::Sonar echoes(const types::SonarSettings& request) const {
         types::Sonar ping;
-        ping.time = asked.time + Time{20'000};
-        ping.speed_of_sound = !(asked.speed_of_sound > 0) ? 1480.f : static_cast<float>(asked.speed_of_sound);
-        ping.bin_count = asked.bin_count;
-        ping.beam_count = asked.beam_count;
-        const double step = asked.field_of_view.rad / asked.beam_count;
-        for (uint32_t beam = 0; beam < asked.beam_count; ++beam)
-            ping.bearings.push_back({-asked.field_of_view.rad / 2 + (beam + 0.5) * step});
+        ping.time = request.time + Time{20'000};
+        ping.speed_of_sound = !(request.speed_of_sound > 0) ? 1480.f : static_cast<float>(request.speed_of_sound);
+        ping.bin_count = request.bin_count;
+        ping.beam_count = request.beam_count;
+        const double step = request.field_of_view.rad / request.beam_count;
+        for (uint32_t beam = 0; beam < request.beam_count; ++beam)
+            ping.bearings.push_back({-request.field_of_view.rad / 2 + (beam + 0.5) * step});
         ping.bins.assign(size_t{ping.bin_count} * ping.beam_count, 13107);
         return ping;
     }
@@ -48,7 +48,7 @@ struct OculusEmulatorTest : ::testing::Test {
         if (!due.ask) return {};
         return oculusResult(emulator_.ping(echoes(*due.ask))).value();
     }
-    types::SonarSettings asked(const OculusFire& settings) {
+    types::SonarSettings request(const OculusFire& settings) {
         fire(settings);
         const auto ask = after(10).ask;
         EXPECT_TRUE(ask);
@@ -131,7 +131,7 @@ TEST_F(OculusEmulatorTest, RequestsTheNextCycleWhenSomethingIsDue) {
 
 TEST_F(OculusEmulatorTest, RequestsTheDriversSettingsFromTheSonar) {
     connect();
-    const types::SonarSettings low = asked(metres(20));
+    const types::SonarSettings low = request(metres(20));
     EXPECT_EQ(low.time, now_);
     EXPECT_EQ(low.range, 20);
     EXPECT_EQ(low.frequency_khz, 750);
@@ -142,9 +142,9 @@ TEST_F(OculusEmulatorTest, RequestsTheDriversSettingsFromTheSonar) {
     EXPECT_NEAR(low.gain_db, 0, 1e-12) << "50 %";
     EXPECT_TRUE(std::isnan(low.speed_of_sound)) << "the sonar's own";
     const types::SonarSettings high =
-        asked({.mode = 2, .flags = OculusFire::beams_512, .range = 5, .gain_percent = 100, .speed_of_sound = 1500});
+        request({.mode = 2, .flags = OculusFire::beams_512, .range = 5, .gain_percent = 100, .speed_of_sound = 1500});
     EXPECT_EQ(high.range, 2) << "5 % of 40 m";
-    EXPECT_EQ(asked({.flags = 0, .range = 0}).range, 0.1) << "exactly the min range";
+    EXPECT_EQ(request({.flags = 0, .range = 0}).range, 0.1) << "exactly the min range";
     EXPECT_EQ(high.frequency_khz, 1200);
     EXPECT_NEAR(degrees(high.field_of_view.rad), 70, 1e-9);
     EXPECT_NEAR(degrees(high.beam_height.rad), 12, 1e-9);
@@ -219,8 +219,8 @@ TEST_F(OculusEmulatorTest, PingsAreNumberedAndTimedByTheDevicesClock) {
 
 TEST_F(OculusEmulatorTest, SendsOnlyRequestedPings) {
     connect();
-    EXPECT_TRUE(emulator_.ping(echoes(asked(metres(5)))).size() > 256 * 1000u);
-    const types::SonarSettings before = asked(metres(6));
+    EXPECT_TRUE(emulator_.ping(echoes(request(metres(5)))).size() > 256 * 1000u);
+    const types::SonarSettings before = request(metres(6));
     EXPECT_FALSE(after(1).ask) << "one is in progress";
     types::Sonar early = echoes(before);
     early.time = before.time - Time{1};
@@ -234,7 +234,7 @@ TEST_F(OculusEmulatorTest, SendsOnlyRequestedPings) {
 
 TEST_F(OculusEmulatorTest, RequestsAMissingPingAgainAndSendsALatePing) {
     connect();
-    const types::SonarSettings first = asked(metres(120));
+    const types::SonarSettings first = request(metres(120));
     EXPECT_FALSE(after(2.1).ask) << "its sound may not be back yet";
     fire(metres(60));
     const auto second = after(0.2).ask;
@@ -251,7 +251,7 @@ TEST_F(OculusEmulatorTest, RequestsAMissingPingAgainAndSendsALatePing) {
 
 TEST_F(OculusEmulatorTest, AClientThatLeavesDuringAPingLeavesNoState) {
     connect();
-    const types::SonarSettings ask = asked(metres(5));
+    const types::SonarSettings ask = request(metres(5));
     emulator_.closed(1);
     EXPECT_TRUE(emulator_.ping(echoes(ask)).empty());
     emulator_.received(1, toBytes(metres(5)));
@@ -295,14 +295,14 @@ TEST_F(OculusEmulatorTest, TheSpeedOfSoundReturnsToTheSonarsOwn) {
     OculusFire salt = metres(5);
     salt.speed_of_sound = 1520;
     EXPECT_EQ(pinged(salt).speed_of_sound, 1520);
-    EXPECT_EQ(asked(metres(5)).speed_of_sound, 0);
+    EXPECT_EQ(request(metres(5)).speed_of_sound, 0);
 }
 
 TEST_F(OculusEmulatorTest, ADriverThatLeavesTheSpeedOfSoundToTheDeviceNeverAsksForOne) {
     connect();
     for (int i = 0; i < 3; ++i) {
         EXPECT_EQ(pinged(metres(5)).speed_of_sound, 1480);
-        const types::SonarSettings ask = asked(metres(6));
+        const types::SonarSettings ask = request(metres(6));
         EXPECT_TRUE(std::isnan(ask.speed_of_sound));
         emulator_.ping(echoes(ask));
     }

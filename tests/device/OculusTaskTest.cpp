@@ -33,21 +33,21 @@ public:
 
 private:
     void updateHook() override {
-        types::SonarSettings asked;
-        while (settings.readNew(asked)) ping.write(answer(asked));
+        types::SonarSettings request;
+        while (settings.readNew(request)) ping.write(answer(request));
     }
-    static types::SonarPtr answer(const types::SonarSettings& asked) {
+    static types::SonarPtr answer(const types::SonarSettings& request) {
         auto ping = std::make_shared<types::Sonar>();
-        ping->time = asked.time;
-        ping->setBins(asked.range / asked.bin_count, 1500);
-        ping->bin_count = asked.bin_count;
-        ping->beam_count = asked.beam_count;
-        ping->bins.assign(size_t{asked.bin_count} * asked.beam_count, 6554);
-        for (uint32_t beam = 0; beam < asked.beam_count; ++beam)
+        ping->time = request.time;
+        ping->setBins(request.range / request.bin_count, 1500);
+        ping->bin_count = request.bin_count;
+        ping->beam_count = request.beam_count;
+        ping->bins.assign(size_t{request.bin_count} * request.beam_count, 6554);
+        for (uint32_t beam = 0; beam < request.beam_count; ++beam)
             ping->bearings.push_back(
-                {(beam + 0.5) / asked.beam_count * asked.field_of_view.rad - asked.field_of_view.rad / 2});
-        const auto bin = static_cast<size_t>(5 / asked.range * asked.bin_count);
-        ping->bins[10 * size_t{asked.bin_count} + bin] = 65535;
+                {(beam + 0.5) / request.beam_count * request.field_of_view.rad - request.field_of_view.rad / 2});
+        const auto bin = static_cast<size_t>(5 / request.range * request.bin_count);
+        ping->bins[10 * size_t{request.bin_count} + bin] = 65535;
         return ping;
     }
 };

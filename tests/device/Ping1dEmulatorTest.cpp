@@ -21,20 +21,20 @@ struct Ping1dEmulatorTest : ::testing::Test {
         EXPECT_EQ(bench_.only<PingAck>().acked, Message::message);
     }
     /** Returns a ping with one echo at a range [m]. */
-    std::shared_ptr<types::Sonar> pingWithEcho(const types::SonarSettings& asked, double range, float code = 30000,
+    std::shared_ptr<types::Sonar> pingWithEcho(const types::SonarSettings& request, double range, float code = 30000,
                                                float speed_of_sound = 1500) {
-        auto ping = pingFor(asked, speed_of_sound);
+        auto ping = pingFor(request, speed_of_sound);
         std::ranges::fill(ping->bins, 100.0f);
-        ping->bins.at(static_cast<size_t>(range / asked.range * asked.bin_count)) = code;
+        ping->bins.at(static_cast<size_t>(range / request.range * request.bin_count)) = code;
         return ping;
     }
     /** Requests a measurement of a scan that is set by hand. */
     template <class Message>
     Message measure(double range, float code = 30000) {
         bench_.say(PingGeneralRequest{Message::message});
-        const auto asked = bench_.asked();
-        EXPECT_TRUE(asked.has_value());
-        if (asked) device_.setPing(pingWithEcho(*asked, range, code), bench_.now());
+        const auto request = bench_.request();
+        EXPECT_TRUE(request.has_value());
+        if (request) device_.setPing(pingWithEcho(*request, range, code), bench_.now());
         bench_.waitForNext();
         return bench_.only<Message>();
     }
@@ -65,7 +65,7 @@ TEST_F(Ping1dEmulatorTest, AMessageWithoutPayloadIsARequest) {
         EXPECT_FALSE(received[0].payload.empty());
     }
     bench_.give(PingFrame{1300, 0, 0, {}}.bytes());
-    EXPECT_TRUE(bench_.asked());
+    EXPECT_TRUE(bench_.request());
 }
 
 TEST_F(Ping1dEmulatorTest, ReadsBackItsSettings) {
@@ -137,12 +137,12 @@ TEST_F(Ping1dEmulatorTest, AMeasurementRequestsAPingOfItsScanAndReportsItsTarget
     set(Ping1dSetRange{5'000, 10'000});
     set(Ping1dSetGain{2});
     bench_.say(PingGeneralRequest{Ping1dProfile::message});
-    const auto asked = bench_.asked();
-    ASSERT_TRUE(asked);
-    EXPECT_NEAR(asked->range, 15, 1e-6);
-    EXPECT_EQ(asked->bin_count, 300u) << "of which the last 200 are the scan";
-    EXPECT_NEAR(asked->gain_db, 20 * std::log10(5.5), 1e-12);
-    device_.setPing(pingWithEcho(*asked, 8.02), bench_.now());
+    const auto request = bench_.request();
+    ASSERT_TRUE(request);
+    EXPECT_NEAR(request->range, 15, 1e-6);
+    EXPECT_EQ(request->bin_count, 300u) << "of which the last 200 are the scan";
+    EXPECT_NEAR(request->gain_db, 20 * std::log10(5.5), 1e-12);
+    device_.setPing(pingWithEcho(*request, 8.02), bench_.now());
     EXPECT_THAT(bench_.received(), IsEmpty()) << "the sound is not back yet";
     EXPECT_GE(bench_.waitForNext(), 2 * 15 / 1500.0);
     const auto profile = bench_.only<Ping1dProfile>();
@@ -168,7 +168,7 @@ TEST_F(Ping1dEmulatorTest, DistanceIsInThreeMessages) {
 TEST_F(Ping1dEmulatorTest, SilenceHasNoDistance) {
     set(Ping1dSetModeAuto{0});
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
-    auto ping = pingFor(*bench_.asked());
+    auto ping = pingFor(*bench_.request());
     std::ranges::fill(ping->bins, 0.0f);
     device_.setPing(ping, bench_.now());
     bench_.wait(1);
@@ -182,9 +182,9 @@ TEST_F(Ping1dEmulatorTest, AWrongSpeedOfSoundMakesDistancesWrongInItsRatio) {
     set(Ping1dSetRange{0, 20'000});
     set(Ping1dSetSpeedOfSound{3'000'000});
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
-    const auto asked = bench_.asked();
-    EXPECT_NEAR(asked->range, 10, 1e-6) << "the true range is half of the device's";
-    device_.setPing(pingWithEcho(*asked, 5), bench_.now());
+    const auto request = bench_.request();
+    EXPECT_NEAR(request->range, 10, 1e-6) << "the true range is half of the device's";
+    device_.setPing(pingWithEcho(*request, 5), bench_.now());
     bench_.wait(1);
     EXPECT_NEAR(bench_.only<Ping1dDistanceSimple>().distance, 10'000, 100);
 }
@@ -203,12 +203,12 @@ TEST_F(Ping1dEmulatorTest, NoReturnBeyondTheBlankedRangeIsLostAtAnySpeedOfSound)
         bench.say(Ping1dSetSpeedOfSound{static_cast<uint32_t>(1000 * slow)});
         bench.received();
         bench.say(PingGeneralRequest{Ping1dDistanceSimple::message});
-        const auto asked = bench.asked();
-        ASSERT_TRUE(asked);
-        const double bin = asked->range / asked->bin_count;
-        const double target = std::lerp(nearest, asked->range, draw.between(0, 0.999) * draw.once(2));
-        const auto ping = pingWithEcho(*asked, std::max(0.0, nearest - 1.001 * bin), 60000);  // blanked
-        if (nearest + 1e-6 < asked->range) ping->bins.at(static_cast<size_t>(target / bin)) = 30000;
+        const auto request = bench.request();
+        ASSERT_TRUE(request);
+        const double bin = request->range / request->bin_count;
+        const double target = std::lerp(nearest, request->range, draw.between(0, 0.999) * draw.once(2));
+        const auto ping = pingWithEcho(*request, std::max(0.0, nearest - 1.001 * bin), 60000);  // blanked
+        if (nearest + 1e-6 < request->range) ping->bins.at(static_cast<size_t>(target / bin)) = 30000;
         device.setPing(ping, bench.now());
         bench.wait(1);
         const double reported = 1e-3 * bench.only<Ping1dDistanceSimple>().distance / scale;
@@ -225,10 +225,10 @@ TEST_F(Ping1dEmulatorTest, AStreamKeepsItsIntervalUntilStopped) {
     types::Time last;
     int profiles = 0;
     for (int i = 0; i < 40 && profiles < 5; ++i) {
-        if (const auto asked = bench_.asked()) {
-            const double since = (asked->time - std::exchange(last, asked->time)).seconds();
+        if (const auto request = bench_.request()) {
+            const double since = (request->time - std::exchange(last, request->time)).seconds();
             EXPECT_TRUE(profiles == 0 || std::abs(since - 0.2) < 1e-6) << since;
-            bench_.answer(*asked);
+            bench_.answer(*request);
         }
         bench_.waitForNext();
         for (const PingFrame& frame : bench_.received()) profiles += frame.message == Ping1dProfile::message;
@@ -236,7 +236,7 @@ TEST_F(Ping1dEmulatorTest, AStreamKeepsItsIntervalUntilStopped) {
     EXPECT_EQ(profiles, 5);
     bench_.say(Ping1dContinuousStop{Ping1dProfile::message});
     bench_.received();
-    if (const auto asked = bench_.asked()) bench_.answer(*asked);
+    if (const auto request = bench_.request()) bench_.answer(*request);
     bench_.wait(5);
     EXPECT_THAT(bench_.received(), IsEmpty());
     EXPECT_FALSE(device_.wakeAt());
@@ -247,9 +247,9 @@ TEST_F(Ping1dEmulatorTest, MessagesStreamedFromOnePingAreOnePiecePerClient) {
     for (const uint16_t message : messages)
         for (const PingClient client : {1, 2}) bench_.say(Ping1dContinuousStart{message}, client);
     device_.consumeOutgoing();
-    const auto asked = bench_.asked();
-    ASSERT_TRUE(asked);
-    bench_.answer(*asked);
+    const auto request = bench_.request();
+    ASSERT_TRUE(request);
+    bench_.answer(*request);
     bench_.waitForNext();
     const auto out = device_.consumeOutgoing();
     ASSERT_EQ(out.size(), 2u);
@@ -265,10 +265,10 @@ TEST_F(Ping1dEmulatorTest, ALongScanIsSlowerThanTheInterval) {
     set(Ping1dSetModeAuto{0});
     set(Ping1dSetPingInterval{1});
     bench_.say(Ping1dContinuousStart{Ping1dDistanceSimple::message});
-    const auto first = bench_.asked();
+    const auto first = bench_.request();
     bench_.answer(*first);
     bench_.waitForNext();
-    const auto second = bench_.asked();
+    const auto second = bench_.request();
     ASSERT_TRUE(second);
     EXPECT_GE((second->time - first->time).seconds(), 2 * 100 / 1500.0);
 }
@@ -280,7 +280,7 @@ TEST_F(Ping1dEmulatorTest, WhenOffItSendsNoSoundAndReportsTheLastDistance) {
     bench_.say(Ping1dContinuousStart{Ping1dProfile::message});
     bench_.received();
     EXPECT_EQ(request<Ping1dDistance>().measurement.ping_number, 1u);
-    EXPECT_FALSE(bench_.asked());
+    EXPECT_FALSE(bench_.request());
     EXPECT_FALSE(device_.wakeAt());
 }
 
@@ -291,7 +291,7 @@ TEST_F(Ping1dEmulatorTest, AutomaticModeFollowsItsTarget) {
     measure<Ping1dDistance>(4, 2000);
     EXPECT_EQ(request<Ping1dGain>().value, 1u);
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
-    auto silent = pingFor(*bench_.asked());
+    auto silent = pingFor(*bench_.request());
     std::ranges::fill(silent->bins, 0.0f);
     device_.setPing(silent, bench_.now());
     bench_.wait(1);
@@ -304,11 +304,11 @@ TEST_F(Ping1dEmulatorTest, OnePingServesTwoClientsAndALeavingClientLeavesNoState
     bench_.say(PingGeneralRequest{Ping1dDistance::message}, 2);
     bench_.say(Ping1dContinuousStart{Ping1dProfile::message}, 3);
     device_.close(3);
-    bench_.answer(*bench_.asked());
+    bench_.answer(*bench_.request());
     bench_.wait(1);
     EXPECT_EQ(bench_.only<Ping1dDistance>(1).measurement.ping_number, 1u);
     EXPECT_EQ(bench_.only<Ping1dDistance>(2).measurement.ping_number, 1u);
-    EXPECT_FALSE(bench_.asked());
+    EXPECT_FALSE(bench_.request());
 }
 
 TEST_F(Ping1dEmulatorTest, AMissingPingIsRefusedAndWarnedOfOnce) {

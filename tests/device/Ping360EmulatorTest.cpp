@@ -19,7 +19,7 @@ struct Ping360EmulatorTest : ::testing::Test {
     std::vector<int> computeAngles(int pings) {
         std::vector<int> angles;
         for (int i = 0; i < 4 * pings && static_cast<int>(angles.size()) < pings; ++i) {
-            if (const auto asked = bench_.asked()) bench_.answer(*asked);
+            if (const auto request = bench_.request()) bench_.answer(*request);
             bench_.waitForNext();
             for (const PingFrame& frame : bench_.received())
                 if (const auto data = pingMessage<Ping360AutoDeviceData>(frame)) angles.push_back(data->angle);
@@ -54,15 +54,15 @@ TEST_F(Ping360EmulatorTest, GeneralRequestsAreAnsweredAtOnce) {
 
 TEST_F(Ping360EmulatorTest, RequestsPingsWithTheDriversSettings) {
     bench_.say(transmitAt(0));
-    const auto asked = bench_.asked();
-    ASSERT_TRUE(asked);
-    EXPECT_EQ(asked->time, bench_.now());
-    EXPECT_NEAR(asked->range, 600 * 100 * 25e-9 * 1500 / 2, 1e-9);
-    EXPECT_EQ(asked->bin_count, 600u);
-    EXPECT_EQ(asked->frequency_khz, 750);
-    EXPECT_EQ(asked->gain_db, 10) << "the gain of setting 1";
-    EXPECT_TRUE(std::isnan(asked->speed_of_sound));
-    EXPECT_NEAR(std::abs(asked->bearing.deg()), 180, 1e-9) << "the device's 0 is aft";
+    const auto request = bench_.request();
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->time, bench_.now());
+    EXPECT_NEAR(request->range, 600 * 100 * 25e-9 * 1500 / 2, 1e-9);
+    EXPECT_EQ(request->bin_count, 600u);
+    EXPECT_EQ(request->frequency_khz, 750);
+    EXPECT_EQ(request->gain_db, 10) << "the gain of setting 1";
+    EXPECT_TRUE(std::isnan(request->speed_of_sound));
+    EXPECT_NEAR(std::abs(request->bearing.deg()), 180, 1e-9) << "the device's 0 is aft";
 }
 
 TEST_F(Ping360EmulatorTest, TheHeadTurnsClockwiseFromAft) {
@@ -75,13 +75,13 @@ TEST_F(Ping360EmulatorTest, TheHeadTurnsClockwiseFromAft) {
 TEST_F(Ping360EmulatorTest, AnAnswerTakesTheTimeOfHeadSoundAndDevice) {
     const Ping360Config config;
     bench_.say(transmitAt(300));
-    EXPECT_FALSE(bench_.asked()) << "the head has not arrived yet";
+    EXPECT_FALSE(bench_.request()) << "the head has not arrived yet";
     bench_.wait(100 * config.seconds_per_gradian - 1e-6);
-    EXPECT_FALSE(bench_.asked()) << "100 gradians is the shorter way to 300";
+    EXPECT_FALSE(bench_.request()) << "100 gradians is the shorter way to 300";
     bench_.wait(1e-6);
-    const auto asked = bench_.asked();
-    ASSERT_TRUE(asked);
-    bench_.answer(*asked);
+    const auto request = bench_.request();
+    ASSERT_TRUE(request);
+    bench_.answer(*request);
     EXPECT_THAT(bench_.received(), IsEmpty()) << "even if the sonar's ping is early";
     const double takes = 50e-6 + listened + config.overhead;
     bench_.wait(takes - 1e-6);
@@ -99,10 +99,10 @@ TEST_F(Ping360EmulatorTest, AnAnswerTakesTheTimeOfHeadSoundAndDevice) {
 
 TEST_F(Ping360EmulatorTest, ALatePingIsSentOnArrival) {
     bench_.say(transmitAt(0));
-    const auto asked = bench_.asked();
+    const auto request = bench_.request();
     bench_.wait(1);
     EXPECT_THAT(bench_.received(), IsEmpty());
-    bench_.answer(*asked);
+    bench_.answer(*request);
     EXPECT_EQ(bench_.only<Ping360DeviceData>().data.size(), 600u);
 }
 
@@ -115,25 +115,25 @@ TEST_F(Ping360EmulatorTest, WithoutTransmitTheAnswerHasNoData) {
     const auto data = bench_.only<Ping360DeviceData>();
     EXPECT_EQ(data.angle, 50);
     EXPECT_THAT(data.data, IsEmpty());
-    EXPECT_FALSE(bench_.asked());
+    EXPECT_FALSE(bench_.request());
     bench_.say(PingGeneralRequest{Ping360DeviceData::message});
     EXPECT_EQ(bench_.only<Ping360DeviceData>().acoustics, acoustics) << "of this and later pings";
 }
 
 TEST_F(Ping360EmulatorTest, Mode0IsAcceptedAndReportedAs1) {
-    Ping360Transducer asked = transmitAt(0);
-    asked.mode = 0;
-    bench_.say(asked);
-    bench_.answer(*bench_.asked());
+    Ping360Transducer request = transmitAt(0);
+    request.mode = 0;
+    bench_.say(request);
+    bench_.answer(*bench_.request());
     bench_.wait(1);
     EXPECT_EQ(bench_.only<Ping360DeviceData>().mode, 1);
 }
 
 TEST_F(Ping360EmulatorTest, RefusesValuesOutOfBoundsWithNameAndBounds) {
     const auto refusal = [&](auto change) {
-        Ping360Transducer asked = transmitAt(0);
-        change(asked);
-        return bench_.getRefusal(asked);
+        Ping360Transducer request = transmitAt(0);
+        change(request);
+        return bench_.getRefusal(request);
     };
     EXPECT_EQ(refusal([](auto& m) { m.angle = 400; }), "angle is 400; must be 0 to 399");
     EXPECT_EQ(refusal([](auto& m) { m.mode = 2; }), "mode is 2; must be 0 to 1");
@@ -144,7 +144,7 @@ TEST_F(Ping360EmulatorTest, RefusesValuesOutOfBoundsWithNameAndBounds) {
     EXPECT_EQ(refusal([](auto& m) { m.acoustics.frequency_khz = 1001; }),
               "transmit_frequency is 1001; must be 500 to 1000");
     EXPECT_EQ(refusal([](auto& m) { m.acoustics.samples = 1201; }), "number_of_samples is 1201; must be 200 to 1200");
-    EXPECT_FALSE(bench_.asked());
+    EXPECT_FALSE(bench_.request());
     const auto scan = [&](const Ping360Sector& sector) {
         return bench_.getRefusal(Ping360AutoTransmit{1, acoustics, sector});
     };
@@ -187,32 +187,32 @@ TEST_F(Ping360EmulatorTest, AScanOfMoreThanHalfATurnRestarts) {
 
 TEST_F(Ping360EmulatorTest, AScanReportsItsSectorAndKeepsItsDelay) {
     bench_.say(Ping360AutoTransmit{1, acoustics, {0, 399, 1, 100}});
-    bench_.answer(*bench_.asked());
+    bench_.answer(*bench_.request());
     bench_.wait(1);
     const auto data = bench_.only<Ping360AutoDeviceData>();
     EXPECT_EQ(data.sector, (Ping360Sector{0, 399, 1, 100}));
     EXPECT_EQ(data.data.size(), 600u);
-    EXPECT_FALSE(bench_.asked());
+    EXPECT_FALSE(bench_.request());
     EXPECT_NEAR(bench_.waitForNext(), 0.1, 1e-6);
     EXPECT_NEAR(bench_.waitForNext(), 0.006, 1e-6) << "then the head turns";
-    EXPECT_TRUE(bench_.asked());
+    EXPECT_TRUE(bench_.request());
 }
 
 TEST_F(Ping360EmulatorTest, MotorOffEndsAScanAndIsAcknowledged) {
     bench_.say(Ping360AutoTransmit{1, acoustics, {0, 399, 1, 0}});
-    const auto asked = bench_.asked();
+    const auto request = bench_.request();
     bench_.say(Ping360MotorOff{});
     EXPECT_EQ(bench_.only<PingAck>().acked, 2903);
-    bench_.answer(*asked);
+    bench_.answer(*request);
     bench_.wait(1);
     EXPECT_THAT(bench_.received(), IsEmpty());
-    EXPECT_FALSE(bench_.asked());
+    EXPECT_FALSE(bench_.request());
     EXPECT_FALSE(device_.wakeAt());
 }
 
 TEST_F(Ping360EmulatorTest, ANewScanReplacesOneDuringAPing) {
     bench_.say(Ping360AutoTransmit{1, acoustics, {0, 399, 1, 0}});
-    bench_.answer(*bench_.asked());
+    bench_.answer(*bench_.request());
     bench_.say(Ping360AutoTransmit{1, acoustics, {100, 150, 10, 0}});
     EXPECT_THAT(computeAngles(2), ElementsAre(100, 110)) << "the ping of the old scan is sent to no client";
     bench_.say(transmitAt(0));
@@ -222,13 +222,13 @@ TEST_F(Ping360EmulatorTest, ANewScanReplacesOneDuringAPing) {
 TEST_F(Ping360EmulatorTest, TwoClientsGetTheirOwnAnswersOneAfterTheOther) {
     bench_.say(transmitAt(0), 1);
     bench_.say(transmitAt(10), 2);
-    const auto first = bench_.asked();
+    const auto first = bench_.request();
     bench_.answer(*first);
     bench_.wait(0.05);
     EXPECT_EQ(bench_.only<Ping360DeviceData>(1).angle, 0);
     EXPECT_THAT(bench_.received(2), IsEmpty());
     bench_.waitForNext();
-    const auto second = bench_.asked();
+    const auto second = bench_.request();
     ASSERT_TRUE(second);
     EXPECT_GT(second->time, first->time);
     bench_.answer(*second);
@@ -245,13 +245,13 @@ TEST_F(Ping360EmulatorTest, RefusesTooManyCommands) {
 
 TEST_F(Ping360EmulatorTest, ADisconnectDuringAPingLeavesNoState) {
     bench_.say(transmitAt(0), 1);
-    const auto asked = bench_.asked();
+    const auto request = bench_.request();
     bench_.say(transmitAt(1), 1);
     device_.close(1);
-    bench_.answer(*asked);
+    bench_.answer(*request);
     bench_.wait(1);
     EXPECT_THAT(bench_.received(1), IsEmpty());
-    EXPECT_FALSE(bench_.asked()) << "its second command is gone as well";
+    EXPECT_FALSE(bench_.request()) << "its second command is gone as well";
     EXPECT_FALSE(device_.wakeAt());
     bench_.say(Ping360AutoTransmit{1, acoustics, {0, 399, 1, 0}}, 2);
     device_.close(2);
@@ -261,7 +261,7 @@ TEST_F(Ping360EmulatorTest, ADisconnectDuringAPingLeavesNoState) {
 TEST_F(Ping360EmulatorTest, AMissingPingIsRefusedAndWarnedOfOnce) {
     for (int i = 0; i < 2; ++i) {
         bench_.say(transmitAt(0));
-        EXPECT_TRUE(bench_.asked());
+        EXPECT_TRUE(bench_.request());
         bench_.wait(1.9);
         EXPECT_THAT(bench_.received(), IsEmpty());
         bench_.wait(0.2);
@@ -272,33 +272,33 @@ TEST_F(Ping360EmulatorTest, AMissingPingIsRefusedAndWarnedOfOnce) {
 
 TEST_F(Ping360EmulatorTest, IgnoresPingsOfEarlierRequestsOrOfOtherBins) {
     bench_.say(transmitAt(0));
-    auto asked = *bench_.asked();
-    asked.time = asked.time - types::Time{1};
-    bench_.answer(asked);
-    asked.time = asked.time + types::Time{1};
-    asked.bin_count = 500;
-    bench_.answer(asked);
+    auto request = *bench_.request();
+    request.time = request.time - types::Time{1};
+    bench_.answer(request);
+    request.time = request.time + types::Time{1};
+    request.bin_count = 500;
+    bench_.answer(request);
     bench_.wait(1);
     EXPECT_THAT(bench_.received(), IsEmpty());
     EXPECT_THAT(device_.consumeWarnings(),
                 ElementsAre(HasSubstr("1 beams of 500 bins where the driver asked for one of 600")));
-    asked.bin_count = 600;
-    bench_.answer(asked);
+    request.bin_count = 600;
+    bench_.answer(request);
     EXPECT_EQ(bench_.only<Ping360DeviceData>().data.size(), 600u);
 }
 
 TEST_F(Ping360EmulatorTest, SamplesAreByTimeForAnySpeedOfSound) {
     bench_.say(transmitAt(0));
-    const auto asked = bench_.asked();
-    bench_.answer(*asked, 1450);
-    const auto again = bench_.asked();
+    const auto request = bench_.request();
+    bench_.answer(*request, 1450);
+    const auto again = bench_.request();
     ASSERT_TRUE(again) << "the range was for 1500 m/s";
     EXPECT_NEAR(again->range, listened * 1450 / 2, 1e-9);
     bench_.answer(*again, 1450);
     bench_.wait(1);
     EXPECT_EQ(bench_.only<Ping360DeviceData>().data.size(), 600u);
     bench_.say(transmitAt(0));
-    EXPECT_NEAR(bench_.asked()->range, listened * 1450 / 2, 1e-9) << "for later pings";
+    EXPECT_NEAR(bench_.request()->range, listened * 1450 / 2, 1e-9) << "for later pings";
 }
 
 TEST_F(Ping360EmulatorTest, AnswersHaveANewIdAndFramesForOthersAreIgnored) {

@@ -52,7 +52,7 @@ struct Ping360TaskTest : ::testing::Test {
     void SetUp() override {
         task_.environment().output_folder = folder_.path();
         task_.config.set(quickConfig());
-        task_.settings.connectTo(asked_.port, framework::ConnPolicy::buffer(4));
+        task_.settings.connectTo(requests_.port, framework::ConnPolicy::buffer(4));
         pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(4));
         ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
@@ -64,9 +64,9 @@ struct Ping360TaskTest : ::testing::Test {
     /** Runs a cycle of the task and of a sonar that answers at once. */
     void cycle() {
         task_.update();
-        for (types::SonarSettings asked; asked_.port.readNew(asked);) {
-            auto ping = pingFor(asked);
-            std::ranges::fill(ping->bins, static_cast<float>(std::lround(std::abs(asked.bearing.deg()))) * 257);
+        for (types::SonarSettings request; requests_.port.readNew(request);) {
+            auto ping = pingFor(request);
+            std::ranges::fill(ping->bins, static_cast<float>(std::lround(std::abs(request.bearing.deg()))) * 257);
             pings_.port.write(ping);
         }
     }
@@ -86,7 +86,7 @@ struct Ping360TaskTest : ::testing::Test {
 
     Folder folder_;
     Ping360Task task_{"ping360"};
-    test::Reader<types::SonarSettings> asked_{"asked"};
+    test::Reader<types::SonarSettings> requests_{"asked"};
     test::Writer<types::SonarPtr> pings_{"pings"};
 };
 

@@ -11,15 +11,15 @@ namespace insonify::device {
 inline types::Time seconds(double s) { return types::Time::fromSeconds(1e9 + s); }
 
 /** Returns a sonar's ping for a request: one beam, code k in bin k unless given otherwise. */
-inline std::shared_ptr<types::Sonar> pingFor(const types::SonarSettings& asked, float speed_of_sound = 1500) {
+inline std::shared_ptr<types::Sonar> pingFor(const types::SonarSettings& request, float speed_of_sound = 1500) {
     auto ping = std::make_shared<types::Sonar>();
-    ping->time = asked.time;
+    ping->time = request.time;
     ping->speed_of_sound = speed_of_sound;
-    ping->bin_count = asked.bin_count;
+    ping->bin_count = request.bin_count;
     ping->beam_count = 1;
-    ping->bearings = {asked.bearing};
-    ping->setBins(asked.range / asked.bin_count, static_cast<double>(speed_of_sound));
-    ping->bins.resize(asked.bin_count);
+    ping->bearings = {request.bearing};
+    ping->setBins(request.range / request.bin_count, static_cast<double>(speed_of_sound));
+    ping->bins.resize(request.bin_count);
     for (size_t k = 0; k < ping->bins.size(); ++k) ping->bins[k] = static_cast<float>(k * 257);
     return ping;
 }
@@ -47,9 +47,9 @@ public:
         wait(std::max(0.0, s));
         return s;
     }
-    std::optional<types::SonarSettings> asked() { return device_.consumeRequest(); }
-    void answer(const types::SonarSettings& asked, float speed_of_sound = 1500) {
-        device_.setPing(pingFor(asked, speed_of_sound), now_);
+    std::optional<types::SonarSettings> request() { return device_.consumeRequest(); }
+    void answer(const types::SonarSettings& request, float speed_of_sound = 1500) {
+        device_.setPing(pingFor(request, speed_of_sound), now_);
     }
     /** Returns the bytes sent to a client since the last call. */
     std::vector<PingFrame> received(PingClient client = 1) {

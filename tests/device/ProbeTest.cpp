@@ -97,8 +97,8 @@ TEST(ProbeTest, ReportsNoAnswerWithPossibleCauses) {
     ProbeAddress address{"127.0.0.1", "", network.getPort(end)};
     for (const ProbeOutcome& outcome : probe(address, std::chrono::milliseconds(20))) {
         EXPECT_EQ(outcome.device, "");
-        EXPECT_NE(outcome.failure, "") << outcome.asked;
-        EXPECT_NE(outcome.advice, "") << outcome.asked;
+        EXPECT_NE(outcome.failure, "") << outcome.request;
+        EXPECT_NE(outcome.advice, "") << outcome.request;
     }
     const ProbeAddress line{"", "/nowhere/line", 0};
     const auto outcomes = probe(line, std::chrono::milliseconds(20));

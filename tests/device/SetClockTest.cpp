@@ -30,7 +30,7 @@ struct Bench {
     explicit Bench(std::vector<double> steps, bool sonar_refuses) : steps_(std::move(steps)), refuses_(sonar_refuses) {}
 
     std::function<std::optional<Time>(Time clock)> tick;
-    std::function<void(const types::SonarSettings& asked, Time stamp, Time clock)> answer;
+    std::function<void(const types::SonarSettings& request, Time stamp, Time clock)> answer;
 
     Time clock() const { return seconds(1.7e9) + offset_ + now_; }
     double now() const { return now_.seconds(); }
@@ -48,9 +48,9 @@ struct Bench {
             offset_ = offset_ + seconds(steps_[done_++]);
         bool has_news = false;
         for (; !waiting_.empty() && waiting_.front().first <= now_; waiting_.pop_front()) {
-            const types::SonarSettings& asked = waiting_.front().second;
-            if (refuses_ && asked.time - clock() > seconds(1)) continue;
-            answer(asked, std::max(std::min(asked.time, clock()), clock() - seconds(sonar_delay)), clock());
+            const types::SonarSettings& request = waiting_.front().second;
+            if (refuses_ && request.time - clock() > seconds(1)) continue;
+            answer(request, std::max(std::min(request.time, clock()), clock() - seconds(sonar_delay)), clock());
             has_news = true;
         }
         if (has_news || now_ >= wake_) wake();
@@ -94,12 +94,12 @@ protected:
     Bench bench_{GetParam().steps, GetParam().sonar_refuses};
 };
 
-types::Sonar makePing(const types::SonarSettings& asked, Time stamp, uint32_t beams) {
+types::Sonar makePing(const types::SonarSettings& request, Time stamp, uint32_t beams) {
     types::Sonar ping;
     ping.time = stamp;
     ping.speed_of_sound = 1500;
     ping.bin_duration = {1};
-    ping.bin_count = asked.bin_count;
+    ping.bin_count = request.bin_count;
     ping.beam_count = beams;
     for (uint32_t beam = 0; beam < beams; ++beam) ping.bearings.push_back({0.01 * beam});
     ping.bins.assign(size_t{ping.bin_count} * beams, 300);
@@ -122,9 +122,9 @@ TEST_P(SetClockTest, OculusPingsAtItsRateSendsItsStatusAndItsClockNeverGoesBack)
         if (!due.status.empty()) statuses.push_back(bench_.now());
         return std::optional(due.next);
     };
-    bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time) {
+    bench_.answer = [&](const types::SonarSettings& request, Time stamp, Time) {
         device.follow(bench_.clock());
-        const Bytes message = device.ping(makePing(asked, stamp, asked.beam_count));
+        const Bytes message = device.ping(makePing(request, stamp, request.beam_count));
         if (message.empty()) return;
         pings.push_back(bench_.now());
         const double start_s = oculusResult(message).value().start_s;
@@ -142,7 +142,7 @@ TEST_P(SetClockTest, Ping1dStreamsAndAnswersRequests) {
     Ping1dEmulator device{{}};
     std::vector<double> profiles;
     const auto serve = [&] {
-        if (const auto asked = device.consumeRequest()) bench_.ask(*asked);
+        if (const auto request = device.consumeRequest()) bench_.ask(*request);
         for (const PingOutgoing& out : device.consumeOutgoing())
             for (const PingFrame& frame : pingFrames(out.bytes, 4096))
                 if (frame.message == Ping1dProfile::message) profiles.push_back(bench_.now());
@@ -152,8 +152,8 @@ TEST_P(SetClockTest, Ping1dStreamsAndAnswersRequests) {
         serve();
         return device.wakeAt();
     };
-    bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time clock) {
-        device.setPing(std::make_shared<types::Sonar>(makePing(asked, stamp, 1)), clock);
+    bench_.answer = [&](const types::SonarSettings& request, Time stamp, Time clock) {
+        device.setPing(std::make_shared<types::Sonar>(makePing(request, stamp, 1)), clock);
     };
     device.receive(1, pingBytes(Ping1dSetModeAuto{0}, 0, 0), true, bench_.clock());
     device.receive(1, pingBytes(Ping1dSetRange{0, 5000}, 0, 0), true, bench_.clock());
@@ -170,14 +170,14 @@ TEST_P(SetClockTest, Ping360ScansItsSector) {
     std::vector<double> lines;
     bench_.tick = [&](Time clock) {
         device.tick(clock);
-        if (const auto asked = device.consumeRequest()) bench_.ask(*asked);
+        if (const auto request = device.consumeRequest()) bench_.ask(*request);
         for (const PingOutgoing& out : device.consumeOutgoing())
             for (const PingFrame& frame : pingFrames(out.bytes, 4096))
                 if (frame.message == Ping360AutoDeviceData::message) lines.push_back(bench_.now());
         return device.wakeAt();
     };
-    bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time clock) {
-        device.setPing(std::make_shared<types::Sonar>(makePing(asked, stamp, 1)), clock);
+    bench_.answer = [&](const types::SonarSettings& request, Time stamp, Time clock) {
+        device.setPing(std::make_shared<types::Sonar>(makePing(request, stamp, 1)), clock);
     };
     const Ping360Acoustics acoustics{1, 50, 100, 750, 600};
     device.receive(1, pingBytes(Ping360AutoTransmit{1, acoustics, {0, 399, 4, 20}}, 0, 0), true, bench_.clock());
@@ -202,12 +202,12 @@ TEST_P(SetClockTest, MicronScansLineAfterLine) {
     const Client client{0, 1};
     MicronEmulator device{
         {.centring_time = 0},
-        {[&](const types::SonarSettings& asked) { bench_.ask(asked); },
+        {[&](const types::SonarSettings& request) { bench_.ask(request); },
          [&](Client, Bytes bytes) { sent.insert(sent.end(), bytes.begin(), bytes.end()); }, [](const std::string&) {}}};
     bench_.tick = [&](Time clock) { return device.tick(clock); };
-    bench_.answer = [&](const types::SonarSettings& asked, Time stamp, Time) {
+    bench_.answer = [&](const types::SonarSettings& request, Time stamp, Time) {
         device.follow(bench_.clock());
-        device.setPing(makePing(asked, stamp, 1));
+        device.setPing(makePing(request, stamp, 1));
     };
     device.opened(client);
     test::MicronDriver driver(
@@ -259,7 +259,7 @@ TEST_P(SetClockTest, MicronReportsThatItIsAliveEachSecondAndCountsOn) {
 TEST_P(SetClockTest, Sonar3dPingsAtItsRateAndItsClockRunsOnOnceItIsSet) {
     std::vector<double> images;
     Sonar3dEmulator device{{},
-                           {[&](const types::SonarSettings& asked) { bench_.ask(asked); },
+                           {[&](const types::SonarSettings& request) { bench_.ask(request); },
                             [&](const std::string&, uint16_t, const Bytes&) { images.push_back(bench_.now()); },
                             [](const std::string&) {}}};
     const auto post = [&](const std::string& path, const std::string& body) {

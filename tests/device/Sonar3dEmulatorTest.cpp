@@ -49,11 +49,11 @@ struct Sonar3dEmulatorTest : ::testing::Test {
 
     const std::string prefix = "/api/v1/integration/";
     types::Time now_{1'700'000'000'000'000};
-    std::vector<types::SonarSettings> asked_;
+    std::vector<types::SonarSettings> requests_;
     std::vector<Datagram> datagrams_;
     std::vector<std::string> warnings_;
     Sonar3dEmulator emulator_{{},
-                              {[this](const types::SonarSettings& settings) { asked_.push_back(settings); },
+                              {[this](const types::SonarSettings& settings) { requests_.push_back(settings); },
                                [this](const std::string& address, uint16_t port, Bytes bytes) {
                                    datagrams_.push_back({address, port, std::move(bytes)});
                                },
@@ -149,35 +149,35 @@ TEST_F(Sonar3dEmulatorTest, TheInitialRangeIsWithinItsLimit) {
 
 TEST_F(Sonar3dEmulatorTest, RequestsPingsAtTheRateOfItsModeOnceEnabled) {
     advance(1);
-    EXPECT_THAT(asked_, IsEmpty());
+    EXPECT_THAT(requests_, IsEmpty());
     post("acoustics/enabled", "true");
     post("acoustics/speed_of_sound", "1500");
     advance(0);
-    ASSERT_EQ(asked_.size(), 1u);
-    EXPECT_EQ(asked_[0].time, now_);
-    EXPECT_EQ(asked_[0].range, 15);
-    EXPECT_EQ(asked_[0].speed_of_sound, 1500);
-    EXPECT_EQ(asked_[0].frequency_khz, 1200);
-    EXPECT_NEAR(asked_[0].field_of_view.deg() * 255 / 256, 90, 1e-9) << "between the outermost of 256 columns";
+    ASSERT_EQ(requests_.size(), 1u);
+    EXPECT_EQ(requests_[0].time, now_);
+    EXPECT_EQ(requests_[0].range, 15);
+    EXPECT_EQ(requests_[0].speed_of_sound, 1500);
+    EXPECT_EQ(requests_[0].frequency_khz, 1200);
+    EXPECT_NEAR(requests_[0].field_of_view.deg() * 255 / 256, 90, 1e-9) << "between the outermost of 256 columns";
     advance(0.1);
     emulator_.setPing(map());
     advance(0.05);
-    EXPECT_EQ(asked_.size(), 1u) << "five a second";
+    EXPECT_EQ(requests_.size(), 1u) << "five a second";
     advance(0.05);
-    EXPECT_EQ(asked_.size(), 2u);
+    EXPECT_EQ(requests_.size(), 2u);
     advance(1);
-    EXPECT_EQ(asked_.size(), 2u) << "one at a time";
+    EXPECT_EQ(requests_.size(), 2u) << "one at a time";
     post("acoustics/mode", R"("high-frequency")");
     post("acoustics/range", R"({"min": 0, "max": 5})");
     emulator_.setPing(map());
     EXPECT_EQ(sent<RangePixels>(2).frequency_hz, 1'200'000u) << "of an earlier request";
     advance(0);
-    EXPECT_EQ(asked_.at(2).frequency_khz, 2400);
-    EXPECT_EQ(asked_[2].range, 5);
-    EXPECT_NEAR(asked_[2].field_of_view.deg() * 255 / 256, 40, 1e-9);
+    EXPECT_EQ(requests_.at(2).frequency_khz, 2400);
+    EXPECT_EQ(requests_[2].range, 5);
+    EXPECT_NEAR(requests_[2].field_of_view.deg() * 255 / 256, 40, 1e-9);
     emulator_.setPing(map());
     advance(0.05);
-    EXPECT_EQ(asked_.size(), 4u) << "twenty a second";
+    EXPECT_EQ(requests_.size(), 4u) << "twenty a second";
     post("acoustics/enabled", "false");
     emulator_.setPing(map());
     EXPECT_EQ(datagrams_.size(), 6u) << "the ping in progress is not sent";
@@ -223,11 +223,11 @@ TEST_F(Sonar3dEmulatorTest, TheAutomaticSpeedOfSoundIsThatOfTheWater) {
     post("acoustics/speed_of_sound", "0");
     post("acoustics/enabled", "true");
     advance(0);
-    EXPECT_NEAR(asked_.at(0).speed_of_sound, 1497.0, 0.2) << "12 degrees, 35 psu (Medwin: 1496.98)";
+    EXPECT_NEAR(requests_.at(0).speed_of_sound, 1497.0, 0.2) << "12 degrees, 35 psu (Medwin: 1496.98)";
     emulator_.setPing(map());
     post("acoustics/salinity", R"("fresh")");
     advance(1);
-    EXPECT_NEAR(asked_.at(1).speed_of_sound, 1497.0 - 35 * (1.34 - 0.12), 0.2);
+    EXPECT_NEAR(requests_.at(1).speed_of_sound, 1497.0 - 35 * (1.34 - 0.12), 0.2);
 }
 
 TEST_F(Sonar3dEmulatorTest, ClientsMaySetItsClock) {
@@ -253,7 +253,7 @@ TEST_F(Sonar3dEmulatorTest, RequestsAMissingPingAgainAndWarnsOncePerOutage) {
     post("acoustics/enabled", "true");
     advance(0);
     for (int i = 0; i < 3; ++i) advance(3);
-    EXPECT_EQ(asked_.size(), 4u);
+    EXPECT_EQ(requests_.size(), 4u);
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_THAT(warnings_[0], HasSubstr("a requested ping gave no range image"));
     types::DepthMap silent;
@@ -278,7 +278,7 @@ TEST_F(Sonar3dEmulatorTest, ALateImageHasTheSettingsOfItsRequest) {
     const types::DepthMap first = map();
     post("acoustics/mode", R"("high-frequency")");
     advance(3);
-    ASSERT_EQ(asked_.size(), 2u);
+    ASSERT_EQ(requests_.size(), 2u);
     types::DepthMap earlier = first;
     earlier.time = earlier.time - types::Time{1};
     emulator_.setPing(earlier);

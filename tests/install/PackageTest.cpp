@@ -1,6 +1,7 @@
 // The wheel and the archive that scripts/package makes.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -66,16 +67,44 @@ void runWheel(const WallFolder& folder) {
     EXPECT_THAT(stepped.out, testing::AllOf(HasSubstr("/env/lib/"), HasSubstr("True True"))) << stepped.err;
 }
 
+/** Returns the names of the libraries in a list of what a package consists of; each has a version. */
+std::set<std::string> readLibraries(const std::string& end) {
+    const json list = json::parse(readFile(packed(end)));
+    EXPECT_EQ(list["bomFormat"], "CycloneDX");
+    EXPECT_EQ(list["metadata"]["component"]["name"], "insonify");
+    std::set<std::string> names;
+    for (const json& each : list["components"]) {
+        EXPECT_NE(each["version"], "") << each;
+        EXPECT_THAT(each["purl"].get<std::string>(), testing::StartsWith("pkg:")) << each;
+        names.insert(each["name"]);
+    }
+    EXPECT_EQ(list["dependencies"].size(), list["components"].size() + 1);
+    return names;
+}
+
 }  // namespace
 
 TEST(PackageTest, TheArchiveRunsFromItsFolderAndTheWheelInAnyPython) {
     const WallFolder folder;
     const std::string script = insonify::test::source_dir + std::string("/scripts/package");
-    const Outcome made = call(folder, {script, "wheel", "archive"});
+    const Outcome made = call(folder, {script});
     if (made.err.find("No matching distribution") != std::string::npos)
         GTEST_SKIP() << "NOT TESTED: auditwheel and what else makes wheels cannot be had from PyPI";
     ASSERT_EQ(made.code, 0) << made.err;
     runArchive(folder);
     runWheel(folder);
+
+    using testing::Contains, testing::StartsWith;
+    for (const char* end : {"-deb.sbom.json", "64.sbom.json"}) {
+        const std::set<std::string> libraries = readLibraries(end);
+        for (const char* library : {"libyaml-cpp", "libembree", "libcli11-dev", "nlohmann-json3-dev"})
+            EXPECT_THAT(libraries, Contains(StartsWith(library))) << end;
+        EXPECT_FALSE(libraries.contains("libgtest-dev")) << end;
+    }
+    const std::string packages = insonify::test::build_dir + std::string("/packages");
+    EXPECT_THAT(call(folder, {"sh", "-c", "cd " + packages + " && sha256sum --check --strict SHA256SUMS"}), succeeds());
+    std::istringstream sums(readFile(packages + "/SHA256SUMS"));
+    EXPECT_EQ(std::count(std::istreambuf_iterator<char>(sums), {}, '\n') + 1,
+              std::distance(fs::directory_iterator(packages), {}));
     EXPECT_EQ(call(folder, {script, "rpm"}).code, 2) << "what it may be is said";
 }

@@ -7,7 +7,7 @@
 namespace insonify::noise {
 namespace {
 
-types::SonarPtr makePing(int64_t time) { return test::shared(test::makePing(2, 100, 1, time)); }
+types::SonarPtr shortPing(int64_t time) { return test::shared(test::makePing(2, 100, 1, time)); }
 
 struct NoiseTaskTest : test::TaskBench<NoiseTask, types::SonarPtr> {
     NoiseTaskTest() : TaskBench(&NoiseTask::clean, &NoiseTask::noisy) {}
@@ -15,13 +15,13 @@ struct NoiseTaskTest : test::TaskBench<NoiseTask, types::SonarPtr> {
 
 TEST_F(NoiseTaskTest, PassesOnThePingItselfWithoutNoise) {
     startWith({});
-    const types::SonarPtr ping = makePing(1);
+    const types::SonarPtr ping = shortPing(1);
     EXPECT_EQ(answerTo(ping), ping);
 }
 
 TEST_F(NoiseTaskTest, KeepsTheInputPingUnchangedAndItsTime) {
     startWith({.seed = 1, .speckle = SpeckleConfig{}, .ambient = {}, .additive = AdditiveConfig{-20}});
-    const types::SonarPtr ping = makePing(42);
+    const types::SonarPtr ping = shortPing(42);
     const types::SonarPtr noisy = answerTo(ping);
     EXPECT_EQ(noisy->time.microseconds, 42);
     EXPECT_NE(noisy->bins, ping->bins);
@@ -30,16 +30,16 @@ TEST_F(NoiseTaskTest, KeepsTheInputPingUnchangedAndItsTime) {
 
 TEST_F(NoiseTaskTest, AReplayedPingGetsTheSameNoiseIndependentOfEarlierPings) {
     startWith({.seed = 5, .speckle = SpeckleConfig{}, .ambient = {}, .additive = {}});
-    const std::vector<float> first = answerTo(makePing(7))->bins;
-    EXPECT_NE(answerTo(makePing(8))->bins, first);
-    EXPECT_EQ(answerTo(makePing(7))->bins, first);
+    const std::vector<float> first = answerTo(shortPing(7))->bins;
+    EXPECT_NE(answerTo(shortPing(8))->bins, first);
+    EXPECT_EQ(answerTo(shortPing(7))->bins, first);
 }
 
 TEST_F(NoiseTaskTest, ClampedFactorsAreCountedFromStart) {
     NoiseConfig config;
     config.speckle = SpeckleConfig{.law = SpeckleLaw::Gaussian, .mean = 0, .deviation = 1};
     startWith(config);
-    answerTo(makePing(1));
+    answerTo(shortPing(1));
     EXPECT_GT(task_.clamped(), 50u);
     ASSERT_TRUE(task_.stop());
     ASSERT_TRUE(task_.start());
@@ -51,7 +51,7 @@ TEST_F(NoiseTaskTest, ReusesAReleasedSample) {
     const types::Sonar* held = nullptr;
     bool again = false;
     for (int64_t time = 1; time < 8; ++time) {
-        const types::SonarPtr noisy = answerTo(makePing(time));
+        const types::SonarPtr noisy = answerTo(shortPing(time));
         again = again || noisy.get() == held;
         if (!held) held = noisy.get();
     }
@@ -63,7 +63,7 @@ TEST_F(NoiseTaskTest, RejectsDecibelsWithARemedyAndRecoversWithIntensities) {
     speckle.speckle.emplace();
     for (const NoiseConfig& config : {NoiseConfig{}, speckle}) {
         startWith(config);
-        types::Sonar levels = *makePing(1);
+        types::Sonar levels = *shortPing(1);
         levels.bins[150] = -42;
         in_.port.write(std::make_shared<const types::Sonar>(levels));
         task_.update();
@@ -73,7 +73,7 @@ TEST_F(NoiseTaskTest, RejectsDecibelsWithARemedyAndRecoversWithIntensities) {
         EXPECT_EQ(task_.lastError(),
                   "clean: bins are below 0, as decibels are: no intensities; connect a sonar's ping here, and a "
                   "receiver after the noise");
-        EXPECT_TRUE(answerTo(makePing(2)));
+        EXPECT_TRUE(answerTo(shortPing(2)));
         EXPECT_EQ(task_.state(), framework::TaskState::Running);
         ASSERT_TRUE(task_.stop());
         ASSERT_TRUE(task_.cleanup());
@@ -83,7 +83,7 @@ TEST_F(NoiseTaskTest, RejectsDecibelsWithARemedyAndRecoversWithIntensities) {
 TEST_F(NoiseTaskTest, AChangedLawAppliesFromTheNextPing) {
     startWith({});
     task_.operation("setSpeckle")->callText({"{law: gamma, looks: 4}"});
-    EXPECT_NE(answerTo(makePing(1))->bins, makePing(1)->bins);
+    EXPECT_NE(answerTo(shortPing(1))->bins, shortPing(1)->bins);
 }
 
 AmbientConfig makeAmbient(double level_db) {

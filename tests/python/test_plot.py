@@ -44,6 +44,16 @@ def test_a_beam_is_plotted(tmp_path):
     assert "<svg" in (tmp_path / "beam.svg").read_text()
 
 
+def test_the_stages_of_a_run_are_plotted(tmp_path):
+    file = tmp_path / "summary.json"
+    command = [INSONIFY, "run", ROOT / "deploy/minimal.yml", "--pings", "3", "--summary", file, "--out", tmp_path / "out", "--quiet"]
+    subprocess.run(command, check=True, capture_output=True, timeout=300)
+    done = plot(file)
+    assert done.returncode == 0, done.stderr
+    drawn = (tmp_path / "summary.svg").read_text()
+    assert all(f"<!-- {name} -->" in drawn for name in ("sonar", "fan")), drawn[:2000]
+
+
 def test_a_folder_without_a_report_is_refused(tmp_path):
     done = plot(tmp_path)
     assert done.returncode == 2

@@ -8,12 +8,15 @@
 namespace insonify::study {
 namespace {
 
+constexpr double gain_factor = 3;  ///< Of an error with gain over that without.
+
 /** Adds a ladder whose error falls as samples^power from `error` on, in a time proportional to samples. */
 void addLadder(ErrorResult& result, const std::string& scene, Method method, double error, double power,
                int levels = 4) {
     for (int level = 0; level < levels; ++level) {
         Measurement m{scene, method, 64 << level, 1 << level, 1, {}, 0, 0, 0, 0};
         m.metrics.rel_l2 = error * std::pow(m.samples() / 64, power);
+        m.metrics.rel_l2_tvg = gain_factor * m.metrics.rel_l2;
         m.median_ms = m.samples() / 64;
         result.measurements.push_back(m);
     }
@@ -71,17 +74,18 @@ TEST(ErrorAnalysisTest, ASlopeOfFewLevelsIsOpen) {
 TEST(ErrorAnalysisTest, TimesAndErrorsAreOnTheLineOrItsExtension) {
     const auto points = ladder(made(), "flat_bottom", Method::Nearest);
     const double ms = std::pow(0.1 / 0.4, 1 / -0.8);
-    EXPECT_NEAR(timeTo(0.1, points)->ms, ms, 1e-9 * ms);
-    EXPECT_EQ(timeTo(0.1, points)->kind, ReachTime::Kind::Interpolated);
+    EXPECT_NEAR(timeTo(0.1, points, without_gain)->ms, ms, 1e-9 * ms);
+    EXPECT_EQ(timeTo(0.1, points, without_gain)->kind, ReachTime::Kind::Interpolated);
     EXPECT_NEAR(*errorAt(ms, points), 0.1, 1e-9);
-    EXPECT_NEAR(timeTo(0.004, points)->ms, std::pow(0.01, 1 / -0.8), 1e-6) << "beyond the finest point";
-    EXPECT_EQ(timeTo(0.004, points)->kind, ReachTime::Kind::Extrapolated);
-    EXPECT_EQ(timeTo(0.004, points)->text(), "316 (extrapolated, 4.9 x the finest)");
-    EXPECT_FALSE(timeTo(1e-4, points)) << "too far beyond it";
-    EXPECT_EQ(timeTo(0.5, points)->text(), "at most 1") << "the coarsest point is good enough";
+    EXPECT_NEAR(timeTo(0.004, points, without_gain)->ms, std::pow(0.01, 1 / -0.8), 1e-6) << "beyond the finest point";
+    EXPECT_EQ(timeTo(0.004, points, without_gain)->kind, ReachTime::Kind::Extrapolated);
+    EXPECT_EQ(timeTo(0.004, points, without_gain)->text(), "316 (extrapolated, 4.9 x the finest)");
+    EXPECT_NEAR(timeTo(gain_factor * 0.1, points, with_gain)->ms, ms, 1e-9 * ms);
+    EXPECT_FALSE(timeTo(1e-4, points, without_gain)) << "too far beyond it";
+    EXPECT_EQ(timeTo(0.5, points, without_gain)->text(), "at most 1") << "the coarsest point is good enough";
     ErrorResult flat;
     addLadder(flat, "x", Method::Published, 0.4, 0);
-    EXPECT_FALSE(timeTo(0.1, ladder(flat, "x", Method::Published))) << "it never gets there";
+    EXPECT_FALSE(timeTo(0.1, ladder(flat, "x", Method::Published), without_gain)) << "it never gets there";
 }
 
 TEST(ErrorAnalysisTest, NoPointBeatsTheParetoFront) {

@@ -21,6 +21,9 @@ TEST(ErrorCommandTest, WritesTablesAndJson) {
             std::ranges::find(report["methods"], method, [](const json& each) { return each["method"]; });
         ASSERT_NE(found, report["methods"].end()) << method;
         EXPECT_EQ((*found)["points"].size(), 2u) << method;
+        for (const char* goal : {"10", "1", "0.3", "0.1"})
+            for (const char* ending : {"", "_is", "_open", "_without_gain", "_without_gain_is", "_without_gain_open"})
+                EXPECT_TRUE(found->contains("ms_to_" + std::string(goal) + "_percent" + ending)) << goal << ending;
     }
     const std::string sheet = readFile(folder / "report/error_time.md");
     for (const char* table :

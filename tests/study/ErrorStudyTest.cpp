@@ -114,7 +114,7 @@ TEST(ErrorStudyTest, AReferenceThatRunsOutOfRaysIsOpenAndDoesNotFail) {
 }
 
 TEST(ErrorStudyTest, RaysAndImagesAgreeOnFloors) {
-    for (StudyScene scene : {smallRoughFloor(), benchFloor(40)}) {
+    for (StudyScene scene : {smallRoughFloor(), benchFloor(40), rippledFloor(64)}) {
         scene.config.beam_count = 4;
         scene.config.field_of_view_deg = 8;
         const ErrorResult result = studyError({scene}, quick(4e6));
@@ -125,6 +125,26 @@ TEST(ErrorStudyTest, RaysAndImagesAgreeOnFloors) {
             EXPECT_LT(points[1].metrics.rel_l2, points[0].metrics.rel_l2) << scene.name << " " << getName(method);
         }
     }
+}
+
+TEST(ErrorStudyTest, RipplesOfAMapChangeThePings) {
+    StudyScene mapped = rippledFloor(64), plain = mapped;
+    const auto geometry = makeCopy(plain.snapshot.geometry);
+    geometry->materials[0].normal_map = -1;
+    plain.snapshot.geometry = geometry;
+    std::vector<std::vector<float>> bins;
+    for (const StudyScene& scene : {mapped, plain}) {
+        sonar::SonarRenderer renderer(scene.config, scene.snapshot.geometry);
+        types::Sonar ping;
+        renderer.render(scene.snapshot, ping);
+        bins.push_back(ping.bins);
+    }
+    const sonar::BinGrid grid = sonar::makeBinGrid(mapped.config);
+    const std::vector<double> without(bins[1].begin(), bins[1].end());
+    const double change =
+        sonar::compare(bins[0], without, {mapped.config.beam_count, grid.bin_count, grid.bin_width, 0}).rel_l2_tvg;
+    EXPECT_GT(change, 0.05);
+    EXPECT_LT(change, 2);
 }
 
 TEST(ErrorStudyTest, EveryMethodAgreesWithTheClosedFormOfAPatternInElevation) {

@@ -58,7 +58,7 @@ int listDevices(bool json) {
 
 Json makeJson(const ProbeOutcome& outcome) {
     return {{"protocol", outcome.protocol},
-            {"asked", outcome.asked},
+            {"asked", outcome.request},
             {"device", outcome.device},
             {"failure", outcome.failure},
             {"advice", outcome.advice}};
@@ -66,7 +66,7 @@ Json makeJson(const ProbeOutcome& outcome) {
 
 void printDevices(const std::vector<ProbeOutcome>& outcomes) {
     for (const ProbeOutcome& outcome : outcomes)
-        if (!outcome.device.empty()) console::printResult("{}: {}\n", outcome.asked, outcome.device);
+        if (!outcome.device.empty()) console::printResult("{}: {}\n", outcome.request, outcome.device);
 }
 
 /** Groups lines that failed for the same reason before the reason and its remedy. */
@@ -78,7 +78,7 @@ void printFailures(std::vector<ProbeOutcome> outcomes) {
             return reason(outcome) == reason(first);
         });
         for (auto outcome = outcomes.begin(); outcome != others; ++outcome)
-            console::printResult("{}: {}\n", outcome->asked, outcome->protocol);
+            console::printResult("{}: {}\n", outcome->request, outcome->protocol);
         console::printResult("  {}: {}\n", first.failure, first.advice);
         outcomes.erase(outcomes.begin(), others);
     }

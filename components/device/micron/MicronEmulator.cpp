@@ -44,7 +44,7 @@ void MicronEmulator::closed(Client client) {
 
 types::Time MicronEmulator::follow(types::Time clock) {
     const types::Time now = steady_.read(clock);
-    if (steady_.jumpedBack() && line_ && !line_->asked.empty()) askForPing(now);
+    if (steady_.jumpedBack() && line_ && !line_->request.empty()) askForPing(now);
     return now;
 }
 
@@ -138,7 +138,7 @@ void MicronEmulator::askForPing(types::Time now) {
     if (command_.has(SeaNetControl::silent)) {
         line_->data = getData({});
     } else {
-        line_->asked.add(now, line_->whole);
+        line_->request.add(now, line_->whole);
         outlet_.ask(settings);
     }
 }
@@ -163,7 +163,7 @@ Bytes MicronEmulator::getData(const types::Sonar& ping) const {
 }
 
 void MicronEmulator::setPing(const types::Sonar& ping) {
-    if (!line_ || !line_->asked.take(steady_.steady(ping.time))) return;
+    if (!line_ || !line_->request.take(steady_.steady(ping.time))) return;
     warned_ = false;
     types::Sonar scaled = ping;
     const bool is_other = ping.bin_count == command_.bins &&
@@ -231,19 +231,19 @@ std::optional<types::Time> MicronEmulator::tick(types::Time clock) { return stea
 
 types::Time MicronEmulator::workAt(types::Time now) {
     if (state_ == State::Off) reboot(now);
-    if (line_ && line_->asked.empty() && !line_->data && now >= line_->ready) askForPing(now);
+    if (line_ && line_->request.empty() && !line_->data && now >= line_->ready) askForPing(now);
     if (line_ && line_->data && now >= line_->whole) finishLine();
-    if (line_ && line_->asked.isLate(now)) {
+    if (line_ && line_->request.isLate(now)) {
         if (!warned_) outlet_.warn("a requested ping did not arrive; its scan line waits for another");
         warned_ = true;
         askForPing(now);
     }
-    const bool is_late = line_ && line_->asked.size() > 1;
+    const bool is_late = line_ && line_->request.size() > 1;
     if (now >= next_alive_ && (!line_ || is_late)) sendAlive(now);
     if (!line_) return next_alive_;
     if (line_->data) return line_->whole;
-    if (line_->asked.empty()) return line_->ready;
-    return is_late ? std::min(line_->asked.deadline(), next_alive_) : line_->asked.deadline();
+    if (line_->request.empty()) return line_->ready;
+    return is_late ? std::min(line_->request.deadline(), next_alive_) : line_->request.deadline();
 }
 
 }  // namespace insonify::device

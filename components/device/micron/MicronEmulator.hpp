@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/device/AskedPings.hpp"
+#include "components/device/RequestedPings.hpp"
 #include "components/device/micron/SeaNet.hpp"
 #include "components/device/wire/Network.hpp"
 #include "types/Time.hpp"
@@ -65,13 +65,13 @@ public:
 
 private:
     enum class State { Off, Booting, Unconfigured, Ready };
-    static constexpr size_t max_asked = 16;  ///< For one line. A slow sonar, asked again, may answer an earlier request
-                                             ///< [1].
+    static constexpr size_t max_requests = 16;  ///< For one line. A slow sonar, asked again, may answer an earlier
+                                                ///< request [1].
     /** A scan line in progress. */
     struct Line {
         types::Time ready;  ///< The motor has arrived.
         types::Time whole;  ///< Sound is back.
-        AskedPings<> asked{max_asked};
+        RequestedPings<> request{max_requests};
         std::optional<Bytes> data;  ///< Once the ping has arrived.
         std::vector<Client> clients;
     };

@@ -41,7 +41,7 @@ private:
         if (!config->serial.empty()) network.openSerial(outputPath(config->serial));
         emulator_.emplace(
             config->device,
-            MicronEmulator::Outlet{[this](const types::SonarSettings& asked) { settings.write(asked); },
+            MicronEmulator::Outlet{[this](const types::SonarSettings& request) { settings.write(request); },
                                    [this](Client to, Bytes bytes) { this->network().send(to, std::move(bytes)); },
                                    [this](const std::string& text) { warn(text); }});
     }

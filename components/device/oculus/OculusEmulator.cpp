@@ -50,8 +50,8 @@ void OculusEmulator::closed(ClientId client) {
 
 void OculusEmulator::take(std::span<const uint8_t> message) {
     if (oculusUserConfig(message)) return;  // the network settings are not changed
-    const auto asked = oculusFire(message);
-    const auto settings = asked ? possible(*asked) : std::nullopt;
+    const auto request = oculusFire(message);
+    const auto settings = request ? possible(*request) : std::nullopt;
     if (!settings) return void(++refused_);
     fire_ = *settings;
     speed_was_set_ = speed_was_set_ || fire_.speed_of_sound != 0;
@@ -91,9 +91,9 @@ types::SonarSettings OculusEmulator::getSettings(const OculusFire& fire, Time no
 }
 
 bool OculusEmulator::isDue(Time now) {
-    if (!asked_.empty()) {
+    if (!requests_.empty()) {
         if (was_set_back_) return true;
-        if (now < asked_.deadline(2.0 * static_cast<double>(asked_.size()))) return false;
+        if (now < requests_.deadline(2.0 * static_cast<double>(requests_.size()))) return false;
         ++lost_;
     }
     return now >= last_ping_ + period(fire_);
@@ -130,40 +130,40 @@ OculusEmulator::Due OculusEmulator::workAt(Time now, Time clock) {
     }
     if (isDue(now)) {
         due.ask = getSettings(fire_, clock);
-        asked_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {now, *due.ask, fire_});
+        requests_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {now, *due.ask, fire_});
         const Time planned = last_ping_ + period(fire_);  // keeps the rate even if a cycle is late
         last_ping_ = now - planned < period(fire_) ? planned : now;
     }
-    due.next = std::min(due.next, asked_.empty() ? last_ping_ + period(fire_) : now + second);
+    due.next = std::min(due.next, requests_.empty() ? last_ping_ + period(fire_) : now + second);
     return due;
 }
 
 Bytes OculusEmulator::ping(const types::Sonar& codes) {
     const bool fits = codes.bin_count > 0 && codes.beam_count > 0 && codes.bin_count <= 65535 &&
                       codes.beam_count <= 65535 && codes.wellShaped();
-    const auto asked = fits ? asked_.take(steady_.steady(codes.time)) : std::nullopt;
-    if (!asked) return {};
+    const auto request = fits ? requests_.take(steady_.steady(codes.time)) : std::nullopt;
+    if (!request) return {};
     if (inStandby()) return {};
-    return toBytes(makeResult(*asked, codes));
+    return toBytes(makeResult(*request, codes));
 }
 
-OculusResult OculusEmulator::makeResult(const Asked& asked, const types::Sonar& codes) {
+OculusResult OculusEmulator::makeResult(const Request& request, const types::Sonar& codes) {
     OculusResult result;
-    result.fire = asked.fire;
+    result.fire = request.fire;
     result.fire.header = {.source = static_cast<uint16_t>(config_.serial_number),
                           .id = static_cast<uint16_t>(OculusId::PingResult),
-                          .version = std::min<uint16_t>(asked.fire.header.version, asked.fire.isVersion2() ? 2 : 1),
+                          .version = std::min<uint16_t>(request.fire.header.version, request.fire.isVersion2() ? 2 : 1),
                           .part = static_cast<uint16_t>(figures_.part)};
-    result.fire.gain_percent = usedGain(asked.fire);
+    result.fire.gain_percent = usedGain(request.fire);
     result.number = number_++;
-    result.frequency_hz = 1e3 * asked.settings.frequency_khz;
+    result.frequency_hz = 1e3 * request.settings.frequency_khz;
     result.temperature_celsius = config_.temperature_celsius;
     result.pressure_bar = config_.pressure_bar;
     result.speed_of_sound = static_cast<double>(codes.speed_of_sound);
-    result.start_s = (asked.asked - started_).seconds();
+    result.start_s = (request.time - started_).seconds();
     result.start_ticks = static_cast<uint32_t>(static_cast<uint64_t>(result.start_s * oculus_ticks_per_second));
     result.range_resolution = codes.binWidth();
-    if (!(result.range_resolution > 0)) result.range_resolution = asked.settings.range / codes.bin_count;
+    if (!(result.range_resolution > 0)) result.range_resolution = request.settings.range / codes.bin_count;
     encoder_.encode(codes, result);
     result.settle();
     return result;

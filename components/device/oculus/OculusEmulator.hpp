@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "components/device/AskedPings.hpp"
 #include "components/device/OculusPing.hpp"
+#include "components/device/RequestedPings.hpp"
 #include "components/device/oculus/OculusMessages.hpp"
 #include "components/sonars/Sonars.hpp"
 #include "types/Time.hpp"
@@ -99,8 +99,8 @@ public:
 private:
     static constexpr size_t max_message = 4096;
 
-    struct Asked {
-        types::Time asked;  ///< Steady time.
+    struct Request {
+        types::Time time;  ///< Steady time.
         types::SonarSettings settings;
         OculusFire fire;
     };
@@ -112,7 +112,7 @@ private:
     types::SonarSettings getSettings(const OculusFire& fire, types::Time now) const;
     Due workAt(types::Time now, types::Time clock);
     bool isDue(types::Time now);
-    OculusResult makeResult(const Asked& asked, const types::Sonar& codes);
+    OculusResult makeResult(const Request& request, const types::Sonar& codes);
     Bytes statusBytes() const;
     const sonars::SonarMode& mode(const OculusFire& fire) const { return oculusMode(figures_, fire.mode); }
 
@@ -124,7 +124,7 @@ private:
     types::Time started_;
     std::map<ClientId, OculusFramer> clients_;
     OculusFire fire_;
-    AskedPings<Asked> asked_{4};  ///< With more than one, all but the newest have not arrived in time.
+    RequestedPings<Request> requests_{4};  ///< With more than one, all but the newest have not arrived in time.
     types::Time last_ping_, last_dummy_, last_status_;
     bool speed_was_set_ = false;  ///< By a driver; 0 then requests the sonar's own speed of sound.
     uint32_t number_ = 0;

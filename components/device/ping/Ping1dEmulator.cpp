@@ -51,10 +51,10 @@ Ping1dEmulator::Ping1dEmulator(const Ping1dConfig& config, double max_code)
 template <class Message, class Value>
 void Ping1dEmulator::set(PingClient client, const PingFrame& frame, const char* name, uint32_t min, uint32_t max,
                          Value& value) {
-    with<Message>(client, frame, [&](const Message& asked) {
-        const std::string why = findDiagnostic({{name, asked.value, min, max}});
+    with<Message>(client, frame, [&](const Message& request) {
+        const std::string why = findDiagnostic({{name, request.value, min, max}});
         if (!why.empty()) return refuse(client, frame.message, why);
-        value = asked.value;
+        value = request.value;
         acknowledge(client, frame.message);
     });
 }
@@ -81,16 +81,16 @@ void Ping1dEmulator::command(PingClient client, const PingFrame& frame, types::T
     }
 }
 
-void Ping1dEmulator::setRange(PingClient client, const Ping1dSetRange& asked) {
+void Ping1dEmulator::setRange(PingClient client, const Ping1dSetRange& request) {
     const auto end = static_cast<uint32_t>(std::lround(1000 * config_.max_range));
     if (mode_auto_ != 0)
-        return refuse(client, asked.message, "mode_auto is 1, so the device sets the range; set mode_auto to 0");
-    std::string why = findDiagnostic({{"scan_start", asked.start, 0, end - shortest_scan}});
-    if (why.empty()) why = findDiagnostic({{"scan_length", asked.length, shortest_scan, end - asked.start}});
-    if (!why.empty()) return refuse(client, asked.message, why);
-    start_ = asked.start;
-    length_ = asked.length;
-    acknowledge(client, asked.message);
+        return refuse(client, request.message, "mode_auto is 1, so the device sets the range; set mode_auto to 0");
+    std::string why = findDiagnostic({{"scan_start", request.start, 0, end - shortest_scan}});
+    if (why.empty()) why = findDiagnostic({{"scan_length", request.length, shortest_scan, end - request.start}});
+    if (!why.empty()) return refuse(client, request.message, why);
+    start_ = request.start;
+    length_ = request.length;
+    acknowledge(client, request.message);
 }
 
 void Ping1dEmulator::startStream(PingClient client, uint16_t message) {

@@ -162,7 +162,7 @@ private:
 
     bool answerSetting(PingClient client, uint16_t requested);
     bool answerBoard(PingClient client, uint16_t requested);
-    void setRange(PingClient client, const Ping1dSetRange& asked);
+    void setRange(PingClient client, const Ping1dSetRange& request);
     /** Takes a value within bounds, and acknowledges it. */
     template <class Message, class Value>
     void set(PingClient client, const PingFrame& frame, const char* name, uint32_t min, uint32_t max, Value& value);

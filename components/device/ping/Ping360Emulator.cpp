@@ -25,19 +25,19 @@ std::string whyNot(uint8_t mode, const Ping360Acoustics& a) {
                            {"number_of_samples", a.samples, 200, 1200}});
 }
 
-std::string whyNot(const Ping360Transducer& asked) {
-    const std::string why = whyNot(asked.mode, asked.acoustics);
+std::string whyNot(const Ping360Transducer& request) {
+    const std::string why = whyNot(request.mode, request.acoustics);
     if (!why.empty()) return why;
-    return findDiagnostic({{"angle", asked.angle, 0, turn - 1}, {"transmit", asked.transmit, 0, 1}});
+    return findDiagnostic({{"angle", request.angle, 0, turn - 1}, {"transmit", request.transmit, 0, 1}});
 }
 
-std::string whyNot(const Ping360AutoTransmit& asked) {
-    const std::string why = whyNot(asked.mode, asked.acoustics);
+std::string whyNot(const Ping360AutoTransmit& request) {
+    const std::string why = whyNot(request.mode, request.acoustics);
     if (!why.empty()) return why;
-    return findDiagnostic({{"start_angle", asked.sector.start, 0, turn - 1},
-                           {"stop_angle", asked.sector.stop, 0, turn - 1},
-                           {"num_steps", asked.sector.steps, 1, 10},
-                           {"delay", asked.sector.delay_ms, 0, 100}});
+    return findDiagnostic({{"start_angle", request.sector.start, 0, turn - 1},
+                           {"stop_angle", request.sector.stop, 0, turn - 1},
+                           {"num_steps", request.sector.steps, 1, 10},
+                           {"delay", request.sector.delay_ms, 0, 100}});
 }
 
 /** Returns the shorter difference of two angles. */
@@ -68,12 +68,12 @@ Ping360Emulator::Ping360Emulator(const Ping360Config& config, double max_code)
       max_code_(max_code),
       state_(atBoot()) {}
 
-int Ping360Emulator::Scan::width() const { return (asked.sector.stop - asked.sector.start + turn) % turn; }
+int Ping360Emulator::Scan::width() const { return (request.sector.stop - request.sector.start + turn) % turn; }
 
-int Ping360Emulator::Scan::angle() const { return (asked.sector.start + offset) % turn; }
+int Ping360Emulator::Scan::angle() const { return (request.sector.start + offset) % turn; }
 
 void Ping360Emulator::Scan::advance() {
-    const int steps = asked.sector.steps;
+    const int steps = request.sector.steps;
     const auto within = [&](int to) { return to >= 0 && to <= width(); };
     if (width() > turn / 2) {
         offset = within(offset + steps) ? offset + steps : 0;
@@ -109,21 +109,22 @@ bool Ping360Emulator::answer(PingClient client, uint16_t requested, types::Time 
     state.data.clear();
     if (requested == Ping360DeviceData::message) send(client, state);
     if (requested == Ping360AutoDeviceData::message)
-        send(client, Ping360AutoDeviceData{
-                         state.mode, state.angle, state.acoustics, scan_ ? scan_->asked.sector : Ping360Sector{}, {}});
+        send(client,
+             Ping360AutoDeviceData{
+                 state.mode, state.angle, state.acoustics, scan_ ? scan_->request.sector : Ping360Sector{}, {}});
     return requested == Ping360DeviceData::message || requested == Ping360AutoDeviceData::message;
 }
 
-void Ping360Emulator::applyTransducer(PingClient client, const Ping360Transducer& asked) {
-    if (const std::string why = whyNot(asked); !why.empty()) return refuse(client, asked.message, why);
-    if (commands_.size() >= max_commands) return refuse(client, asked.message, "too many commands wait already");
+void Ping360Emulator::applyTransducer(PingClient client, const Ping360Transducer& request) {
+    if (const std::string why = whyNot(request); !why.empty()) return refuse(client, request.message, why);
+    if (commands_.size() >= max_commands) return refuse(client, request.message, "too many commands wait already");
     scan_.reset();
-    commands_.push_back({client, asked});
+    commands_.push_back({client, request});
 }
 
-void Ping360Emulator::applyAutoTransmit(PingClient client, const Ping360AutoTransmit& asked) {
-    if (const std::string why = whyNot(asked); !why.empty()) return refuse(client, asked.message, why);
-    scan_ = Scan{client, asked, ++scans_};
+void Ping360Emulator::applyAutoTransmit(PingClient client, const Ping360AutoTransmit& request) {
+    if (const std::string why = whyNot(request); !why.empty()) return refuse(client, request.message, why);
+    scan_ = Scan{client, request, ++scans_};
     if (phase_ == Phase::Idle) ready_ = {};
 }
 
@@ -149,10 +150,10 @@ void Ping360Emulator::reset(bool bootloader, types::Time now) {
     if (bootloader) setDeaf(now + types::Time::fromSeconds(boot_seconds));
 }
 
-void Ping360Emulator::turnTo(const Ping360Transducer& asked, types::Time now) {
-    const double seconds = config_.seconds_per_gradian * distanceBetween(state_.angle, asked.angle);
-    state_.angle = asked.angle;
-    state_.acoustics = asked.acoustics;
+void Ping360Emulator::turnTo(const Ping360Transducer& request, types::Time now) {
+    const double seconds = config_.seconds_per_gradian * distanceBetween(state_.angle, request.angle);
+    state_.angle = request.angle;
+    state_.acoustics = request.acoustics;
     ready_ = now + types::Time::fromSeconds(seconds);
     phase_ = Phase::Turning;
 }
@@ -160,12 +161,12 @@ void Ping360Emulator::turnTo(const Ping360Transducer& asked, types::Time now) {
 bool Ping360Emulator::begin(types::Time now) {
     scanning_ = commands_.empty();
     if (!scanning_) {
-        turnTo(commands_.front().asked, now);
+        turnTo(commands_.front().request, now);
         return true;
     }
     if (!scan_ || now < ready_) return false;
     scan_at_hand_ = scan_->number;
-    turnTo({1, static_cast<uint16_t>(scan_->angle()), scan_->asked.acoustics, 1, 0}, now);
+    turnTo({1, static_cast<uint16_t>(scan_->angle()), scan_->request.acoustics, 1, 0}, now);
     return true;
 }
 
@@ -186,14 +187,14 @@ void Ping360Emulator::finish(types::Time now, Bytes data) {
         const Command done = commands_.front();
         commands_.pop_front();
         if (done.client)
-            send(*done.client, Ping360DeviceData{1, done.asked.angle, done.asked.acoustics, std::move(data)});
+            send(*done.client, Ping360DeviceData{1, done.request.angle, done.request.acoustics, std::move(data)});
         return;
     }
     if (!scan_ || scan_->number != scan_at_hand_) return;
-    send(scan_->client, Ping360AutoDeviceData{1, state_.angle, state_.acoustics, scan_->asked.sector, std::move(data)},
-         true);
+    send(scan_->client,
+         Ping360AutoDeviceData{1, state_.angle, state_.acoustics, scan_->request.sector, std::move(data)}, true);
     scan_->advance();
-    ready_ = now + types::Time{1000 * scan_->asked.sector.delay_ms};
+    ready_ = now + types::Time{1000 * scan_->request.sector.delay_ms};
 }
 
 void Ping360Emulator::fail(types::Time now) {
@@ -210,7 +211,7 @@ bool Ping360Emulator::step(types::Time now) {
     if (phase_ == Phase::Idle) return begin(now);
     if (phase_ == Phase::Turning) {
         if (now < ready_) return false;
-        if (!scanning_ && commands_.front().asked.transmit == 0)
+        if (!scanning_ && commands_.front().request.transmit == 0)
             finish(now, {});
         else
             listen(now);

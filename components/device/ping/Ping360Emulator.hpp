@@ -149,12 +149,12 @@ public:
 private:
     struct Command {
         std::optional<PingClient> client;  ///< None: the client is gone.
-        Ping360Transducer asked;
+        Ping360Transducer request;
     };
     /** An automatic scan. */
     struct Scan {
         PingClient client;
-        Ping360AutoTransmit asked;
+        Ping360AutoTransmit request;
         uint32_t number;                ///< Since the beginning.
         int offset = 0, direction = 1;  ///< From the start, clockwise [gradian].
         int width() const;
@@ -169,11 +169,11 @@ private:
     void proceed(types::Time now) override;
     std::optional<types::Time> nextWork() const override;
 
-    void applyTransducer(PingClient client, const Ping360Transducer& asked);
-    void applyAutoTransmit(PingClient client, const Ping360AutoTransmit& asked);
+    void applyTransducer(PingClient client, const Ping360Transducer& request);
+    void applyAutoTransmit(PingClient client, const Ping360AutoTransmit& request);
     void reset(bool bootloader, types::Time now);
     bool begin(types::Time now);
-    void turnTo(const Ping360Transducer& asked, types::Time now);
+    void turnTo(const Ping360Transducer& request, types::Time now);
     void listen(types::Time now);
     bool step(types::Time now);
     void finish(types::Time now, Bytes data);

@@ -44,11 +44,11 @@ void PingTurn::ask(types::Time now) {
     wanted_.time = now;
     wanted_.range = speed_of_sound_ * listens_ / 2;
     unsent_ = wanted_;
-    asked_.add(now, after(std::max(now, due_), listens_));
+    requests_.add(now, after(std::max(now, due_), listens_));
 }
 
 bool PingTurn::take(const types::SonarPtr& ping, types::Time stamp, types::Time now) {
-    if (!asked_.awaits(stamp)) return false;
+    if (!requests_.awaits(stamp)) return false;
     if (ping->beam_count != 1 || ping->bin_count != wanted_.bin_count || !ping->wellShaped()) {
         warning_ = fmt::format(
             "pings have {} beams of {} bins where the driver asked for one of {}; connect `settings` to a sonar of one "
@@ -56,7 +56,7 @@ bool PingTurn::take(const types::SonarPtr& ping, types::Time stamp, types::Time 
             ping->beam_count, ping->bin_count, wanted_.bin_count);
         return false;
     }
-    asked_.clear();
+    requests_.clear();
     const double speed = static_cast<double>(ping->speed_of_sound);
     const bool other = speed > 0 && std::abs(speed / speed_of_sound_ - 1) > 1e-6;
     if (other) speed_of_sound_ = speed;
@@ -75,8 +75,8 @@ types::SonarPtr PingTurn::due(types::Time now) {
 }
 
 bool PingTurn::failed(types::Time now) {
-    if (!asked_.isLate(now)) return false;
-    asked_.clear();
+    if (!requests_.isLate(now)) return false;
+    requests_.clear();
     return true;
 }
 
@@ -93,9 +93,9 @@ std::optional<types::Time> PingDevice::wakeAt() const {
 }
 
 std::optional<types::SonarSettings> PingDevice::consumeRequest() {
-    auto asked = turn_.consumeRequest();
-    if (asked) asked->time = steady_.clock(asked->time);
-    return asked;
+    auto request = turn_.consumeRequest();
+    if (request) request->time = steady_.clock(request->time);
+    return request;
 }
 
 void PingDevice::receive(PingClient client, std::span<const uint8_t> bytes, bool datagram, types::Time clock) {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "components/device/AskedPings.hpp"
+#include "components/device/RequestedPings.hpp"
 #include "components/device/ping/PingProtocol.hpp"
 #include "types/Time.hpp"
 #include "types/samples/Sonar.hpp"
@@ -48,20 +48,20 @@ public:
     bool take(const types::SonarPtr& ping, types::Time stamp, types::Time now);
     /** Requests a ping again that has not arrived, after the clock was set back. */
     void repeat(types::Time now) {
-        if (!asked_.empty()) ask(now);
+        if (!requests_.empty()) ask(now);
     }
     void drop() {
-        asked_.clear();
+        requests_.clear();
         ping_.reset();
     }
 
-    bool underWay() const { return ping_ || !asked_.empty(); }
+    bool underWay() const { return ping_ || !requests_.empty(); }
     /** Returns the ping once it has arrived and is due; this ends the request. */
     types::SonarPtr due(types::Time now);
     /** Whether no ping has arrived in time; this ends the request. */
     bool failed(types::Time now);
     /** The next time at which due() or failed() can succeed, during a request. */
-    types::Time next() const { return ping_ ? due_ : asked_.deadline(); }
+    types::Time next() const { return ping_ ? due_ : requests_.deadline(); }
     /** Returns the request to send to the sonar, once. */
     std::optional<types::SonarSettings> consumeRequest() { return std::exchange(unsent_, {}); }
     double speedOfSound() const { return speed_of_sound_; }  ///< Speed of sound in the water [m/s].
@@ -72,7 +72,7 @@ private:
     void ask(types::Time now);
 
     types::SonarSettings wanted_;
-    AskedPings<> asked_;
+    RequestedPings<> requests_;
     std::optional<types::SonarSettings> unsent_;
     double listens_ = 0, speed_of_sound_ = 1500;
     bool again_ = false;  ///< Requested a second time.

@@ -36,7 +36,7 @@ void PingDeviceTask::send(Client client, PingOutgoing out) {
 
 void PingDeviceTask::sendWhatIsWanted() {
     for (PingOutgoing& out : device_->consumeOutgoing()) send(getClient(out.client), std::move(out));
-    if (const auto asked = device_->consumeRequest()) settings.write(*asked);
+    if (const auto request = device_->consumeRequest()) settings.write(*request);
     for (const std::string& warning : device_->consumeWarnings()) warn(warning);
 }
 

@@ -287,16 +287,17 @@ void Sonar3dEmulator::ask(types::Time now) {
     const sonars::SonarMode& mode = Sonar3dDevice::mode(state_.high_frequency);
     const double columns = mode.beam_count;  // the opening is between the outermost, field_of_view to the edges
     settings.field_of_view = types::Angle::fromDeg(mode.field_of_view_deg * columns / (columns - 1));
-    Sonar3dState asked = state_;
-    asked.speed_of_sound = settings.speed_of_sound;
-    asked_.add(now, now + types::Time::fromSeconds(2 * settings.range / settings.speed_of_sound), std::move(asked));
+    Sonar3dState request = state_;
+    request.speed_of_sound = settings.speed_of_sound;
+    requests_.add(now, now + types::Time::fromSeconds(2 * settings.range / settings.speed_of_sound),
+                  std::move(request));
     last_ = now;
     outlet_.ask(settings);
 }
 
 types::Time Sonar3dEmulator::follow(types::Time clock) {
     const types::Time now = steady_.read(clock);
-    if (steady_.jumpedBack() && state_.acoustics && !asked_.empty()) ask(now);
+    if (steady_.jumpedBack() && state_.acoustics && !requests_.empty()) ask(now);
     return now;
 }
 
@@ -308,21 +309,21 @@ std::optional<types::Time> Sonar3dEmulator::tick(types::Time clock) {
 
 types::Time Sonar3dEmulator::workAt(types::Time now) {
     types::Time due = last_ ? *last_ + types::Time::fromSeconds(period()) : now;
-    if (!asked_.empty()) due = std::max(due, asked_.deadline());
+    if (!requests_.empty()) due = std::max(due, requests_.deadline());
     if (now < due) return due;
-    if (!asked_.empty() && !std::exchange(warned_, true))
+    if (!requests_.empty() && !std::exchange(warned_, true))
         outlet_.warn("a requested ping gave no range image; another is requested");
     ask(now);
     return now + types::Time::fromSeconds(period());
 }
 
-RipImage Sonar3dEmulator::getFrame(const types::DepthMap& map, const Sonar3dState& asked) const {
+RipImage Sonar3dEmulator::getFrame(const types::DepthMap& map, const Sonar3dState& request) const {
     RipImage image;
     image.time = deviceTime(map.time);
     image.sequence = sequence_;
-    image.speed_of_sound = static_cast<float>(asked.speed_of_sound);
-    image.range = static_cast<float>(asked.range_max);
-    image.frequency_hz = static_cast<uint32_t>(std::lround(1e3 * frequencyKhz(asked)));
+    image.speed_of_sound = static_cast<float>(request.speed_of_sound);
+    image.range = static_cast<float>(request.range_max);
+    image.frequency_hz = static_cast<uint32_t>(std::lround(1e3 * frequencyKhz(request)));
     image.width = map.horizontal_size;
     image.height = map.vertical_size;
     image.field_of_view_deg = static_cast<float>(degreesBetween(map.horizontal_interval));
@@ -337,23 +338,23 @@ void Sonar3dEmulator::send(const Bytes& packet) {
 }
 
 void Sonar3dEmulator::setPing(const types::DepthMap& map) {
-    const auto asked = asked_.take(steady_.steady(map.time));
-    if (!asked) return;
+    const auto request = requests_.take(steady_.steady(map.time));
+    if (!request) return;
     warned_ = false;
     ++sequence_;
-    if (state_.acoustics && state_.udp_mode != "disabled") sendImages(map, *asked);
+    if (state_.acoustics && state_.udp_mode != "disabled") sendImages(map, *request);
 }
 
-void Sonar3dEmulator::sendImages(const types::DepthMap& map, const Sonar3dState& asked) {
+void Sonar3dEmulator::sendImages(const types::DepthMap& map, const Sonar3dState& request) {
     RangePixels ranges;
     StrengthPixels strengths;
-    static_cast<RipImage&>(ranges) = static_cast<RipImage&>(strengths) = getFrame(map, asked);
-    ranges.pixel_scale = static_cast<float>(std::max(millimetre, asked.range_max / UINT16_MAX));
+    static_cast<RipImage&>(ranges) = static_cast<RipImage&>(strengths) = getFrame(map, request);
+    ranges.pixel_scale = static_cast<float>(std::max(millimetre, request.range_max / UINT16_MAX));
     const auto loudest = map.remissions.empty() ? map.remissions.end() : std::ranges::max_element(map.remissions);
     for (size_t row = map.vertical_size; row-- > 0;)  // the lowest first
         for (size_t column = 0; column < map.horizontal_size; ++column) {
             const size_t cell = row * map.horizontal_size + column;
-            const double range = rangeWithin(asked, map.distances[cell], map.bin_width);
+            const double range = rangeWithin(request, map.distances[cell], map.bin_width);
             const bool seen = range > 0;
             const double pixel = std::round(range / static_cast<double>(ranges.pixel_scale));
             ranges.pixels.push_back(static_cast<uint32_t>(std::min<double>(pixel, UINT16_MAX)));

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "components/device/AskedPings.hpp"
+#include "components/device/RequestedPings.hpp"
 #include "components/device/sonar3d/Rip2.hpp"
 #include "components/device/wire/Http.hpp"
 #include "components/sonars/Sonars.hpp"
@@ -99,14 +99,14 @@ private:
     double frequencyKhz(const Sonar3dState& state) const {
         return state.high_frequency ? device_.high_frequency_khz : device_.low_frequency_khz;
     }
-    RipImage getFrame(const types::DepthMap& map, const Sonar3dState& asked) const;
-    void sendImages(const types::DepthMap& map, const Sonar3dState& asked);
+    RipImage getFrame(const types::DepthMap& map, const Sonar3dState& request) const;
+    void sendImages(const types::DepthMap& map, const Sonar3dState& request);
     void send(const Bytes& packet);
 
     Sonar3dDevice device_;
     Outlet outlet_;
     Sonar3dState state_;
-    AskedPings<Sonar3dState> asked_{8};  ///< With the state at each request.
+    RequestedPings<Sonar3dState> requests_{8};  ///< With the state at each request.
     types::SteadyTime steady_;
     std::optional<types::Time> last_;
     std::optional<types::Time> shift_;  ///< Of the device's clock from steady time, once a client has set it.

@@ -36,12 +36,12 @@ private:
     void listen(Network& network) override {
         network.listenTcp(config->address, static_cast<uint16_t>(config->port));
         clients_.clear();
-        emulator_.emplace(config->device,
-                          Sonar3dEmulator::Outlet{[this](const types::SonarSettings& asked) { settings.write(asked); },
-                                                  [this](const std::string& address, uint16_t port, Bytes packet) {
-                                                      this->network().sendTo(address, port, std::move(packet));
-                                                  },
-                                                  [this](const std::string& text) { warn(text); }});
+        emulator_.emplace(config->device, Sonar3dEmulator::Outlet{
+                                              [this](const types::SonarSettings& request) { settings.write(request); },
+                                              [this](const std::string& address, uint16_t port, Bytes packet) {
+                                                  this->network().sendTo(address, port, std::move(packet));
+                                              },
+                                              [this](const std::string& text) { warn(text); }});
     }
     void opened(Client client) override { clients_[client]; }
     void received(Client client, std::span<const uint8_t> bytes) override {

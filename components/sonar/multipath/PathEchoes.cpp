@@ -93,7 +93,7 @@ private:
     bool isActive(int i) const { return rays_.towards.active >> i & 1; }
     glm::dvec3 from(int i) const { return {rays_.from_x[i], rays_.from_y[i], rays_.from_z[i]}; }
     glm::dvec3 towards(int i) const { return {rays_.towards.x[i], rays_.towards.y[i], rays_.towards.z[i]}; }
-    glm::dvec3 met(int i) const { return from(i) + double{hits_.distance[i]} * towards(i); }
+    glm::dvec3 hitPoint(int i) const { return from(i) + double{hits_.distance[i]} * towards(i); }
     double reflected(uint32_t command) const { return paths_.reflected_[scene_.commands[command].material]; }
     void drop(int i) { rays_.towards.active &= ~(1u << i); }
 
@@ -291,7 +291,7 @@ void PathEchoes::Tracer::findBacks() {
         back.share = 0;
         on.nearest[i] = 1, on.farthest[i] = 0;
         if (!isActive(i) || hits_.command[i] == TileHits::nothing || chain.count == 0 || chain.was_in_fill) continue;
-        const glm::dvec3 at = met(i);
+        const glm::dvec3 at = hitPoint(i);
         const double range = glm::length(at),
                      mean = 0.5 * (range + lengths_[static_cast<size_t>(i)] + double{hits_.distance[i]});
         const MirrorPlane plane = planeMet(scene_, hits_, i);

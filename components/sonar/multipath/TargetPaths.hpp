@@ -37,11 +37,11 @@ public:
                   WallArrivals& arrivals);
 
 private:
-    double pass(const Sightlines::WallMet& met, WallArrivals& arrivals) const;
+    double pass(const Sightlines::WallHit& hit, WallArrivals& arrivals) const;
 
     const RenderPlan& plan_;
     std::vector<bool> are_walls_;  ///< One for each material; empty: none is a wall.
-    std::vector<Sightlines::WallMet> met_;
+    std::vector<Sightlines::WallHit> hits_;
 };
 
 /** One sound path between the sonar and a point. */

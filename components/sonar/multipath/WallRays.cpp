@@ -124,9 +124,9 @@ double WallRays::mirrored(int i) {
     if (!run.facets || !Reverberation::isFlat(run.facets[hits_.triangle[i]])) return 0;
     const bool from_within = rays_[static_cast<size_t>(i)].isWithin(getObject(i));
     const double within = from_within && getWall(i).fill ? getWall(i).fill->within : 1;
-    TracedTile met = tile_;
-    met.hits = &hits_;
-    return std::min(scene_.computeMean(reverberation_.mirrored, view_, met, i) * within, 1.0);
+    TracedTile hit_tile = tile_;
+    hit_tile.hits = &hits_;
+    return std::min(scene_.computeMean(reverberation_.mirrored, view_, hit_tile, i) * within, 1.0);
 }
 
 void WallRays::reflect(int i, PathRays& on) {

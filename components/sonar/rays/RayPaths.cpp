@@ -187,22 +187,22 @@ glm::dvec3 RayPaths::movedBy(const glm::dvec3& direction, double range, const Dr
     // Sent from the origin and received at `there`, 2 `range` / c later, from direction `ray`: an ellipsoid about both.
     const glm::dvec3 there = velocity_ * back;
     const double leg = (4 * range * range - glm::dot(there, there)) / (4 * range + 2 * glm::dot(ray, there));
-    const glm::dvec3 met = there + leg * ray;
-    return drift ? met - drift->at(met) * ((2 * range - leg) / c) : met;
+    const glm::dvec3 point = there + leg * ray;
+    return drift ? point - drift->at(point) * ((2 * range - leg) / c) : point;
 }
 
 glm::dvec3 RayPaths::at(const glm::dvec3& direction, double range, const Drift* drift) const {
-    glm::dvec3 met = direction * range;
+    glm::dvec3 point = direction * range;
     if (moves_ && range > 0) {
-        const glm::dvec3 closing = velocity_ - (drift ? drift->at(met) : glm::dvec3(0));
+        const glm::dvec3 closing = velocity_ - (drift ? drift->at(point) : glm::dvec3(0));
         range = std::max(range + coupling_ * glm::dot(closing, direction), 1e-9);
-        met = movedBy(direction, range, drift);
+        point = movedBy(direction, range, drift);
     }
-    if (!table_) return met;
+    if (!table_) return point;
     const glm::dvec3 ray = world_from_sonar_ * direction;
     const RayTable::Place place = table_->at(std::asin(std::clamp(ray.z, -1.0, 1.0)), range);
     const glm::dvec3 bent = glm::dvec3(place.spread * ray.x, place.spread * ray.y, place.rise) * world_from_sonar_;
-    return bent + (met - range * direction);
+    return bent + (point - range * direction);
 }
 
 double RayPaths::nearLimit(double inverse_distance) const {

@@ -141,10 +141,10 @@ void take(const RTCRayHit16& all, TileHits& hits, const auto& meaning) {
         for (int i = 0; i < tile_samples; ++i) hits.triangle[i] = part.first_triangle + all.hit.primID[i];
     }
     for (int i = 0; i < tile_samples; ++i) {
-        const bool met = geometry[i] != RTC_INVALID_GEOMETRY_ID;
-        hits.u[i] = met ? all.hit.u[i] : hits.u[i];
-        hits.v[i] = met ? all.hit.v[i] : hits.v[i];
-        hits.distance[i] = met ? all.ray.tfar[i] : hits.distance[i];
+        const bool is_hit = geometry[i] != RTC_INVALID_GEOMETRY_ID;
+        hits.u[i] = is_hit ? all.hit.u[i] : hits.u[i];
+        hits.v[i] = is_hit ? all.hit.v[i] : hits.v[i];
+        hits.distance[i] = is_hit ? all.ray.tfar[i] : hits.distance[i];
     }
 }
 
@@ -540,9 +540,9 @@ uint32_t RayVisibility::blocked(const PathRays& rays) const {
         direct(Rows(mover.from_sonar), mover.place, rays, all);
         occlude(mover.tree, valid.of, are_coherent, all);
     }
-    uint32_t met = 0;
-    for (int i = 0; i < tile_samples; ++i) met |= static_cast<uint32_t>(all.tfar[i] < 0) << i;
-    return met & rays.towards.active;
+    uint32_t is_hit = 0;
+    for (int i = 0; i < tile_samples; ++i) is_hit |= static_cast<uint32_t>(all.tfar[i] < 0) << i;
+    return is_hit & rays.towards.active;
 }
 
 }  // namespace insonify::sonar

@@ -31,9 +31,9 @@ public:
     void add(const TracedTile& tile) {
         const uint32_t same = sameAsNext(*tile.hits);
         for (int i = 0; i < tile_samples;) {
-            const bool met = tile.hits->command[i] != TileHits::nothing;
-            const int merged = met && !tile.apparent ? sameFrom(same, i) : 1;
-            if (met)
+            const bool is_hit = tile.hits->command[i] != TileHits::nothing;
+            const int merged = is_hit && !tile.apparent ? sameFrom(same, i) : 1;
+            if (is_hit)
                 addCell(tile, i, merged);
             else if (echoes_from_misses_)
                 addMiss(tile, i);

@@ -124,7 +124,7 @@ bool Sightlines::isOpen(const glm::dvec3& from, const glm::dvec3& to) const {
 }
 
 bool Sightlines::findWalls(const glm::dvec3& from, const glm::dvec3& to, const std::vector<bool>& are_walls,
-                           std::vector<WallMet>& walls) const {
+                           std::vector<WallHit>& walls) const {
     const glm::dvec3 end = to - from;
     const double range = glm::length(end);
     walls.clear();
@@ -138,7 +138,7 @@ bool Sightlines::findWalls(const glm::dvec3& from, const glm::dvec3& to, const s
         };
         if (anyMet(i, from, end, hides)) return false;
     }
-    std::ranges::sort(walls, {}, &WallMet::range);
+    std::ranges::sort(walls, {}, &WallHit::range);
     return true;
 }
 

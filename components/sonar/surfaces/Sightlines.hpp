@@ -27,7 +27,7 @@ public:
     /** Returns whether one point in the world is visible from another. */
     bool isOpen(const glm::dvec3& from, const glm::dvec3& to) const;
     /** A wall that a line of sight crosses. */
-    struct WallMet {
+    struct WallHit {
         double range;     ///< From the line's start [m].
         double cosine;    ///< Cosine of the angle between the line and the wall's normal [1].
         size_t material;  ///< [1]
@@ -36,7 +36,7 @@ public:
      *  where a surface of another material hides one point from the other. A line through the common edge of two
      *  triangles crosses both. */
     bool findWalls(const glm::dvec3& from, const glm::dvec3& to, const std::vector<bool>& are_walls,
-                   std::vector<WallMet>& walls) const;
+                   std::vector<WallHit>& walls) const;
     /** Returns the object that encloses the sonar, of which it sees only back faces; none where it is in open water. */
     std::optional<uint32_t> enclosing() const;
 

@@ -120,13 +120,15 @@ Json getMethods(const ErrorResult& result) {
                       {"method", getName(method)},
                       {"slope", fitted ? Json(*fitted) : Json()},
                       {"points", Json::array()}};
-            for (const double goal : goals) {
-                const auto time = timeTo(goal, points);
-                const std::string key = fmt::format("ms_to_{:g}_percent", 100 * goal);
-                each[key] = time ? Json(time->ms) : Json();
-                each[key + "_is"] = time ? Json(getName(time->kind)) : Json();
-                each[key + "_open"] = goal < blurred * reference.error;
-            }
+            for (const double goal : goals)
+                for (const auto& [measure, ending] :
+                     {std::pair(with_gain, ""), std::pair(without_gain, "_without_gain")}) {
+                    const auto time = timeTo(goal, points, measure);
+                    const std::string key = fmt::format("ms_to_{:g}_percent{}", 100 * goal, ending);
+                    each[key] = time ? Json(time->ms) : Json();
+                    each[key + "_is"] = time ? Json(getName(time->kind)) : Json();
+                    each[key + "_open"] = goal < blurred * referenceError(result, reference.scene, measure);
+                }
             for (const Measurement& m : points) each["points"].push_back(toJson(m, result));
             all.push_back(std::move(each));
         }

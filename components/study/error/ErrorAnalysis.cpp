@@ -51,14 +51,15 @@ void evaluateFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
     const auto footprint = ladder(result, "flat_bottom", Method::Footprint),
                nearest = ladder(result, "flat_bottom", Method::Nearest);
     if (footprint.empty() || nearest.empty()) return;
-    const auto slow = timeTo(0.01, nearest), fast = timeTo(0.01, footprint);
+    const auto slow = timeTo(0.01, nearest, without_gain), fast = timeTo(0.01, footprint, without_gain);
     if (slow && fast)
-        all.push_back({"flat bottom, error of 1 %: time of nearest bin over that of footprints" + marked(*slow, *fast),
+        all.push_back({"flat bottom, error of 1 % without gain: time of nearest bin over that of footprints" +
+                           marked(*slow, *fast),
                        slow->ms / fast->ms, 30, false,
                        marked(*slow, *fast).empty() || std::min(nearest.size(), footprint.size()) >= slope_points,
                        true});
     const double ms = std::min(nearest.back().median_ms, footprint.back().median_ms);
-    all.push_back({fmt::format("flat bottom, {:.3g} ms: error of nearest bin over that of footprints", ms),
+    all.push_back({fmt::format("flat bottom, {:.3g} ms: error without gain of nearest bin over that of footprints", ms),
                    *errorAt(ms, nearest) / *errorAt(ms, footprint), 20, false, true, true});
 }
 
@@ -90,10 +91,10 @@ void evaluateComputed(const ErrorResult& result, std::vector<Claim>& all) {
                                    reference.rays),
                        minimum / reference.error, reference_margin, false, false});
         const auto traced = ladder(result, reference.scene, Method::Embree);
-        const auto rays = timeTo(0.01, traced),
-                   drawn = timeTo(0.01, ladder(result, reference.scene, Method::Footprint));
+        const auto rays = timeTo(0.01, traced, with_gain),
+                   drawn = timeTo(0.01, ladder(result, reference.scene, Method::Footprint), with_gain);
         if (!rays || !drawn || rays->kind == ReachTime::Kind::AtMost) continue;
-        const bool settled = reference.error * reference_margin <= 0.01 && marked(*rays, *drawn).empty();
+        const bool settled = reference.error_tvg * reference_margin <= 0.01 && marked(*rays, *drawn).empty();
         all.push_back({fmt::format("{}, error of 1 %: time of rays (Embree) over that of footprints{}", reference.scene,
                                    marked(*rays, *drawn)),
                        rays->ms / drawn->ms, 1 / as_fast_as_rays, false, settled, true});
@@ -126,18 +127,22 @@ void addReferences(Out out, const ErrorResult& result) {
 
 void addTimes(Out out, const ErrorResult& result) {
     fmt::format_to(out,
-                   "\n## Time of a ping to an error\n\n| scene | method | 10 % [ms] | 1 % [ms] | 0.1 % [ms] | error "
-                   "falls as cells to the |\n| --- | --- | --- | --- | --- | --- |\n");
+                   "\n## Time of a ping to an error\n\nErrors after a gain of 50 log10(range), in brackets without "
+                   "it.\n\n| scene | method");
+    for (const double goal : goals) fmt::format_to(out, " | {:g} % [ms]", 100 * goal);
+    fmt::format_to(out, " | error without gain falls as cells to the |\n| --- | --- | --- | --- | --- | --- | --- |\n");
     for (const Reference& reference : result.references)
         for (const Method method : methods) {
             const auto points = ladder(result, reference.scene, method);
             if (points.empty()) continue;
             fmt::format_to(out, "| {} | {}", reference.scene, getName(method));
-            for (const double goal : goals) {
-                const auto time = timeTo(goal, points);
-                fmt::format_to(out, " | {}{}", time ? time->text() : "never",
-                               goal < blurred * reference.error ? " (open)" : "");
-            }
+            const auto text = [&](double goal, Measure measure) {
+                const auto time = timeTo(goal, points, measure);
+                return (time ? time->text() : "never") +
+                       (goal < blurred * referenceError(result, reference.scene, measure) ? " (open)" : "");
+            };
+            for (const double goal : goals)
+                fmt::format_to(out, " | {} [{}]", text(goal, with_gain), text(goal, without_gain));
             const auto power = slope(points, reference.error);
             fmt::format_to(out, " | {} |\n", power ? fmt::format("{:.2f}", *power) : "");
         }
@@ -184,9 +189,10 @@ void addPoints(Out out, const ErrorResult& result) {
 
 }  // namespace
 
-double referenceError(const ErrorResult& result, const std::string& scene) {
+double referenceError(const ErrorResult& result, const std::string& scene, Measure measure) {
     const auto found = std::ranges::find(result.references, scene, &Reference::scene);
-    return found == result.references.end() ? 0 : found->error;
+    if (found == result.references.end()) return 0;
+    return measure == with_gain ? found->error_tvg : found->error;
 }
 
 std::vector<Measurement> ladder(const ErrorResult& result, const std::string& scene, Method method) {
@@ -230,16 +236,17 @@ std::string ReachTime::text() const {
     return "";
 }
 
-std::optional<ReachTime> timeTo(double error, const std::vector<Measurement>& points) {
+std::optional<ReachTime> timeTo(double error, const std::vector<Measurement>& points, Measure measure) {
     if (points.empty()) return std::nullopt;
-    if (points.front().metrics.rel_l2 <= error) return ReachTime{points.front().median_ms, ReachTime::Kind::AtMost};
+    if (points.front().metrics.*measure <= error) return ReachTime{points.front().median_ms, ReachTime::Kind::AtMost};
     for (size_t i = 1; i < points.size(); ++i) {
         const Measurement &coarse = points[i - 1], &fine = points[i];
-        if (fine.metrics.rel_l2 > error && i + 1 < points.size()) continue;
-        if (fine.metrics.rel_l2 >= coarse.metrics.rel_l2) return std::nullopt;
-        const double ms = onLine(error, coarse.metrics.rel_l2, coarse.median_ms, fine.metrics.rel_l2, fine.median_ms);
+        const double before = coarse.metrics.*measure, after = fine.metrics.*measure;
+        if (after > error && i + 1 < points.size()) continue;
+        if (after >= before) return std::nullopt;
+        const double ms = onLine(error, before, coarse.median_ms, after, fine.median_ms);
         if (!(ms < farthest_extension * fine.median_ms)) return std::nullopt;
-        if (fine.metrics.rel_l2 > error) return ReachTime{ms, ReachTime::Kind::Extrapolated, ms / fine.median_ms};
+        if (after > error) return ReachTime{ms, ReachTime::Kind::Extrapolated, ms / fine.median_ms};
         return ReachTime{ms, ReachTime::Kind::Interpolated};
     }
     return std::nullopt;
@@ -258,7 +265,7 @@ std::optional<double> errorAt(double ms, const std::vector<Measurement>& points)
 bool onParetoFront(const Measurement& point, const ErrorResult& result) {
     return std::ranges::none_of(result.measurements, [&](const Measurement& other) {
         return other.scene == point.scene && other.median_ms < point.median_ms &&
-               other.metrics.rel_l2 < point.metrics.rel_l2;
+               other.metrics.rel_l2_tvg < point.metrics.rel_l2_tvg;
     });
 }
 

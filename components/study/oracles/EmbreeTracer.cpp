@@ -90,7 +90,7 @@ struct EmbreeTracer::Fan {
     std::vector<double> inverse_edges;                ///< 1 / far edge of each bin [1/m].
     std::vector<double> sums;                         ///< [stripe][beam][bin]
     std::vector<double> longest;                      ///< For each part: max number of bins that a cell covered.
-    std::vector<size_t> met;                          ///< For each part: rays that hit something.
+    std::vector<size_t> hits;                         ///< For each part: rays that hit something.
     double kappa_max = 0;
 
     int groups() const { return (beams + tile - 1) / tile; }
@@ -114,14 +114,14 @@ public:
           first_column_(group_ * tile * fan.columns_per_beam),
           end_column_(std::min(first_column_ + tile * fan.columns_per_beam, static_cast<int>(fan.columns.size()))) {}
 
-    /** Calls `met` with column, row and triangle for each ray that hits something. */
-    void trace(const auto& met) {
+    /** Calls `on_hit` with column, row and triangle for each ray that hits something. */
+    void trace(const auto& on_hit) {
         const auto rows = static_cast<int>(fan_.rows.size());
         const int tiles = (rows + tile - 1) / tile;
         const int first = tile * (tiles * stripe_ / fan_.stripes), end = tile * (tiles * (stripe_ + 1) / fan_.stripes);
         for (int column = first_column_; column < end_column_; column += tile)
             for (int row = first; row < std::min(end, rows); row += tiles_up * tile)
-                traceTiles(column, row, std::min(end, rows), met);
+                traceTiles(column, row, std::min(end, rows), on_hit);
     }
 
     void clear() {
@@ -155,7 +155,7 @@ public:
 
 private:
     /** Traces tiles one above the other, up to a row. */
-    void traceTiles(int column, int first_row, int end_row, const auto& met) {
+    void traceTiles(int column, int first_row, int end_row, const auto& on_hit) {
         std::array<RayTree::Rays, RayTree::packets_at_once> rays;
         std::array<RayTree::Found, RayTree::packets_at_once> found;
         const int across = std::min(tile, end_column_ - column), up = std::min(tiles_up * tile, end_row - first_row);
@@ -173,7 +173,7 @@ private:
                 const RayTree::Found& in_tile = found[static_cast<size_t>(j / tile)];
                 if (const uint32_t triangle = in_tile[static_cast<size_t>(tile * (j % tile) + i)];
                     triangle != RayTree::none)
-                    met(column + i, first_row + j, triangle);
+                    on_hit(column + i, first_row + j, triangle);
             }
     }
 
@@ -253,7 +253,7 @@ void EmbreeTracer::prepare(const sonar::SonarConfig& config) {
     for (int k = 0; k < grid.bin_count; ++k) fan.inverse_edges.push_back(1 / grid.edge(k + 1));
     fan.sums.assign(static_cast<size_t>(fan.stripes) * static_cast<size_t>(fan.beams) * fan.bins, 0);
     fan.longest.assign(static_cast<size_t>(fan.parts()), 0);
-    fan.met.assign(static_cast<size_t>(fan.parts()), 0);
+    fan.hits.assign(static_cast<size_t>(fan.parts()), 0);
 }
 
 void EmbreeTracer::render(const types::Pose& sonar, std::vector<float>& energies) {
@@ -277,12 +277,12 @@ void EmbreeTracer::render(const types::Pose& sonar, std::vector<float>& energies
 size_t EmbreeTracer::traceOnly(const types::Pose& sonar) {
     Fan& fan = *fan_;
     fan.workers.forEach(fan.parts(), [&](int number) {
-        size_t met = 0;
-        Part<Fan>(fan, sonar, number).trace([&](int, int, uint32_t) { ++met; });
-        fan.met[static_cast<size_t>(number)] = met;
+        size_t hits = 0;
+        Part<Fan>(fan, sonar, number).trace([&](int, int, uint32_t) { ++hits; });
+        fan.hits[static_cast<size_t>(number)] = hits;
     });
     size_t sum = 0;
-    for (const size_t met : fan.met) sum += met;
+    for (const size_t hits : fan.hits) sum += hits;
     return sum;
 }
 
@@ -330,8 +330,8 @@ public:
         for (size_t i = 0; i < directions.size(); ++i) {
             const bool is_direct = computeRange(direct[i], from_, directions[i]) < to_surface[i];
             const glm::dvec3 &origin = is_direct ? from_ : image_, &d = is_direct ? directions[i] : below[i];
-            const uint32_t met = is_direct ? direct[i] : std::isfinite(to_surface[i]) ? reflected[i] : RayTree::none;
-            points_[i] = {met, origin, d, computeRange(met, origin, d), is_direct};
+            const uint32_t hit = is_direct ? direct[i] : std::isfinite(to_surface[i]) ? reflected[i] : RayTree::none;
+            points_[i] = {hit, origin, d, computeRange(hit, origin, d), is_direct};
         }
         receiveBothWays();
         receiveOtherWays();

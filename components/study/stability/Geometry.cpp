@@ -30,14 +30,14 @@ Outcome computeError(const Shape& shape, double length, std::initializer_list<do
     for (const double frequency : {100., 300., 1000., 3000.})
         for (const int around : {32, 256, 2048})
             for (const double number : numbers) {
-                Encounter met{frequency, number, around, 0.3};
-                if (length > 0) met.range = length * length / (met.wavelength() * number);
-                const Target target = shape(met);
-                const double error = targetError(met, target, targetSonar(met, target, samples));
+                Encounter encounter{frequency, number, around, 0.3};
+                if (length > 0) encounter.range = length * length / (encounter.wavelength() * number);
+                const Target target = shape(encounter);
+                const double error = targetError(encounter, target, targetSonar(encounter, target, samples));
                 if (!(std::abs(error) <= worst)) {
                     worst = std::abs(error);
                     where = fmt::format("{:.2f} dB at {} kHz, {} facets around, {:.0f} m", error, frequency, around,
-                                        met.range);
+                                        encounter.range);
                 }
             }
     received.ping.bins = {1};
@@ -47,8 +47,8 @@ Outcome computeError(const Shape& shape, double length, std::initializer_list<do
 Outcome far(const Shape& shape, double length) { return computeError(shape, length, {0.05, 0.1}); }
 Outcome near(const Shape& shape, double length) { return computeError(shape, length, {8, 20}); }
 
-Target cylinder(const Encounter& met, double tilt_deg) {
-    return cylinderTarget(met, 0.1, 0.5, types::radians(tilt_deg));
+Target cylinder(const Encounter& encounter, double tilt_deg) {
+    return cylinderTarget(encounter, 0.1, 0.5, types::radians(tilt_deg));
 }
 
 using types::radians;
@@ -157,12 +157,12 @@ Outcome straightDown() {
 
 std::vector<StabilityCase> targetCases() {
     const std::string expected = "to 0.5 dB with 32 to 2048 facets around, 100 kHz to 3 MHz";
-    const auto sphere = [](const Encounter& met) { return ellipsoidTarget(met, 0.1, 0.1, 0.1); };
-    const auto egg = [](const Encounter& met) { return ellipsoidTarget(met, 1, 0.6, 0.4); };
-    const auto plate = [](const Encounter& met) { return plateTarget(met, 0.5, 0.3); };
-    const auto pipe = [](const Encounter& met) { return cylinder(met, 0); };
-    const auto cone = [](const Encounter& met) { return coneTarget(met, 0.15, 0.5); };
-    const auto hull = [](const Encounter& met) { return hullTarget(met, 0.1, 1); };
+    const auto sphere = [](const Encounter& encounter) { return ellipsoidTarget(encounter, 0.1, 0.1, 0.1); };
+    const auto egg = [](const Encounter& encounter) { return ellipsoidTarget(encounter, 1, 0.6, 0.4); };
+    const auto plate = [](const Encounter& encounter) { return plateTarget(encounter, 0.5, 0.3); };
+    const auto pipe = [](const Encounter& encounter) { return cylinder(encounter, 0); };
+    const auto cone = [](const Encounter& encounter) { return coneTarget(encounter, 0.15, 0.5); };
+    const auto hull = [](const Encounter& encounter) { return hullTarget(encounter, 0.1, 1); };
     std::vector<StabilityCase> cases = {
         {61, "Sphere", expected,
          [=] {
@@ -183,8 +183,8 @@ std::vector<StabilityCase> targetCases() {
     for (const double tilt : {1., 3., 10.})
         cases.push_back({61, fmt::format("Cylinder {:.0f} deg off broadside", tilt),
                          "to 1 dB with 32 to 2048 facets around, 100 kHz to 3 MHz; means of sidelobes", [=] {
-                             return computeError([=](const Encounter& met) { return cylinder(met, tilt); }, 0,
-                                                 {50, 200}, tilted_tolerance);
+                             return computeError([=](const Encounter& encounter) { return cylinder(encounter, tilt); },
+                                                 0, {50, 200}, tilted_tolerance);
                          }});
     return cases;
 }
