@@ -17,14 +17,23 @@ SubscriberTask::~SubscriberTask() { cleanupHook(); }
 
 types::Notices SubscriberTask::notices() const {
     types::Notices all;
-    for (const auto* counted : {&drops_, &odd_})
+    for (const TopicIn& topic : config->namedBy(environment().names, name()).topics)
+        if (topic.type == PoseType::NavSatFix && !topic.orientation)
+            all.push_back(topic.topic + " has only positions: the body is level and looks to the north");
+    for (const auto* counted : counts_.all())
         for (std::string& line : counted->summary()) all.push_back(std::move(line));
     return all;
 }
 
+void SubscriberTask::checkMore(types::Diagnostics& diagnostics) const {
+    if (config->hasFixes()) checkDatum(config->datum, diagnostics);
+}
+
 bool SubscriberTask::configureHook() {
-    drops_.reset();
-    odd_.reset();
+    for (auto* counted : counts_.all()) counted->reset();
+    types::Diagnostics diagnostics;
+    checkMore(diagnostics);
+    if (!diagnostics.empty()) throw types::ConfigError("", name() + ".datum", diagnostics.front().message);
     outputs_.forEach([](auto& output) { output.kept.subscription.reset(); });  // remains of a failed configure
     const SubscriberConfig named = config->namedBy(environment().names, name());
     refuseWrong(named);
@@ -32,7 +41,7 @@ bool SubscriberTask::configureHook() {
     outputs_.forEach([&](auto& output) {
         const auto entry = std::ranges::find(named.topics, output.port.name(), &TopicIn::port);
         output.kept.subscription =
-            std::make_unique<Subscription>(*node_, named, *entry, drops_, odd_, [this] { arrived_.raise(); });
+            std::make_unique<Subscription>(*node_, named, *entry, counts_, [this] { arrived_.raise(); });
     });
     node_->announce();
     return true;
@@ -59,7 +68,7 @@ void SubscriberTask::updateHook() {
         output.kept.came |= taken > 0;
         if (taken == max_at_once || subscription.more()) arrived_.raise();
     });
-    for (types::ThrottledWarning* counted : {&drops_, &odd_})
+    for (types::ThrottledWarning* counted : counts_.all())
         if (const std::string warning = counted->consumeWarning(); !warning.empty()) warn(warning);
     reportAbsence();
 }

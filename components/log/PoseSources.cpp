@@ -128,49 +128,34 @@ std::string choices(Reader& log) {
     throw types::ConfigError(log.path(), asked.source, what);
 }
 
-/** The orientations of a body over time. */
-class Attitudes {
-public:
-    Attitudes(Reader& log, const std::string& source) {
-        const size_t stream = log.findIndex(source);
-        if (log.streams()[stream].holds<types::Imu>())
-            read<types::Imu>(log, stream);
-        else if (log.streams()[stream].holds<types::Pose>())
-            read<types::Pose>(log, stream);
-        else
-            throw types::ConfigError(log.path(), source,
-                                     "is the orientation, and holds " + log.streams()[stream].type +
-                                         "; may be a stream of poses or of sensor_msgs/msg/Imu");
-        std::ranges::stable_sort(turns_, {}, &Turn::first);
-        if (turns_.empty())
-            throw types::ConfigError(log.path(), source, "is the orientation, and has none that is known");
+template <class T>
+std::vector<types::Attitude> readAttitudes(Reader& log, size_t stream) {
+    std::vector<types::Attitude> attitudes;
+    T sample;
+    for (const SampleRef& at : log.samples()) {
+        if (at.stream != stream) continue;
+        log.read(at, sample);
+        const double length = glm::length(sample.orientation);
+        if (std::isfinite(length) && length > 1e-6)
+            attitudes.push_back({types::sampleTime(sample, at.time), sample.orientation / length});
     }
-    glm::dquat at(types::Time time) const {
-        const auto after = std::ranges::lower_bound(turns_, time, {}, &Turn::first);
-        if (after == turns_.end()) return turns_.back().second;
-        if (after == turns_.begin() || after->first == time) return after->second;
-        const Turn& before = *std::prev(after);
-        const double share = (time - before.first).seconds() / (after->first - before.first).seconds();
-        return glm::normalize(glm::slerp(before.second, after->second, share));
-    }
+    std::ranges::stable_sort(attitudes, {}, &types::Attitude::time);
+    return attitudes;
+}
 
-private:
-    using Turn = std::pair<types::Time, glm::dquat>;
-
-    template <class T>
-    void read(Reader& log, size_t stream) {
-        T sample;
-        for (const SampleRef& at : log.samples()) {
-            if (at.stream != stream) continue;
-            log.read(at, sample);
-            const double length = glm::length(sample.orientation);
-            if (std::isfinite(length) && length > 1e-6)
-                turns_.emplace_back(types::sampleTime(sample, at.time), sample.orientation / length);
-        }
-    }
-
-    std::vector<Turn> turns_;
-};
+/** Returns the orientations of a body over time, in their order. */
+std::vector<types::Attitude> findAttitudes(Reader& log, const std::string& source) {
+    const Stream& stream = log.streams()[log.findIndex(source)];
+    const auto refuse = [&](const std::string& what) {
+        throw types::ConfigError(log.path(), source, "is the orientation, and " + what);
+    };
+    const auto read = stream.holds<types::Imu>() ? readAttitudes<types::Imu> : readAttitudes<types::Pose>;
+    if (!stream.holds<types::Imu>() && !stream.holds<types::Pose>())
+        refuse("holds " + stream.type + "; may be a stream of poses or of sensor_msgs/msg/Imu");
+    auto attitudes = read(log, static_cast<size_t>(&stream - log.streams().data()));
+    if (attitudes.empty()) refuse("has none that is known");
+    return attitudes;
+}
 
 types::Notices renamePoses(Reader& log, const PoseSource& asked, size_t stream) {
     const size_t count = log.streams()[stream].count;
@@ -270,7 +255,6 @@ types::Notices followFrames(Reader& log, const PoseSource& asked, types::WorldFr
 
 /** Returns what there is to say of fixes that became poses. */
 types::Notices getNotices(Reader& log, const PoseSource& asked, size_t omitted, glm::dvec3 first) {
-    constexpr double far = 1e5;  // [m]
     types::Notices notices;
     if (omitted > 0)
         notices.push_back(
@@ -283,7 +267,7 @@ types::Notices getNotices(Reader& log, const PoseSource& asked, size_t omitted, 
         notices.push_back(fmt::format("{} has only positions: the body is level and looks to the north{}", asked.source,
                                       turning.empty() ? "" : "; orientation may be " + turning));
     }
-    if (glm::length(first) > far)
+    if (glm::length(first) > types::far_from_datum)
         notices.push_back(types::warning(fmt::format("{} begins {:.0f} km from the datum; is that of another place?",
                                                      asked.source, glm::length(first) / 1e3)));
     return notices;
@@ -309,25 +293,24 @@ types::Datum findDatum(Reader& log, const PoseSource& asked, const std::optional
 
 types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream,
                           const std::optional<types::Datum>& world) {
-    std::optional<Attitudes> attitudes;
-    if (!asked.orientation.empty()) attitudes.emplace(log, asked.orientation);
-    const types::Axes enu{types::WorldFrame::Enu};
+    std::vector<types::Attitude> attitudes;
+    if (!asked.orientation.empty()) attitudes = findAttitudes(log, asked.orientation);
     Reader::MadePoses made;
     std::optional<types::Datum> datum;
     types::Fix fix;
     for (const SampleRef& at : log.samples()) {
         if (at.stream != stream) continue;
         log.read(at, fix);
-        types::Datum place = fix.place();
-        if (!fix.hasPosition() || std::abs(place.height_m) > 1e7) continue;
-        if (!datum) {
-            datum = findDatum(log, asked, world, place);
-            made.child = frameOfFixes(log, at);
-        }
-        if (std::isnan(place.height_m)) place.height_m = datum->height_m;
+        if (!datum && fix.hasPosition()) datum = findDatum(log, asked, world, fix.place());
+        const std::optional<types::Pose> pose = datum ? placeFix(fix, *datum) : std::nullopt;
+        if (!pose) continue;
+        if (made.poses.empty()) made.child = frameOfFixes(log, at);
         const types::Time time = types::sampleTime(fix, at.time);
-        made.poses.push_back({at.number, time, enu.rockFromWorld(eastNorthUp(*datum, place)),
-                              attitudes ? attitudes->at(time) : glm::dquat(1, 0, 0, 0)});
+        made.poses.push_back({at.number,
+                              time,
+                              pose->position,
+                              attitudes.empty() ? pose->orientation : findOrientation(attitudes, time),
+                              {pose->cov_position[0][0], pose->cov_position[1][1], pose->cov_position[2][2]}});
     }
     const size_t omitted = log.streams()[stream].count - made.poses.size();
     if (made.poses.empty()) refuseSource(log, asked, fmt::format("has no fix in its {} messages", omitted));

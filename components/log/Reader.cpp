@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iterator>
 
 #include "components/log/Stream.hpp"
@@ -85,6 +86,8 @@ void Reader::readMade(const SampleRef& at, const MadePoses& made, types::Pose& p
     pose.target_frame = made.parent;
     pose.position = found.position;
     pose.orientation = found.orientation;
+    if (!std::isnan(found.variances.x)) pose.cov_position = glm::dmat3(0);
+    for (int axis = 0; axis < 3; ++axis) pose.cov_position[axis][axis] = found.variances[axis];
 }
 
 void Reader::readInto(const SampleRef& at, types::SampleRoom room) try {

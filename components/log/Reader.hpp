@@ -47,6 +47,7 @@ public:
         types::Time time{};
         glm::dvec3 position{0};
         glm::dquat orientation{1, 0, 0, 0};
+        glm::dvec3 variances{types::Pose::unknown};  ///< Of the position [m^2].
     };
     struct MadePoses {
         std::string parent, child;    ///< Names of the frames.

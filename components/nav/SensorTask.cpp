@@ -78,17 +78,6 @@ void ImuTask::updateHook() {
     orientation_samples.write(getOrientation(measured));
 }
 
-void FixTask::check(types::Diagnostics& diagnostics) const try {
-    if (config->datum)
-        geodetic(*config->datum, {});
-    else
-        diagnostics.push_back({"datum",
-                               "is missing; give the deployment, next to its tasks, the world's origin on the earth: "
-                               "datum: {latitude_deg: 54.5, longitude_deg: 10.25}"});
-} catch (const types::ConfigError& error) {
-    diagnostics.push_back({"datum", error.diagnostics().front().message});
-}
-
 bool FixTask::configureHook() {
     types::Diagnostics diagnostics;
     check(diagnostics);

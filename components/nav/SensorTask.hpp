@@ -123,7 +123,7 @@ public:
     framework::OutputPort<types::Pose> position_samples{this, "position_samples", "position in the world, as Rock's"};
 
     /** Reports a missing datum. */
-    void check(types::Diagnostics& diagnostics) const override;
+    void check(types::Diagnostics& diagnostics) const override { checkDatum(config->datum, diagnostics); }
 
 private:
     bool configureHook() override;

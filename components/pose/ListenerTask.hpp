@@ -40,10 +40,13 @@ public:
                 diagnostics.push_back(
                     {key() + "[" + std::to_string(i) + "].port", "no connection leads from " + name() + "." + port});
         }
+        checkMore(diagnostics);
     }
     bool reachesOutside() const final { return true; }
 
 protected:
+    /** Reports further errors in check(). */
+    virtual void checkMore(types::Diagnostics& /*diagnostics*/) const {}
     /** Returns the entry of a port; null when there is none. */
     const auto* findEntry(const std::string& port) const {
         const auto found = std::ranges::find_if(entries(), [&](const auto& entry) { return entry.port == port; });

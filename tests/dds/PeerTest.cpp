@@ -236,6 +236,36 @@ TEST_F(PeerTest, ReadsSoundingsAsPointsInTheWorldAndTheRangeOfAnAltimeter) {
     EXPECT_EQ(altitude["header"]["frame_id"], "sonar");
 }
 
+TEST_F(PeerTest, SendsFixesAndOrientationsThatBecomePoses) {
+    const types::Datum kiel{54.5, 10.25, 40};
+    if (types::Diagnostics missing; checkDatum(kiel, missing), !missing.empty())
+        GTEST_SKIP() << "this build has no GeographicLib";
+    Subscribing subscribing("/fix", PoseType::NavSatFix, [&](SubscriberConfig& config) {
+        config.topics[0].orientation = OrientationIn{.topic = "/imu", .type = OrientationType::Imu};
+        config.datum = kiel;
+        config.reliability = Reliability::Reliable;
+        config.depth = 200;
+    });
+    Peer peer("fixes 60 100 --greet");
+    auto pose = subscribing.next();
+    peer.begin();
+    while (pose && pose->position.x < -1e5) pose = subscribing.next();
+    for (int i = 0; i < 60; i += 3) {
+        if (i > 0) pose = subscribing.next();
+        ASSERT_TRUE(pose) << i;
+        EXPECT_NEAR(pose->position.x, i * 1.113, 0.01);
+        EXPECT_LT(glm::length(glm::dvec2(pose->position.y, pose->position.z)), 1e-3);
+        EXPECT_GT(glm::dot(pose->orientation * glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)), 1 - 1e-12) << "to the west";
+        EXPECT_EQ(pose->cov_position, glm::dmat3(1, 0, 0, 0, 4, 0, 0, 0, 9));
+        EXPECT_EQ(pose->source_frame, "gps");
+    }
+    EXPECT_EQ(peer.result()["count"], 60);
+    EXPECT_TRUE(subscribing.task.isRunning()) << subscribing.task.lastError();
+    EXPECT_THAT(types::lines(subscribing.task.notices()),
+                testing::IsSupersetOf({HasSubstr("20 messages dropped: /fix: the receiver has no fix"),
+                                       HasSubstr("20 messages dropped: /fix: latitude or longitude")}));
+}
+
 class SpoiltPoses : public PeerTest, public testing::WithParamInterface<std::pair<const char*, const char*>> {};
 
 TEST_P(SpoiltPoses, AreDroppedAndTheRunContinues) {

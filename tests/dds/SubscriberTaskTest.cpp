@@ -129,8 +129,8 @@ TEST_F(SubscriberTaskTest, ReportsATopicWithoutAPoseTogetherWithTheDomainsTopics
         TopicIn in;
         in.topic = topic;
         in.type = type;
-        types::ThrottledWarning drops{"message", "dropped"}, odd{"pose", "made of unit length"};
-        const Subscription subscription(node, config, in, drops, odd, {});
+        Counts counts;
+        const Subscription subscription(node, config, in, counts, {});
         std::string text;
         becomesTrue([&] {
             text = subscription.absence(node);

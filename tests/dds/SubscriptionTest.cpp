@@ -29,8 +29,9 @@ struct SubscriptionTest : Loopback {
         made.topic = "/judged";
         return made;
     }();
-    types::ThrottledWarning dropped{"message", "dropped"}, odd{"pose", "made of unit length"};
-    Subscription subscription{node, config, topic, dropped, odd, {}};
+    Counts counts;
+    types::ThrottledWarning& dropped = counts.drops;
+    Subscription subscription{node, config, topic, counts, {}};
     std::optional<Writer> writer = newWriter();
     types::Pose pose;
 
@@ -182,7 +183,7 @@ TEST_F(SubscriptionTest, ReportsMoreMessagesAfterManyInvalidMessages) {
 TEST_F(SubscriptionTest, CanStampAPoseWithItsArrival) {
     TopicIn strange = topic;
     strange.stamp = StampFrom::Arrival;
-    Subscription other(node, config, strange, dropped, odd, {});
+    Subscription other(node, config, strange, counts, {});
     send(at(1, 1));
     ASSERT_TRUE(becomesTrue([&] { return other.take(arrival, pose); }) || (send(at(2, 2)), other.take(arrival, pose)));
     EXPECT_EQ(pose.time, arrival);

@@ -3,6 +3,7 @@
     peer.py listen TYPE TOPIC SECONDS [COUNT]   counts COUNT messages and their latency [ms]; keeps the first
     peer.py node SECONDS WRITERS                prints nodes, and writers with types and hashes, once a node has WRITERS
     peer.py image TOPIC COUNT HERTZ             sends images of 1 MB, 256 beams x 1000 ranges of float32
+    peer.py fixes COUNT HERTZ                   sends to /fix and /imu; of three fixes one is lost and one is NaN
     peer.py transforms SPEED [ODOM]             sends transforms of base_link without end; ODOM 0 omits a link
     peer.py parameters NODE NAME VALUE OTHER LOCKED   asks what `ros2 param` asks of a node
     peer.py lifecycle NODE                      asks what `ros2 lifecycle` asks of a node
@@ -191,6 +192,33 @@ def odometry(topic, count, hertz, flaw=""):
     return {"count": int(count)}
 
 
+def fixes(count, hertz):
+    """Sends fixes to the north of 54.5 N, 10.25 E, and orientations that look to the west. Greets from the equator."""
+    participant = DomainParticipant(DOMAIN)
+    fix, imu = (DataWriter(participant, Topic(participant, name, kind), qos=DEEP)
+                for name, kind in (("rt/fix", messages.NavSatFix), ("rt/imu", messages.Imu)))
+
+    def send(latitude, status=0):
+        turned = messages.Imu(orientation=messages.Quaternion(0.0, 0.0, 1.0, 0.0))
+        place = messages.NavSatFix(status=messages.NavSatStatus(status, 1), latitude=latitude, longitude=10.25,
+                                   altitude=40.0, position_covariance=[4.0, 0, 0, 0, 1.0, 0, 0, 0, 9.0],
+                                   position_covariance_type=2)
+        place.header.frame_id = "gps"
+        for writer, sample in ((imu, turned), (fix, place)):
+            stamped_now(sample.header)
+            writer.write(sample)
+
+    ready()
+    both = types.SimpleNamespace(write=send, get_matched_subscriptions=lambda: all(
+        writer.get_matched_subscriptions() for writer in (fix, imu)))
+    greet(both, 0.0)
+    for i in range(int(count)):
+        send(math.nan if i % 3 == 2 else 54.5 + 1e-5 * i, -1 if i % 3 == 1 else 0)
+        time.sleep(1 / float(hertz))
+    fix.wait_for_acks(duration(seconds=60))
+    return {"count": int(count)}
+
+
 def transform(parent, child, now, x, y, z, turn=0.0):
     placed = messages.Transform(messages.Vector3(x, y, z), messages.Quaternion(0.0, 0.0, math.sin(turn / 2), math.cos(turn / 2)))
     return messages.TransformStamped(messages.Header(messages.Time(int(now), int(now % 1 * 1e9)), parent), child, placed)
@@ -363,6 +391,6 @@ def reports():
 if __name__ == "__main__":
     DOMAIN = int(__import__("os").environ.get("ROS_DOMAIN_ID", "0"))
     work, *words = (word for word in sys.argv[1:] if word != "--greet")
-    print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry,
+    print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry, "fixes": fixes,
                       "transforms": transforms, "parameters": parameters, "lifecycle": lifecycle,
                       "reports": reports}[work](*words)))

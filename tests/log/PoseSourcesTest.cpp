@@ -341,6 +341,8 @@ ros::NavSatFix fixAt(double time, double latitude, double longitude, double heig
     fix.latitude = latitude;
     fix.longitude = longitude;
     fix.altitude = height;
+    fix.position_covariance = {9, 1, 0, 1, 4, 0, 0, 0, 16};  // to the east, north and up
+    fix.position_covariance_type = 3;
     return fix;
 }
 
@@ -392,6 +394,7 @@ TEST(PoseSourcesTest, FixesBecomePlacesAboutTheDatum) {
                 EXPECT_LT(glm::distance(read[i].position, rock), 1e-7);  // differences of 6e6 m
                 EXPECT_GT(std::abs(glm::dot(read[i].orientation, turns[i])), 1 - exact);
                 EXPECT_EQ(read[i].source_frame, "gps");
+                EXPECT_EQ(read[i].cov_position, glm::dmat3(4, 0, 0, 0, 9, 0, 0, 0, 16)) << "to the north, west and up";
             }
         });
     }

@@ -18,6 +18,17 @@ bool isSamePlace(const Datum& a, const Datum& b) {
            std::abs(a.height_m - b.height_m) <= metres;
 }
 
+void checkDatum(const std::optional<Datum>& datum, Diagnostics& diagnostics) try {
+    if (datum)
+        geodetic(*datum, {});
+    else
+        diagnostics.push_back({"datum",
+                               "is missing; give the deployment, next to its tasks, the world's origin on the earth: "
+                               "datum: {latitude_deg: 54.5, longitude_deg: 10.25}"});
+} catch (const ConfigError& error) {
+    diagnostics.push_back({"datum", error.diagnostics().front().message});
+}
+
 std::string text(const Datum& place) {
     char text[160];
     std::snprintf(text, sizeof text, "{latitude_deg: %.12g, longitude_deg: %.12g, height_m: %.9g}", place.latitude_deg,

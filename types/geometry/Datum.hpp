@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -32,6 +33,9 @@ struct Datum {
 
 /** Returns whether two places are the same to 1e-9 degrees and 0.1 mm. Longitudes may differ by whole turns. */
 bool isSamePlace(const Datum& a, const Datum& b);
+
+/** Reports as `datum` that a world has none, or that this build cannot use one because it has no GeographicLib. */
+void checkDatum(const std::optional<Datum>& datum, Diagnostics& diagnostics);
 
 /** Returns "{latitude_deg: 54.5, longitude_deg: 10.25, height_m: 0}", as a deployment has it. */
 std::string text(const Datum& place);

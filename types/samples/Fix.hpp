@@ -1,9 +1,13 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "types/Time.hpp"
 #include "types/geometry/Datum.hpp"
+#include "types/geometry/WorldFrame.hpp"
+#include "types/samples/Pose.hpp"
 
 namespace insonify::types {
 
@@ -31,9 +35,11 @@ struct Fix {
     double correction_age = unknown;
     double deviation_latitude = unknown, deviation_longitude = unknown, deviation_altitude = unknown;
 
+    /** Whether it is a place on the earth, of any or unknown height up to 10,000 km. */
     bool hasPosition() const {
+        constexpr double max_height = 1e7;  // [m]
         return kind != FixKind::NoSolution && kind != FixKind::Invalid && std::abs(latitude) <= 90 &&
-               std::abs(longitude) <= 360;
+               std::abs(longitude) <= 360 && !(std::abs(place().height_m) > max_height);
     }
     /** Returns the place on the ellipsoid of WGS 84; its height is NaN if the altitude is unknown. */
     Datum place() const { return {latitude, longitude, altitude + geoidal_separation}; }
@@ -53,6 +59,27 @@ struct Fix {
         visit({"deviationAltitude", "m", "standard deviation of the altitude"}, self.deviation_altitude);
     }
 };
+
+/** Distance from the datum beyond which a fix probably belongs to another datum [m]. */
+inline constexpr double far_from_datum = 1e5;
+
+/** Returns the pose of the antenna about a datum, in Rock's axes, level and looking to the north, with the variances of
+ *  the fix. An unknown height is the datum's. Returns nothing for a fix without a position. The
+ *  variances are taken as along the axes at the datum; 100 km away those at the fix differ by a degree. Throws
+ *  ConfigError in a build without GeographicLib. */
+inline std::optional<Pose> placeFix(const Fix& fix, const Datum& datum) {
+    if (!fix.hasPosition()) return std::nullopt;
+    Datum place = fix.place();
+    if (std::isnan(place.height_m)) place.height_m = datum.height_m;
+    Pose pose;
+    pose.time = fix.time;
+    pose.position = Axes{WorldFrame::Enu}.rockFromWorld(eastNorthUp(datum, place));
+    const glm::dvec3 deviations(fix.deviation_latitude, fix.deviation_longitude, fix.deviation_altitude);
+    if (!std::isfinite(glm::dot(deviations, deviations))) return pose;
+    pose.cov_position = glm::dmat3(0);
+    for (int axis = 0; axis < 3; ++axis) pose.cov_position[axis][axis] = deviations[axis] * deviations[axis];
+    return pose;
+}
 
 template <>
 struct EnumTable<FixKind> {

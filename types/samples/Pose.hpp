@@ -7,6 +7,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -71,6 +72,23 @@ template <class Placed>
 void interpolate(const Placed& from, const Placed& to, double share, Pose& pose) {
     pose.position = glm::mix(from.position, to.position, share);
     pose.orientation = glm::normalize(glm::slerp(from.orientation, to.orientation, share));
+}
+
+/** An orientation of unit length, and when it was true. */
+struct Attitude {
+    Time time;
+    glm::dquat orientation;
+};
+
+/** Returns the orientation at a time in a list of at least one Attitude, in the order of time: by slerp between two of
+ *  them, and before and after all of them the nearest. */
+glm::dquat findOrientation(const auto& attitudes, Time time) {
+    const auto after = std::ranges::lower_bound(attitudes, time, {}, &Attitude::time);
+    if (after == attitudes.end()) return attitudes.back().orientation;
+    if (after == attitudes.begin() || after->time == time) return after->orientation;
+    const Attitude& before = *std::prev(after);
+    const double share = (time - before.time).seconds() / (after->time - before.time).seconds();
+    return glm::normalize(glm::slerp(before.orientation, after->orientation, share));
 }
 
 /** Returns a pose, with its stamp, extrapolated by its velocities to `time`, but at most `most` seconds forward and
