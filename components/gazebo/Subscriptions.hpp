@@ -90,7 +90,8 @@ struct BodyConfig {
               self.entity);
         visit({"odometry", "", "topic of the body's Odometry, /model/rov/odometry; empty: entity is given"},
               self.odometry);
-        visit({"period", "s", "simulated time between poses, as of a sensor: the next pose from each multiple on; 0: all", 0, 1e6},
+        visit({"period", "s",
+               "simulated time between poses, as of a sensor: the next pose from each multiple on; 0: all", 0, 1e6},
               self.period);
     }
 };
