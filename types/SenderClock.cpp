@@ -1,12 +1,20 @@
 #include "types/SenderClock.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace insonify::types {
 
-SenderClock::Order SenderClock::findOrder(Time stamp, Time arrival) const {
+SenderClock::Order SenderClock::findOrder(Time stamp, Time arrival) {
+    const int late_before = std::exchange(late_, 0);
     if (!newest_ || stamp > *newest_) return Order::Next;
     if (stamp == *newest_) return Order::Repeated;
-    const bool begins_anew = *newest_ - stamp > max_lateness || elapsed(newest_came_, arrival) > max_silence;
-    return begins_anew ? Order::Restarted : Order::Late;
+    const int late = late_before > 0 && stamp >= last_late_ ? late_before + 1 : 1;
+    if (late >= max_late || *newest_ - stamp > max_lateness || elapsed(newest_came_, arrival) > max_silence)
+        return Order::Restarted;
+    last_late_ = stamp;
+    late_ = late;
+    return Order::Late;
 }
 
 void SenderClock::follow(Time delay, Time arrival) {
@@ -39,7 +47,7 @@ SenderClock::Reading SenderClock::read(Time stamp, Time arrival) {
     newest_ = stamp;
     newest_came_ = arrival;
     const Time time = stamp + offset_;
-    if (time > time_ || ours_went_back) time_ = time;
+    time_ = ours_went_back ? time : std::max(time, time_ + Time{1});
     return {order, time_};
 }
 

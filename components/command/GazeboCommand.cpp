@@ -91,18 +91,20 @@ public:
         taken_ = {"world", "to_gazebo", "to_ros"};
         tasks_ = topics_ = ros_topics_ = connections_ = "";
         ports_ = 0;
-        model_ports_.clear();
-        for (const std::string& model : sonars_.models) model_ports_.push_back(unique("model_" + getWord(model)));
+        moving_ports_.clear();
+        for (const std::string& entity : sonars_.moving)
+            moving_ports_.push_back(unique((entity.find("::") == entity.npos ? "model_" : "link_") + getWord(entity)));
         for (const SonarSensor& sonar : sonars_.sonars) addSonar(sonar);
         std::string text = fmt::format(
             "# The sonars of world {0}. Made by `insonify gazebo {1} --print`.\nschedule: realtime\ntasks:\n"
             "  world:\n    type: gazebo::PoseTask\n    properties:\n      world: {2}\n{3}      bodies:\n",
             quoted(sonars_.world), quoted(asked_.world), quoted(sonars_.world), partition("      "));
+        // What moves comes before the sonars, whose poses cause pings.
+        for (size_t i = 0; i < moving_ports_.size(); ++i)
+            text += fmt::format("        - {{port: {}, entity: {}}}\n", moving_ports_[i], quoted(sonars_.moving[i]));
         for (const SonarSensor& sonar : sonars_.sonars)
             text += fmt::format("        - {{port: {}, entity: {}, period: {}}}\n", names_.at(&sonar),
                                 quoted(sonar.link), sonar.update_rate > 0 ? 1 / sonar.update_rate : 0.0);
-        for (size_t i = 0; i < model_ports_.size(); ++i)
-            text += fmt::format("        - {{port: {}, entity: {}}}\n", model_ports_[i], quoted(sonars_.models[i]));
         text += tasks_;
         text += fmt::format(
             "  to_gazebo:\n    type: gazebo::PublisherTask\n    properties:\n      world: {}\n{}      topics:\n{}",
@@ -173,9 +175,9 @@ private:
                 quoted(sonars_.world), asked_.gazebo.timeout,
                 asked_.gazebo.partition.empty() ? "" : ", partition: " + quoted(asked_.gazebo.partition),
                 mount.position.x, mount.position.y, mount.position.z, mount.roll_deg, mount.pitch_deg, mount.yaw_deg));
+        for (size_t i = 0; i < moving_ports_.size(); ++i)
+            connect("world." + moving_ports_[i], fmt::format("{}_scene.{}.pose", name, sonars_.moving[i]));
         connect("world." + name, name + "_scene.pose");
-        for (size_t i = 0; i < model_ports_.size(); ++i)
-            connect("world." + model_ports_[i], fmt::format("{}_scene.{}.pose", name, sonars_.models[i]));
         addTask(name, sonar.type);
         connect(name + "_scene.snapshot", name + ".snapshot");
         std::string pings = name + ".ping";
@@ -214,7 +216,7 @@ private:
     const Asked& asked_;
     std::map<const SonarSensor*, std::string> names_;
     std::map<std::string, std::string> properties_;  ///< By task.
-    std::vector<std::string> model_ports_;           ///< By model.
+    std::vector<std::string> moving_ports_;          ///< By moving entity.
     std::set<std::string> taken_;
     std::string tasks_, topics_, ros_topics_, connections_;
     int ports_ = 0;

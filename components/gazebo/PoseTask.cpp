@@ -125,7 +125,7 @@ void PoseTask::take(Arrived& message) {
                               ": the stamp is before that of the previous message");
         time = reading.time;
         if (reading.order == Order::Restarted) next_.assign(config->bodies.size(), {});
-        if (!config->world.empty()) noteClock(config->world, subscriptions_->partition(), time - *message.stamp);
+        if (!config->world.empty()) noteStamp(config->world, subscriptions_->partition(), time, *message.stamp);
     }
     for (Placed& placed : message.bodies)
         if (!message.stamp || isDue(placed.body, *message.stamp)) write(placed, time);
@@ -136,8 +136,8 @@ bool PoseTask::isDue(size_t body, types::Time stamp) {
     if (period.microseconds <= 0) return true;
     std::optional<types::Time>& next = next_[body];
     if (next && stamp < *next) return false;
-    // The poses come at times of their own: the grid of the period is kept, unless a whole period is missing.
-    next = next && stamp - *next < period ? *next + period : stamp + period;
+    const types::Time from = next.value_or(stamp);  // poses come at times of their own: the grid of the period is kept
+    next = from + types::Time{((stamp - from).microseconds / period.microseconds + 1) * period.microseconds};
     return true;
 }
 

@@ -123,9 +123,7 @@ bool PublisherTask::configureHook() {
 }
 
 types::Time PublisherTask::getStamp(types::Time time) const {
-    if (config->world.empty()) return time;
-    const auto offset = clockOffset(config->world, partition_);
-    return offset ? time - *offset : time;
+    return config->world.empty() ? time : findStamp(config->world, partition_, time).value_or(time);
 }
 
 template <class Sample>

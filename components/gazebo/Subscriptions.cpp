@@ -110,13 +110,13 @@ FoundEntity findEntity(const PoseMessage& message, const std::string& name) {
     return {nullptr, "several entities of that name; those inside models have poses in their parents' frames"};
 }
 
-types::Pose poseOfChain(const PoseMessage& message, const Chain& chain, types::WorldFrame frame) {
+types::Pose poseOfChain(const PoseMessage& message, Chain& chain, types::WorldFrame frame) {
     Place whole;
-    for (const Chain::Part& part : chain.parts) {
+    for (Chain::Part& part : chain.parts) {
         const auto moved = std::ranges::find(message.entities, part.id, &PoseMessage::Entity::id);
-        const Place& place = moved == message.entities.end() ? part.place : moved->place;
-        whole.position += glm::normalize(whole.orientation) * place.position;
-        whole.orientation = whole.orientation * place.orientation;
+        if (moved != message.entities.end()) part.place = moved->place;
+        whole.position += glm::normalize(whole.orientation) * part.place.position;
+        whole.orientation = whole.orientation * part.place.orientation;
     }
     return getPose(whole, types::Axes{frame});
 }
@@ -136,11 +136,12 @@ void addChains(const wire::Model& model, const std::string& scope, const Chain& 
     for (const wire::Model& nested : model.model()) addChains(nested, inner, own, chains);
 }
 
-std::mutex clocks_mutex;
+std::mutex stamps_mutex;
 
-std::map<std::string, types::Time>& clocks() {
-    static std::map<std::string, types::Time> offsets;
-    return offsets;
+/** Returns the stamps of a world's last poses by their time on our clock. */
+std::map<types::Time, types::Time>& stampsIn(const std::string& world, const std::string& partition) {
+    static std::map<std::string, std::map<types::Time, types::Time>> worlds;
+    return worlds[partition + "@" + world];
 }
 
 }  // namespace
@@ -154,15 +155,27 @@ std::map<std::string, Chain> readChains(std::string_view bytes) {
     return chains;
 }
 
-void noteClock(const std::string& world, const std::string& partition, types::Time offset) {
-    const std::lock_guard lock(clocks_mutex);
-    clocks()[partition + "@" + world] = offset;
+void noteStamp(const std::string& world, const std::string& partition, types::Time time, types::Time stamp) {
+    constexpr size_t kept = 4000;  // a minute of Gazebo's poses
+    const std::lock_guard lock(stamps_mutex);
+    std::map<types::Time, types::Time>& stamps = stampsIn(world, partition);
+    stamps.erase(stamps.lower_bound(time), stamps.end());  // after our clock went back
+    stamps.emplace_hint(stamps.end(), time, stamp);
+    if (stamps.size() > kept) stamps.erase(stamps.begin());
 }
 
-std::optional<types::Time> clockOffset(const std::string& world, const std::string& partition) {
-    const std::lock_guard lock(clocks_mutex);
-    const auto found = clocks().find(partition + "@" + world);
-    return found == clocks().end() ? std::nullopt : std::optional(found->second);
+std::optional<types::Time> findStamp(const std::string& world, const std::string& partition, types::Time time) {
+    const std::lock_guard lock(stamps_mutex);
+    const std::map<types::Time, types::Time>& stamps = stampsIn(world, partition);
+    if (stamps.empty()) return {};
+    const auto after = stamps.upper_bound(time);
+    if (after == stamps.begin()) return after->second - (after->first - time);
+    const auto& [begin, stamp] = *std::prev(after);
+    const types::Time passed = time - begin;
+    if (after == stamps.end() || after->second <= stamp)
+        return stamp + passed;  // the newest, or the last before a reset
+    const double rate = (after->second - stamp).seconds() / (after->first - begin).seconds();
+    return stamp + types::Time::fromSeconds(passed.seconds() * rate);
 }
 
 class Subscriber::Worker {
@@ -376,6 +389,22 @@ uint64_t Inbox::lost() const {
     return lost_;
 }
 
+namespace {
+
+/** Returns the pose of a body by the numbers of its chain. A model that was removed and inserted again has another
+ *  number, and is found by its name. */
+Placed placeBody(const PoseMessage& message, size_t body, const std::string& entity, std::optional<Chain>& chain,
+                 types::WorldFrame frame) {
+    const bool is_known = chain && (chain->parts.size() > 1 || std::ranges::count(message.entities, chain->parts[0].id,
+                                                                                  &PoseMessage::Entity::id) > 0);
+    auto [pose, diagnostic] = is_known ? FoundEntity{} : findEntity(message, entity);
+    if (pose) return {body, *pose, ""};
+    if (chain) return {body, poseOfChain(message, *chain, frame), ""};
+    return {body, {}, std::move(diagnostic)};
+}
+
+}  // namespace
+
 Subscriptions::Subscriptions(const PoseConfig& config, Inbox& inbox)
     : options_(TransportOptions::fromEnvironment(config.partition)) {
     std::vector<Topic> topics;
@@ -414,12 +443,8 @@ Topic Subscriptions::entities(const PoseConfig& config, Inbox& inbox) {
                 Arrived arrived{number, message->stamp, {}, {}, ""};
                 for (size_t i = 0; i < state->bodies.size(); ++i) {
                     if (state->bodies[i].entity.empty()) continue;
-                    if (const auto& chain = state->chains[i]) {
-                        arrived.bodies.push_back({i, poseOfChain(*message, *chain, state->frame), ""});
-                        continue;
-                    }
-                    auto [pose, diagnostic] = findEntity(*message, state->bodies[i].entity);
-                    arrived.bodies.push_back({i, pose ? *pose : types::Pose{}, std::move(diagnostic)});
+                    arrived.bodies.push_back(
+                        placeBody(*message, i, state->bodies[i].entity, state->chains[i], state->frame));
                 }
                 if (!state->world.empty()) {
                     if (!state->watch) state->watch.emplace(namesTaken(state->world, state->partition));
@@ -442,8 +467,11 @@ std::vector<std::optional<Chain>> Subscriptions::chains(const PoseConfig& config
     std::vector<std::string> names;
     for (const auto& [name, chain] : all) names.push_back(name);
     for (size_t i = 0; i < config.bodies.size(); ++i) {
-        if (!isScope(config.bodies[i])) continue;
         const auto known = all.find(config.bodies[i].entity);
+        if (!isScope(config.bodies[i])) {
+            if (known != all.end() && known->second.parts[0].id != 0) found[i] = known->second;
+            continue;
+        }
         if (known == all.end()) {
             const std::string near = types::didYouMean(config.bodies[i].entity, names);
             throw types::ConfigError("", "bodies[" + std::to_string(i) + "].entity",

@@ -28,7 +28,7 @@ struct Place {
 struct Chain {
     struct Part {
         uint32_t id = 0;
-        Place place{};  ///< When the world was read: of a link that messages omit.
+        Place place{};  ///< The newest: of an entity that messages omit.
     };
     std::vector<Part> parts;
 };
@@ -62,17 +62,18 @@ struct FoundEntity {
 };
 FoundEntity findEntity(const PoseMessage& message, const std::string& name);
 
-/** Returns the pose in the world of an entity below other entities, in our axes. */
-types::Pose poseOfChain(const PoseMessage& message, const Chain& chain, types::WorldFrame frame);
+/** Returns the pose in the world of an entity below other entities, in our axes. Keeps the places of the message. */
+types::Pose poseOfChain(const PoseMessage& message, Chain& chain, types::WorldFrame frame);
 
 /** Reads the models and links of a message Scene, by their scope ("rov::arm::hand"). Throws types::ConfigError when the
  *  bytes are no Scene. */
 std::map<std::string, Chain> readChains(std::string_view message);
 
-/** Keeps the time of a world on our clock minus that of its simulation. Thread-safe. */
-void noteClock(const std::string& world, const std::string& partition, types::Time offset);
-/** Returns that time; none while no message of the world's poses was read in this process. */
-std::optional<types::Time> clockOffset(const std::string& world, const std::string& partition);
+/** Keeps the simulated time of a world's poses, and their time on our clock, for findStamp(). Thread-safe. */
+void noteStamp(const std::string& world, const std::string& partition, types::Time time, types::Time stamp);
+/** Returns the simulated time for a time of our clock: that of the poses of this time, interpolated between poses. None
+ *  while no message of the world's poses was read in this process. Thread-safe. */
+std::optional<types::Time> findStamp(const std::string& world, const std::string& partition, types::Time time);
 
 /** The source of the poses of one output port. */
 struct BodyConfig {
@@ -89,7 +90,8 @@ struct BodyConfig {
               self.entity);
         visit({"odometry", "", "topic of the body's Odometry, /model/rov/odometry; empty: entity is given"},
               self.odometry);
-        visit({"period", "s", "min simulated time between two poses, as the update rate of a sensor; 0: all", 0, 1e6},
+        visit({"period", "s",
+               "simulated time between poses, as of a sensor: the next pose from each multiple on; 0: all", 0, 1e6},
               self.period);
     }
 };
@@ -228,7 +230,8 @@ public:
 
 private:
     Topic entities(const PoseConfig& config, Inbox& inbox);
-    /** Returns the chain of each body whose entity is a scope; none for the others. Throws types::ConfigError. */
+    /** Returns the chain of each entity, if one of them is a scope; models without a number, and bodies without an
+     *  entity, have none. Throws types::ConfigError. */
     std::vector<std::optional<Chain>> chains(const PoseConfig& config) const;
     Topic odometry(const PoseConfig& config, size_t body, Inbox& inbox);
 

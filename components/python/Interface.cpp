@@ -57,18 +57,20 @@ public:
 class LogHandle final : public Handle {
 public:
     explicit LogHandle(const std::string& file)
-        : log((recordings::refuseRecording(file), log::openLog(file))), samples(log->streams().size()) {
+        : whole((recordings::refuseRecording(file), log::openWholeLog(file))), samples(whole.log->streams().size()) {
         times_.resize(samples.size());
-        for (const log::SampleRef& at : log->samples()) {
+        for (const log::SampleRef& at : whole.log->samples()) {
             samples[at.stream].push_back(at);
             times_[at.stream].push_back(at.time.seconds());
         }
     }
     Json facts() const override {
         Json streams = Json::array();
-        for (const log::Stream& stream : log->streams())
+        for (const log::Stream& stream : whole.log->streams())
             streams.push_back({{"name", stream.name}, {"type", stream.type}, {"metadata", stream.metadata}});
-        return streams;
+        Json files = Json::array();
+        for (const auto& file : whole.files) files.push_back(file.string());
+        return {{"streams", streams}, {"files", files}, {"notice", whole.notice}};
     }
     std::vector<Array> arrays() const override {
         std::vector<Array> arrays;
@@ -76,7 +78,7 @@ public:
         return arrays;
     }
 
-    std::shared_ptr<log::Reader> log;
+    log::WholeLog whole;
     std::vector<std::vector<log::SampleRef>> samples;  ///< By stream.
     std::mutex reading;  ///< Python's threads may call at the same time; the reader is for one thread.
 
@@ -307,7 +309,7 @@ Handle* insonify_sample(Handle* log, size_t stream, size_t index) {
     return guarded(nullptr, [&]() -> Handle* {
         auto& opened = dynamic_cast<LogHandle&>(*log);
         const std::lock_guard alone(opened.reading);
-        return sampleHandle(*opened.log, opened.samples.at(stream).at(index)).release();
+        return sampleHandle(*opened.whole.log, opened.samples.at(stream).at(index)).release();
     });
 }
 

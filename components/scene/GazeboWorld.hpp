@@ -48,7 +48,9 @@ struct SonarSensor {
 struct WorldSonars {
     std::string world;                ///< Name.
     std::vector<SonarSensor> sonars;  ///< In the order of the file.
-    std::vector<std::string> models;  ///< Of the top level that may move: not `<static>`.
+    /** Entities that may move: models of the top level that are not `<static>`, each followed by the scopes of its
+     *  links with visuals that joints may move within the model. */
+    std::vector<std::string> moving;
     std::vector<std::string> others;  ///< Sensors of other types, with scope and type.
     std::vector<std::string> notices;
 };

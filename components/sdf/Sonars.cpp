@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <sdf/Element.hh>
+#include <sdf/Joint.hh>
 #include <sdf/Link.hh>
 #include <sdf/Model.hh>
 #include <sdf/Sensor.hh>
@@ -74,7 +77,7 @@ public:
         found_.world = world->Name();
         for (uint64_t i = 0; i < world->ModelCount(); ++i) {
             const ::sdf::Model& model = *world->ModelByIndex(i);
-            if (!model.Static()) found_.models.push_back(model.Name());
+            if (!model.Static()) addMoving(model);
             addModel(model, "");
         }
         if (!diagnostics_.empty()) throw types::ConfigError(std::move(diagnostics_));
@@ -82,6 +85,45 @@ public:
     }
 
 private:
+    /** Calls `use` for a model and those within it, with their scope in the outermost. */
+    static void forEach(const ::sdf::Model& model, const std::string& scope,
+                        const std::function<void(const ::sdf::Model&, const std::string&)>& use) {
+        use(model, scope);
+        for (uint64_t i = 0; i < model.ModelCount(); ++i) {
+            const ::sdf::Model& nested = *model.ModelByIndex(i);
+            forEach(nested, scope + nested.Name() + "::", use);
+        }
+    }
+
+    /** Adds a model and its moving links. Gazebo's pose of a model is that of its canonical link: links that no fixed
+     *  joint attaches to that one have their own. */
+    void addMoving(const ::sdf::Model& model) {
+        found_.moving.push_back(model.Name());
+        std::map<std::string, std::string> held;  // links by one that holds them, directly or by others
+        const auto findHolder = [&](std::string link) {
+            for (auto at = held.find(link); at != held.end(); at = held.find(link)) link = at->second;
+            return link;
+        };
+        forEach(model, "", [&](const ::sdf::Model& each, const std::string& scope) {
+            for (uint64_t i = 0; i < each.JointCount(); ++i) {
+                const ::sdf::Joint& joint = *each.JointByIndex(i);
+                std::string child, parent;
+                if (joint.Type() != ::sdf::JointType::FIXED || !joint.ResolveChildLink(child).empty() ||
+                    !joint.ResolveParentLink(parent).empty())
+                    continue;
+                child = findHolder(scope + child), parent = findHolder(scope + parent);
+                if (child != parent) held[child] = parent;
+            }
+        });
+        const std::string body = findHolder(model.CanonicalLinkAndRelativeName().second);
+        forEach(model, "", [&](const ::sdf::Model& each, const std::string& scope) {
+            for (uint64_t i = 0; i < each.LinkCount(); ++i)
+                if (const ::sdf::Link& link = *each.LinkByIndex(i);
+                    link.VisualCount() > 0 && findHolder(scope + link.Name()) != body)
+                    found_.moving.push_back(model.Name() + "::" + scope + link.Name());
+        });
+    }
+
     void addModel(const ::sdf::Model& model, const std::string& scope) {
         const std::string inner = scope + model.Name() + "::";
         for (uint64_t i = 0; i < model.LinkCount(); ++i) {

@@ -278,7 +278,8 @@ TEST_F(GazeboSensorTest, EveryKindOfSonarAndAnyNamesMakeADeployment) {
     EXPECT_THAT(checked.err, Not(HasSubstr("is not a key"))) << outcome.out;
     for (const std::string& line : lines(checked.err))
         EXPECT_THAT(line, testing::AnyOf(HasSubstr("my rov, 2"), HasSubstr("my_rov_2"), HasSubstr("{x}: y"),
-                                         HasSubstr("notice"), HasSubstr("warning")))
+                                         HasSubstr("notice"), HasSubstr("warning"),
+                                         HasSubstr("dds::PublisherTask, which needs the component library dds")))
             << outcome.out;
 }
 
@@ -332,7 +333,35 @@ TEST(SonarSensorsTest, ValuesAreListsBlocksAndTexts) {
                                              testing::Pair("b.d", "''"), testing::Pair("e", "[1, 2, 3]"),
                                              testing::Pair("f", "[1, 2]"), testing::Pair("g", "'it''s'"),
                                              testing::Pair("h", "plain text")));
-    EXPECT_THAT(found.models, testing::ElementsAre("mooring", "red", "blue"));
+    EXPECT_THAT(found.moving, testing::ElementsAre("mooring", "mooring::float", "red", "blue"));
+}
+
+TEST(SonarSensorsTest, LinksMoveThatNoFixedJointAttachesToTheBodyOfTheirModel) {
+    const TestFolder folder;
+    const auto link = [](const std::string& name) {
+        return "<link name='" + name +
+               "'><visual name='v'><geometry><box><size>1 1 1</size></box></geometry></visual></link>";
+    };
+    const auto joint = [](const std::string& type, const std::string& parent, const std::string& child) {
+        return "<joint name='to_" + child.substr(0, child.find(':')) + "' type='" + type + "'><parent>" + parent +
+               "</parent><child>" + child + "</child>" +
+               (type == "fixed" || type == "ball" ? "" : "<axis><xyz>0 0 1</xyz></axis>") + "</joint>";
+    };
+    const auto model = [](const std::string& name, const std::string& content) {
+        return "<model name='" + name + "'>" + content + "</model>";
+    };
+    const std::string gripper = model("gripper", link("palm") + link("finger") + joint("prismatic", "palm", "finger"));
+    const std::string rov = model(
+        "rov", link("base") + link("arm") + link("wrist") + link("cage") + "<link name='tether'/>" + gripper +
+                   model("lamp", link("bulb")) + joint("revolute", "base", "arm") + joint("fixed", "wrist", "arm") +
+                   joint("fixed", "base", "cage") + joint("ball", "cage", "tether") +
+                   joint("fixed", "wrist", "gripper::palm") + joint("fixed", "lamp::bulb", "base"));
+    const std::string quay = model("quay", "<static>true</static>" + link("stone"));
+    const std::string rudder = model("rudder", link("a") + link("b") + joint("fixed", "world", "b"));
+    writeFile(folder / "w.world", "<sdf version='1.9'><world name='sea'>" + rov + quay + rudder + "</world></sdf>");
+    EXPECT_THAT(insonify::sdf::readSonars(folder / "w.world").moving,
+                testing::ElementsAre("rov", "rov::arm", "rov::wrist", "rov::gripper::palm", "rov::gripper::finger",
+                                     "rudder", "rudder::b"));
 }
 
 TEST(ChainTest, APoseInTheWorldIsTheProductOfThoseOfTheParents) {
@@ -356,5 +385,34 @@ TEST(ChainTest, APoseInTheWorldIsTheProductOfThoseOfTheParents) {
         const types::Pose pose = gazebo::poseOfChain(message, chain, types::WorldFrame::AsIs);
         EXPECT_LT(glm::distance(pose.position, position), 1e-9);
         EXPECT_GT(std::abs(glm::dot(glm::normalize(pose.orientation), orientation)), 1 - 1e-12);
+        const types::Pose kept = gazebo::poseOfChain({}, chain, types::WorldFrame::AsIs);
+        EXPECT_EQ(kept.position, pose.position) << "of entities that a later message omits";
     }
+}
+
+TEST(FindStampTest, ATimeOfOurClockIsThatOfItsPosesOrBetweenThem) {
+    const auto at = [](double seconds) { return types::Time::fromSeconds(seconds); };
+    EXPECT_EQ(gazebo::findStamp("of_stamps", "", at(1)), std::nullopt);
+    gazebo::noteStamp("of_stamps", "", at(1000), at(5));
+    gazebo::noteStamp("of_stamps", "", at(1001), at(5.3));  // slower
+    gazebo::noteStamp("of_stamps", "", at(1001.5), at(6.8));
+    gazebo::noteStamp("of_stamps", "", at(1002), at(0));  // a reset
+    gazebo::noteStamp("of_stamps", "", at(1003), at(1));
+    for (const auto& [time, stamp] : std::vector<std::pair<double, double>>{{999, 4},
+                                                                            {1000, 5},
+                                                                            {1000.5, 5.15},
+                                                                            {1001, 5.3},
+                                                                            {1001.25, 6.05},
+                                                                            {1001.5, 6.8},
+                                                                            {1001.75, 7.05},
+                                                                            {1002, 0},
+                                                                            {1002.5, 0.5},
+                                                                            {1003, 1},
+                                                                            {1004, 2}})
+        EXPECT_EQ(gazebo::findStamp("of_stamps", "", at(time)), at(stamp)) << time;
+    EXPECT_EQ(gazebo::findStamp("of_stamps", "other", at(1000)), std::nullopt);
+    gazebo::noteStamp("of_stamps", "", at(1001), at(3));  // our clock was set back
+    EXPECT_EQ(gazebo::findStamp("of_stamps", "", at(1002)), at(4));
+    for (int i = 0; i < 10'000; ++i) gazebo::noteStamp("of_stamps", "", at(2000 + i), at(i));
+    EXPECT_EQ(gazebo::findStamp("of_stamps", "", at(11'000)), at(9000));
 }

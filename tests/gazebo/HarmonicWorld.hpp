@@ -46,6 +46,7 @@ public:
             socket->bind("tcp://127.0.0.1:*");
         }
         replier_.set(zmq::sockopt::router_mandatory, 1);
+        service_address_ = replier_.get(zmq::sockopt::last_endpoint);  // before answers connect it to others
         thread_ = std::thread([this] { run(); });
     }
     ~HarmonicWorld() {
@@ -115,7 +116,7 @@ private:
         });
         send(wire::Discovery::ADVERTISE, services_, [&](wire::Discovery::Publisher& pub) {
             pub.set_topic(service_);
-            pub.set_address(replier_.get(zmq::sockopt::last_endpoint));
+            pub.set_address(service_address_);
             pub.set_node_uuid("node");
             pub.set_scope(wire::Discovery::Publisher::ALL);
             pub.mutable_srv_pub()->set_socket_id(socket_id_);
@@ -155,6 +156,7 @@ private:
     Multicast topics_, services_;
     zmq::context_t context_;
     zmq::socket_t publisher_{context_, zmq::socket_type::pub}, replier_{context_, zmq::socket_type::router};
+    std::string service_address_;
     mutable std::mutex mutex_;  ///< Guards the publisher and the list of its subscribers.
     std::set<std::string> takers_;
     std::atomic<bool> stop_ = false;

@@ -99,6 +99,38 @@ TEST_F(PoseTaskTest, AnObjectOfTheSceneMovesWithItsModelInGazebo) {
     }
 }
 
+TEST_F(PoseTaskTest, AModelIsFoundByItsNumberThenByItsNameAndElseStaysWhereItWas) {
+    world.serve("/world/sea/scene/info", [](ignition::msgs::Scene& scene) {
+        uint32_t number = 10;
+        for (const char* name : {"red", "blue"}) {
+            ignition::msgs::Model& model = *scene.add_model();
+            model.set_name(name);
+            model.set_id(number++);
+            ignition::msgs::Link& link = *model.add_link();
+            link.set_name("hull");
+            link.set_id(number++);
+        }
+        return true;
+    });
+    startWith({entity("hull", "red::hull"), entity("other", "blue")});
+    meet();
+    double stamp = 1;
+    const auto placeOther = [&](const std::vector<std::pair<std::string, uint32_t>>& entities) {
+        ignition::msgs::Pose_V message;
+        setStamp(*message.mutable_header(), stamp += 0.1);
+        for (const auto& [name, number] : entities) {
+            setPose(*message.add_pose(), name, number, 0, 0, 0);
+            message.mutable_pose(message.pose_size() - 1)->set_id(number);
+        }
+        world.send(message);
+        return next(1).value_or(types::Pose{}).position.x;
+    };
+    EXPECT_EQ(placeOther({{"red", 10}, {"blue", 12}, {"hull", 11}, {"blue", 50}}), 12) << "50 is a light";
+    EXPECT_EQ(placeOther({{"red", 10}, {"hull", 11}}), 12) << "removed";
+    EXPECT_EQ(placeOther({{"red", 10}, {"hull", 11}, {"blue", 70}}), 70) << "inserted again";
+    EXPECT_EQ(next(0).value_or(types::Pose{}).position.x, 21) << "the link is in its model";
+}
+
 TEST_F(PoseTaskTest, AMessageWakesTheTask) {
     startWith({entity("rov", "red")});
     task.activity().release();

@@ -352,6 +352,28 @@ def test_threads_read_one_log(deploy, tmp_path):
             pings[none]
 
 
+def test_a_log_in_several_files_is_one(deploy, tmp_path):
+    command = [INSONIFY, "run", deploy / "harbour_fls.yml", "--pings", "8", "--quiet", "--out"]
+    subprocess.run([*command, tmp_path / "one"], check=True, timeout=600)
+    subprocess.run([*command, tmp_path / "many", "--set", "log.max_file_size=1e6"], check=True, timeout=600)
+    one, many = (insonify.read_log(tmp_path / run / "harbour.0.log") for run in ("one", "many"))
+    assert one.files == [str(tmp_path / "one" / "harbour.0.log")] and one.notice == ""
+    names = [f"harbour.{i}.log" for i in range(len(many.files))]
+    assert many.files == [str(tmp_path / "many" / name) for name in names] and len(names) >= 3
+    assert f"is continued in {len(names) - 1} files up to {names[-1]}" in many.notice
+    assert len(many["receiver.ping"]) == 8
+    for name in one:
+        np.testing.assert_array_equal(many[name].times, one[name].times)
+    for index in range(-8, 8):
+        np.testing.assert_array_equal(many["receiver.ping"][index].bins, one["receiver.ping"][index].bins)
+    alone = insonify.Log(tmp_path / "many" / names[1])
+    assert alone.files == [str(alone.path)] and 0 < len(alone["receiver.ping"]) < 8
+    subprocess.run([*command, tmp_path / "other", "--seed", "9"], check=True, timeout=600)
+    (tmp_path / "other" / "harbour.0.log").rename(tmp_path / "many" / "harbour.1.log")
+    mixed = insonify.Log(tmp_path / "many" / names[0])
+    assert mixed.files == many.files[:1] and "harbour.1.log is of another run" in mixed.notice
+
+
 def test_a_file_that_is_not_a_log_is_an_error(tmp_path):
     (tmp_path / "x.log").write_bytes(b"not a log")
     with pytest.raises(insonify.ConfigError):

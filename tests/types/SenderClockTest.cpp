@@ -92,6 +92,30 @@ TEST(SenderClockTest, AcceptsEarlierStampsAfterASilence) {
     EXPECT_EQ(clock.read(at(0.2), at(ahead + 2)).order, Order::Restarted);
 }
 
+TEST(SenderClockTest, LateStampsInARowAreARestartOfAYoungSender) {
+    SenderClock clock;
+    clock.read(at(0.8), at(ahead));
+    for (int i = 1; i < SenderClock::max_late; ++i)
+        EXPECT_EQ(clock.read(at(0), at(ahead + 0.02 * i)).order, Order::Late) << "reset, and paused there";
+    EXPECT_EQ(clock.read(at(0), at(ahead + 0.1)).order, Order::Restarted);
+    EXPECT_EQ(clock.read(at(0.02), at(ahead + 0.12)).order, Order::Next);
+    for (int i = 1; i < 100; ++i) {  // two senders, of which one is 20 ms behind
+        EXPECT_EQ(clock.read(at(0.02 + 0.02 * i), at(ahead + 1 + 0.02 * i)).order, Order::Next);
+        EXPECT_EQ(clock.read(at(0.01 + 0.02 * i), at(ahead + 1 + 0.02 * i)).order, Order::Late);
+    }
+}
+
+TEST(SenderClockTest, StampsThatArriveAtOneInstantHaveTimesOfTheirOwn) {
+    SenderClock clock;
+    Time last;
+    for (const double stamp : {1.0, 1.05, 1.1, 1.15, 9.0, 9.1}) {
+        const Time time = clock.read(at(stamp), at(ahead)).time;
+        EXPECT_GT(time, last);
+        EXPECT_LE(time, at(ahead + 1e-5));
+        last = time;
+    }
+}
+
 TEST(SenderClockTest, AStampFarAheadDoesNotBlockLaterStamps) {
     SenderClock clock;
     clock.read(at(1), at(ahead + 1));

@@ -449,12 +449,18 @@ def _numbers(pose) -> np.ndarray:
 
 
 class Log(Mapping):
-    """The streams of a log by name: each a sequence of samples, with `times` [s], `type` and `metadata`."""
+    """The streams of a log by name: each a sequence of samples, with `times` [s], `type` and `metadata`.
+
+    The first file of a log in several files, x.0.log, x.1.log and so on, stands for all of the same run. `files` are
+    those that were read; `notice` says which were read with the first, and which are of another run, or is empty."""
 
     def __init__(self, path: str) -> None:
         self.path = str(path)
         log = native.log(self.path)
-        streams = zip(log.facts(), log.arrays())
+        facts = log.facts()
+        self.files: list[str] = facts["files"]
+        self.notice: str = facts["notice"]
+        streams = zip(facts["streams"], log.arrays())
         self._streams = {stream["name"]: _Samples(log, i, stream, times) for i, (stream, (_, times)) in enumerate(streams)}
 
     def __getitem__(self, name: str) -> _Samples:
@@ -504,6 +510,5 @@ class _Samples:
 
 
 def read_log(path: str) -> Log:
-    """Returns the streams of a log of Rock's format or an MCAP file. ConfigError for other
-    files."""
+    """Returns the streams of a log of Rock's format or MCAP, in all of its files. ConfigError for other files."""
     return Log(path)
