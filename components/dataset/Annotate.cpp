@@ -6,6 +6,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "types/Check.hpp"
+
 namespace insonify::dataset {
 namespace {
 
@@ -16,7 +18,7 @@ class Annotator {
 public:
     Annotator(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
               const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-              output::BinScale scale, std::span<const float> ranges)
+              output::BinScale scale, std::span<const float> ranges, std::span<const int32_t> hiders)
         : ping_(ping),
           truth_(truth),
           picture_(picture),
@@ -26,7 +28,8 @@ public:
           config_(config),
           decibel_(scale == output::BinScale::Decibel),
           bin_width_(ping.binWidth()),
-          ranges_(ranges) {
+          ranges_(ranges),
+          hiders_(hiders) {
         if (truth.beam_count != ping.beam_count || truth.bin_count != ping.bin_count)
             throw std::runtime_error("a ping has other beams or bins than its truth");
     }
@@ -57,7 +60,6 @@ private:
         return object < 0 || static_cast<size_t>(object) >= instances_.objectCount() ? none : instances_.of(object);
     }
     bool isGhost(size_t bin) const { return !truth_.path.empty() && truth_.isByMirror(bin); }
-    bool isWater(size_t bin) const { return !truth_.path.empty() && truth_.path[bin] == types::SonarTruth::water; }
     /** Returns the object whose direct echo is in a bin. */
     int32_t directAt(size_t bin) const { return isGhost(bin) ? none : truth_.object[bin]; }
     bool counts(size_t bin) const {
@@ -66,19 +68,23 @@ private:
                static_cast<double>(truth_.share[bin]) >= config_.min_share && intensity(bin) > 0;
     }
 
+    /** Returns the number of the shadow in a bin. */
+    int32_t getShadow(size_t bin) const {
+        return hiders_.empty() || hiders_[bin] == none ? none : hiders_[bin] + first_shadow_;
+    }
+
     void labelCells() {
         const uint32_t cells = picture_.cellsPerBeam(), step = picture_.binsPerCell();
         object_of_.assign(size_t{ping_.beam_count} * cells, none);
         if (ghost_ != 0) findGhosts();
         for (uint32_t beam = 0; beam < ping_.beam_count; ++beam) {
             if (ping_.bearings[beam].isUnknown()) continue;
-            if (config_.shadows) findShadows(beam);
             for (uint32_t cell = 0; cell < cells; ++cell) {
                 const size_t at = size_t{beam} * cells + cell;
                 const uint32_t last = std::min((cell + 1) * step, ping_.bin_count);
                 if (object_of_[at] == none && picture_.levels()[at] >= config_.min_level)
                     labelCell(beam, cell * step, last, object_of_[at]);
-                if (config_.shadows && object_of_[at] == none) object_of_[at] = shadow_of_[cell * step];
+                if (object_of_[at] == none) object_of_[at] = getShadow(size_t{beam} * ping_.bin_count + cell * step);
                 if (object_of_[at] != none) addCell(beam, cell, cell * step, last, object_of_[at]);
             }
         }
@@ -101,44 +107,6 @@ private:
             if (groups[at] > 0) object_of_[at] = 2 * first_shadow_ + groups[at] - 1;
     }
 
-    /** Finds the owner of the shadow in each bin of a beam. Sound that just passes the object reaches the first echo
-     *  behind the shadow. So the owner is the nearer object whose echo has the elevation closest to that of the first
-     *  echo behind. */
-    void findShadows(uint32_t beam) {
-        const size_t start = size_t{beam} * ping_.bin_count;
-        shadow_of_.assign(ping_.bin_count, none);
-        uint32_t first = 0;  // bin of the shadow
-        for (uint32_t k = 0; k < ping_.bin_count; ++k) {
-            if (truth_.shadow[start + k] != 0) continue;
-            if (first < k) std::fill(&shadow_of_[first], &shadow_of_[k], tracer(start, first, k));
-            first = k + 1;
-        }
-    }
-
-    /** Returns the number of the shadow of the object that hides the bins from `first` to `behind`. Returns none if the
-     *  object has no class, or is also what is behind the shadow, as on an uneven floor. If several echoes have
-     *  elevations within one bin's change of that behind, the last echo hides the bins: sound has passed the others.
-     *  Bins behind the shadow in which the water is louder than the first echoes are skipped. */
-    int32_t tracer(size_t start, uint32_t first, uint32_t behind) const {
-        while (behind + 1 < ping_.bin_count && isWater(start + behind)) ++behind;
-        const auto elevation = [&](uint32_t k) {
-            return isGhost(start + k) ? std::numeric_limits<double>::quiet_NaN()
-                                      : static_cast<double>(truth_.elevation[start + k]);
-        };
-        const auto apart = [&](uint32_t k) { return std::abs(elevation(k) - elevation(behind)); };
-        double nearest = std::numeric_limits<double>::infinity();
-        for (uint32_t k = 0; k < first; ++k)
-            if (directAt(start + k) != none && apart(k) <= nearest) nearest = apart(k);
-        if (behind + 1 < ping_.bin_count && std::isfinite(apart(behind + 1))) nearest += apart(behind + 1);
-        for (uint32_t k = first; k-- > 0;) {
-            if (directAt(start + k) == none || !(apart(k) <= nearest)) continue;
-            const int32_t placer = instanceAt(start + k);
-            if (placer == none || placer == instanceAt(start + behind)) return none;
-            return instances_.shadow(placer) == 0 ? none : placer + first_shadow_;
-        }
-        return none;
-    }
-
     void labelCell(uint32_t beam, uint32_t first, uint32_t last, int32_t& object) const {
         double strongest = 0;
         for (uint32_t k = first; k < last; ++k) {
@@ -151,9 +119,9 @@ private:
         }
     }
     /** Returns whether a bin shows the label of its cell. */
-    bool shows(size_t bin, uint32_t number, int32_t object) const {
+    bool shows(size_t bin, int32_t object) const {
         if (object >= 2 * first_shadow_) return isGhost(bin);
-        return object >= first_shadow_ ? shadow_of_[number] == object : instanceAt(bin) == object && !isGhost(bin);
+        return object >= first_shadow_ ? getShadow(bin) == object : instanceAt(bin) == object && !isGhost(bin);
     }
 
     void addCell(uint32_t beam, uint32_t cell, uint32_t first, uint32_t last, int32_t object) {
@@ -167,7 +135,7 @@ private:
         annotation.range_max = std::max(annotation.range_max, far);
         for (uint32_t k = first; k < last; ++k) {
             const size_t bin = size_t{beam} * ping_.bin_count + k;
-            if (!shows(bin, k, object)) continue;
+            if (!shows(bin, object)) continue;
             ++annotation.bins;
             if (annotation.is_shadow) continue;
             annotation.energy += intensity(bin) * (annotation.object < 0 ? 1 : static_cast<double>(truth_.share[bin]));
@@ -252,12 +220,12 @@ private:
     const int32_t first_shadow_;  ///< Number of objects of the truth.
     const AnnotationConfig& config_;
     const bool decibel_;
-    const double bin_width_;               ///< [m]
-    const std::span<const float> ranges_;  ///< Range of each beam of a range image [m].
+    const double bin_width_;                 ///< [m]
+    const std::span<const float> ranges_;    ///< Range of each beam of a range image [m].
+    const std::span<const int32_t> hiders_;  ///< The instance that hides each bin; empty: shadows have no annotation.
     /** The label of each cell: an instance; from first_shadow_ on the shadow of an instance; from 2 * first_shadow_ on
      *  a ghost. */
     std::vector<int32_t> object_of_;
-    std::vector<int32_t> shadow_of_;  ///< The label of the shadow in each bin of a beam.
     std::map<int32_t, Annotation> found_;
 };
 
@@ -285,10 +253,28 @@ std::vector<int32_t> Instances::parts(int32_t instance) const {
     return all;
 }
 
+namespace {
+
+/** Returns whether a bin has an echo of a surface. */
+bool isLit(const types::SonarTruth& truth, size_t bin) {
+    return truth.object[bin] != types::SonarTruth::no_object || truth.hits[bin] > 0;
+}
+
+}  // namespace
+
+void addShadow(const types::SonarTruth& with, const types::SonarTruth& without, int32_t instance,
+               std::span<int32_t> hiders) {
+    INSONIFY_CHECK(with.object.size() == without.object.size() && hiders.size() == with.object.size(),
+                   with.object.size(), without.object.size(), hiders.size());
+    for (size_t bin = 0; bin < hiders.size(); ++bin)
+        if (hiders[bin] == none && !isLit(with, bin) && isLit(without, bin) && !without.isByMirror(bin))
+            hiders[bin] = instance;
+}
+
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
                    const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-                   output::BinScale scale, std::span<const float> ranges) {
-    return Annotator(ping, truth, picture, classes, instances, config, scale, ranges).annotated();
+                   output::BinScale scale, std::span<const float> ranges, std::span<const int32_t> hiders) {
+    return Annotator(ping, truth, picture, classes, instances, config, scale, ranges, hiders).annotated();
 }
 
 }  // namespace insonify::dataset

@@ -72,8 +72,13 @@ struct Annotated {
     std::vector<uint16_t> labels;         ///< Per pixel, row by row: number of its annotation from 1; 0: none.
 };
 
-/** Finds the instances in a picture, the shadows if AnnotationConfig::shadows is set, and the ghosts if
- *  AnnotationConfig::ghosts is set.
+/** Marks the shadow of an instance in bins that have no shadow yet: bins with an echo of a surface `without` the
+ *  instance, by no mirror, and without one `with` it. Both truths have the bins of one ping.
+ *  @param hiders for each bin the instance that hides its surface; -1: none */
+void addShadow(const types::SonarTruth& with, const types::SonarTruth& without, int32_t instance,
+               std::span<int32_t> hiders);
+
+/** Finds the instances in a picture, their shadows, and the ghosts if AnnotationConfig::ghosts is set.
  *
  *  A cell shows the instance whose object contributes the most energy to one of the cell's bins. The object's share of
  *  that bin must be at least `min_share`, it must have a class, and the cell's grey level must be at least `min_level`.
@@ -81,10 +86,11 @@ struct Annotated {
  *  Annotations with fewer than `min_pixels` pixels are omitted.
  *  @param picture the picture that shows the ping
  *  @param ranges range of each beam of a range image, which has one bin per beam [m]
+ *  @param hiders the instance whose shadow each bin is, by addShadow(); empty: no shadows
  *
  *  Throws std::runtime_error for a truth of another grid. */
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
                    const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-                   output::BinScale scale, std::span<const float> ranges = {});
+                   output::BinScale scale, std::span<const float> ranges = {}, std::span<const int32_t> hiders = {});
 
 }  // namespace insonify::dataset

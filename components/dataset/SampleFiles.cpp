@@ -222,7 +222,7 @@ Annotated SampleFiles::makeAnnotated(const Recorded& recorded) {
     }
     picture_.take(ping);
     return annotate(ping, recorded.run.truth(), picture_, classes_, recorded.instances, sweep_.annotations,
-                    sweep_.picture.scale);
+                    sweep_.picture.scale, {}, recorded.hiders);
 }
 
 Json SampleFiles::makeRecord(const Recorded& recorded, const Annotated& annotated) const {

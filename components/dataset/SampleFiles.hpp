@@ -42,6 +42,7 @@ struct Recorded {
     std::vector<std::pair<std::string, Json>> settings{};  ///< "task.property", value.
     types::DepthMapPtr range_image{};                      ///< The range image of a 3-D sonar, else null.
     types::SonarTruthPtr range_truth{};                    ///< The truth of its cells, one bin per cell.
+    std::vector<int32_t> hiders{};                         ///< As annotate() has them.
 };
 
 /** Writes the files of samples in one format, and their records. */

@@ -14,6 +14,7 @@
 #include "components/framework/Properties.hpp"
 #include "components/framework/Wiring.hpp"
 #include "components/framework/execution/Activity.hpp"
+#include "components/scene/SceneTask.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
 #include "types/text/ConfigError.hpp"
 
@@ -262,6 +263,16 @@ void Simulation::set(const std::map<std::string, std::string>& values) {
     deployment_->set(values, framework::set_origin);
     for (const auto& [property, value] : values)
         if (property.ends_with(".seed")) own_seeds_.insert(property.substr(0, property.size() - 5));
+}
+
+void Simulation::setHideable(const std::vector<uint32_t>& objects) {
+    for (const auto& task : deployment_->tasks())
+        if (auto* const scene = dynamic_cast<scene::SceneTask*>(task.get())) scene->setHideable(objects);
+}
+
+void Simulation::hide(const std::vector<uint32_t>& objects) {
+    for (const auto& task : deployment_->tasks())
+        if (auto* const scene = dynamic_cast<scene::SceneTask*>(task.get())) scene->hide(objects);
 }
 
 void Simulation::throwErrors() const {

@@ -124,6 +124,10 @@ public:
      *  Throws types::ConfigError as the same assignments in SimulationOptions::overrides, and std::runtime_error for
      *  properties that a running task cannot change. */
     void set(const std::map<std::string, std::string>& values);
+    /** Names objects of the scenes that hide() may hide, before the first step: indices into Geometry::objects. */
+    void setHideable(const std::vector<uint32_t>& objects);
+    /** Hides these objects, and shows all others, from the next step on, also after reset(). */
+    void hide(const std::vector<uint32_t>& objects);
     /** Throws std::invalid_argument for 0, the deployment's own seeds, which only a new simulation has. */
     static void refuseSeed(std::optional<uint64_t> seed);
     /** Returns to the state right after construction, with this seed, not 0; none: the same seed. The scene stays

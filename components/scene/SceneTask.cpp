@@ -327,7 +327,7 @@ bool SceneTask::configureHook() {
     lay_ = layText(*scene);
     side_ = isGltf(config->file) ? sideWarning(*scene->geometry) : "";
     std::ranges::sort(movables_, {}, &Movable::node);
-    movable_objects_ = getObjects(movables_);
+    movable_objects_ = getMovableObjects();
     mover_.assign(geometry_->objects.size(), nullptr);
     return true;
 }
@@ -436,6 +436,7 @@ void SceneTask::updateHook() try {
     addMoved(sample->moved);
     sample->movable = movable_objects_;
     if (animator_) animator_->addMoved(sample->moved), animator_->addDeformed(*sample);
+    addHidden(sample->moved);
     addTargets(sample->targets);
     sample->target_names = target_names_;
     pool_.stock(*sample, [this](types::Snapshot& stocked) { stocked.moved.reserve(part_count_); });
@@ -503,9 +504,27 @@ void SceneTask::animate(types::Time time) {
     animator_->take((environment().elapsed() + (time - now())).seconds(), driven_);
 }
 
-std::shared_ptr<const std::vector<uint32_t>> SceneTask::getObjects(const std::vector<Movable>& movables) {
-    std::set<uint32_t> objects;
-    for (const Movable& movable : movables)
+void SceneTask::setHideable(std::vector<uint32_t> objects) {
+    hideable_ = std::move(objects);
+    movable_objects_ = getMovableObjects();
+}
+
+void SceneTask::addHidden(std::vector<types::MovedObject>& moved) const {
+    constexpr double depth = 1e5;  // [m]
+    for (const uint32_t object : hidden_) {
+        glm::dmat4 place = geometry_->objects[object].world_from_object;
+        place[3].z -= depth;
+        const auto found = std::ranges::find(moved, object, &types::MovedObject::object);
+        if (found == moved.end())
+            moved.push_back({object, place});
+        else
+            *found = {object, place};
+    }
+}
+
+std::shared_ptr<const std::vector<uint32_t>> SceneTask::getMovableObjects() const {
+    std::set<uint32_t> objects(hideable_.begin(), hideable_.end());
+    for (const Movable& movable : movables_)
         for (const Part& part : movable.parts) objects.insert(static_cast<uint32_t>(part.object));
     if (objects.empty()) return nullptr;
     return std::make_shared<const std::vector<uint32_t>>(objects.begin(), objects.end());

@@ -80,6 +80,11 @@ public:
     double wakeAfter() const override;
     std::string indivisible() const override;
     bool waits() const override { return is_stale_ && newest_came_; }
+    /** Names objects that hide() may hide, as indices into Geometry::objects, so that sonars prepare for it. To be
+     *  called before the first snapshot. */
+    void setHideable(std::vector<uint32_t> objects);
+    /** Hides these objects, and shows all others, from the next snapshot on: they are far below the world. */
+    void hide(std::vector<uint32_t> objects) { hidden_ = std::move(objects); }
 
 private:
     bool configureHook() override;
@@ -128,8 +133,9 @@ private:
     bool readMovables();
     void placeTargets(const Scene& scene, types::Diagnostics& diagnostics);
     void addMoved(std::vector<types::MovedObject>& moved);
-    /** Returns the objects that movables move, ascending; null: there are none. */
-    static std::shared_ptr<const std::vector<uint32_t>> getObjects(const std::vector<Movable>& movables);
+    void addHidden(std::vector<types::MovedObject>& moved) const;
+    /** Returns the objects that movables or hide() move, ascending; null: there are none. */
+    std::shared_ptr<const std::vector<uint32_t>> getMovableObjects() const;
     void addTargets(std::vector<types::PointTarget>& targets) const;
     const Movable* findMovable(int node) const;
     framework::InputPortBase* makeTimeInput(const std::string& port);
@@ -155,6 +161,7 @@ private:
     std::vector<Movable> movables_;  ///< Outer nodes before inner nodes, once configured.
     size_t part_count_ = 0;          ///< Parts of all movables; their memory is allocated before they move.
     std::shared_ptr<const std::vector<uint32_t>> movable_objects_;  ///< Null: no port moves an object.
+    std::vector<uint32_t> hideable_, hidden_;                       ///< See hide().
     std::vector<const Movable*> mover_;                             ///< For each object, the movable that moves it now.
     std::unique_ptr<Animator> animator_;                            ///< Null: nothing moves by itself, nor is deformed.
     std::vector<Timed> timed_;

@@ -51,7 +51,7 @@ struct AnnotateTest : ::testing::Test {
         std::vector<Lineage> lineages = lineages_;
         for (size_t i = lineages.size(); i < truth_.objects.size(); ++i) lineages.push_back({truth_.objects[i]});
         const Instances instances(classes, lineages);
-        return annotate(ping_, truth_, *shown_, classes, instances, config_, picture_.scale);
+        return annotate(ping_, truth_, *shown_, classes, instances, config_, picture_.scale, {}, hiders_);
     }
     /** Whether a box contains the pixel of a bin. */
     bool holds(const Box& box, uint32_t beam, uint32_t bin) const {
@@ -61,6 +61,7 @@ struct AnnotateTest : ::testing::Test {
 
     types::Sonar ping_;
     types::SonarTruth truth_;
+    std::vector<int32_t> hiders_;  ///< Empty: no shadows.
     Sweep sweep_;
     std::vector<Lineage> lineages_;  ///< Empty: each object is alone.
     std::vector<std::string> nodes_;
@@ -120,29 +121,17 @@ TEST_F(AnnotateTest, EachObjectOfAClassHasABoxThatHoldsItsBins) {
     EXPECT_TRUE(holds(pile.box, 40, 70));
 }
 
-TEST_F(AnnotateTest, AShadowBelongsToTheObjectThatTheSoundJustPasses) {
+TEST_F(AnnotateTest, AShadowIsThatOfTheObjectThatHidesItsBins) {
     sweep_.annotations.shadows = config_.shadows = true;
-    truth_.shadow.assign(ping_.bins.size(), 0);
-    truth_.elevation.resize(ping_.bins.size());
-    for (uint32_t beam = 0; beam < beams; ++beam)
-        for (uint32_t bin = 0; bin < bins; ++bin)  // a floor 20 bins below
-            truth_.elevation[size_t{beam} * bins + bin] = -std::asin(20.0f / static_cast<float>(std::max(bin, 20u)));
-    const auto hide = [&](Span in_beams, Span in_bins, float above) {  // an object at 50 to 60 hides the bins behind it
+    hiders_.assign(ping_.bins.size(), nothing);
+    const auto hide = [&](Span in_beams, Span in_bins) {
         put(nothing, in_beams, in_bins, 0, 0);
-        for (uint32_t beam = in_beams.first; beam < in_beams.last; ++beam) {
-            for (uint32_t bin = in_bins.first; bin < in_bins.last; ++bin) {
-                truth_.shadow[size_t{beam} * bins + bin] = 1;
-                truth_.elevation[size_t{beam} * bins + bin] = std::numeric_limits<float>::quiet_NaN();
-            }
-            for (uint32_t bin = 50; bin < 60; ++bin)
-                truth_.elevation[size_t{beam} * bins + bin] =
-                    truth_.elevation[size_t{beam} * bins + in_bins.last] - above;
-        }
+        for (uint32_t beam = in_beams.first; beam < in_beams.last; ++beam)
+            std::fill_n(&hiders_[size_t{beam} * bins + in_bins.first], in_bins.last - in_bins.first, 1);
     };
-    hide({20, 24}, {60, 80}, 0.001f);  // its base is on the floor
-    put(1, {30, 34}, {50, 60});
-    hide({30, 34}, {75, 90}, 0.02f);   // it floats; the floor is visible between it and its shadow
-    hide({50, 54}, {75, 90}, 0.001f);  // the floor's own
+    hide({20, 24}, {60, 80});
+    hide({30, 34}, {75, 90});
+    put(nothing, {50, 54}, {75, 90}, 0, 0);  // dark, and hidden by nothing
     const Annotated all = annotated();
     ASSERT_THAT(all.annotations, SizeIs(3));
     const Annotation& shadow = all.annotations[2];
@@ -158,6 +147,18 @@ TEST_F(AnnotateTest, AShadowBelongsToTheObjectThatTheSoundJustPasses) {
     EXPECT_EQ(shadow.bearing_max, ping_.bearings[33].rad);
     EXPECT_TRUE(holds(shadow.box, 21, 70) && holds(shadow.box, 33, 89));
     EXPECT_FALSE(holds(shadow.box, 52, 80));
+}
+
+/** Bins of a beam: lit in both pings, dark in both, hidden, hidden behind water, lit by a mirror without the object,
+ *  and hidden by another object already. */
+TEST_F(AnnotateTest, AShadowIsLitWithoutItsObjectAndDarkWithIt) {
+    types::SonarTruth with, without;
+    with.beam_count = without.beam_count = 1, with.bin_count = without.bin_count = 6;
+    with.object = {0, -1, -1, -1, -1, -1}, with.hits = {3, 0, 0, 0, 0, 0}, with.path = {0, 0, 0, 6, 0, 0};
+    without.object = {0, -1, 0, -1, 0, 0}, without.hits = {3, 0, 2, 2, 2, 2}, without.path = {0, 0, 0, 6, 1, 0};
+    std::vector<int32_t> hiders = {-1, -1, -1, -1, -1, 7};
+    addShadow(with, without, 4, hiders);
+    EXPECT_THAT(hiders, ElementsAre(-1, -1, 4, 4, -1, 7));
 }
 
 TEST_F(AnnotateTest, RunsLabelsAndAreaAgree) {
@@ -276,54 +277,21 @@ TEST_F(AnnotateTest, ObjectsBeyondTheFilesAreOfNoClass) {
     EXPECT_EQ(all.annotations[0].name, "rock");
 }
 
-/** A rise of the floor that hides some of the floor, far behind an object whose top is as high as the first echo
- *  behind. */
-TEST_F(AnnotateTest, AShadowOfTheFloorBelongsToNoObject) {
-    sweep_.annotations.shadows = config_.shadows = true;
-    config_.min_pixels = 1;
-    truth_.shadow.assign(ping_.bins.size(), 0);
-    truth_.elevation.resize(ping_.bins.size());
-    const auto at = [](uint32_t beam, uint32_t bin) { return size_t{beam} * bins + bin; };
-    for (uint32_t beam = 0; beam < beams; ++beam)
-        for (uint32_t bin = 0; bin < bins; ++bin)
-            truth_.elevation[at(beam, bin)] = -std::asin(20.0f / static_cast<float>(std::max(bin, 20u)));
-    for (uint32_t beam = 20; beam < 24; ++beam) {
-        for (uint32_t bin = 75; bin < 80; ++bin) {
-            truth_.shadow[at(beam, bin)] = 1, truth_.object[at(beam, bin)] = nothing;
-            truth_.elevation[at(beam, bin)] = std::numeric_limits<float>::quiet_NaN();
-        }
-        truth_.elevation[at(beam, 74)] = truth_.elevation[at(beam, 80)] - 0.001f;   // the rise
-        truth_.elevation[at(beam, 55)] = truth_.elevation[at(beam, 80)] - 0.0005f;  // of the rock
-    }
-    for (const Annotation& each : annotated().annotations) EXPECT_FALSE(each.is_shadow) << each.name;
-}
-
-/** A rock's shadow is full of water, which is also louder than the first echoes of the floor behind it. */
+/** A rock's shadow is full of water. */
 TEST_F(AnnotateTest, WaterIsInNoMaskAndInEachShadow) {
     sweep_.annotations.shadows = config_.shadows = true;
-    const auto at = [](uint32_t beam, uint32_t bin) { return size_t{beam} * bins + bin; };
-    truth_.shadow.assign(ping_.bins.size(), 0);
     truth_.path.assign(ping_.bins.size(), 0);
-    truth_.elevation.resize(ping_.bins.size());
-    const auto elevation = [](uint32_t bin) { return -std::asin(20.0f / static_cast<float>(std::max(bin, 20u))); };
-    for (uint32_t beam = 0; beam < beams; ++beam)
-        for (uint32_t bin = 0; bin < bins; ++bin) truth_.elevation[at(beam, bin)] = elevation(bin);
-    for (uint32_t beam = 20; beam < 24; ++beam) {
-        for (uint32_t bin = 50; bin < 60; ++bin) truth_.elevation[at(beam, bin)] = elevation(83) - 0.001f;
-        for (uint32_t bin = 60; bin < 80; ++bin) truth_.shadow[at(beam, bin)] = 1;
-    }
-    put(nothing, {20, 24}, {60, 80}, 0, 0);
-    put(nothing, {50, 60}, {5, 20}, 0, 0);
-    const auto fillWithWater = [&](Span in_beams, Span in_bins) {
+    hiders_.assign(ping_.bins.size(), nothing);
+    const auto fillWithWater = [&](Span in_beams, Span in_bins, int32_t hider) {
         put(nothing, in_beams, in_bins, 0.5f, 0.9f);
         for (uint32_t beam = in_beams.first; beam < in_beams.last; ++beam)
             for (uint32_t bin = in_bins.first; bin < in_bins.last; ++bin) {
-                truth_.path[at(beam, bin)] = types::SonarTruth::water;
-                truth_.elevation[at(beam, bin)] = std::numeric_limits<float>::quiet_NaN();
+                truth_.path[size_t{beam} * bins + bin] = types::SonarTruth::water;
+                hiders_[size_t{beam} * bins + bin] = hider;
             }
     };
-    fillWithWater({20, 24}, {60, 83});
-    fillWithWater({50, 60}, {5, 20});
+    fillWithWater({20, 24}, {60, 80}, 1);
+    fillWithWater({50, 60}, {5, 20}, nothing);
     const Annotated all = annotated();
     ASSERT_THAT(all.annotations, SizeIs(3)) << "rock, pile, and the rock's shadow";
     EXPECT_EQ(all.annotations[0].bins, 4u * 10);

@@ -442,21 +442,71 @@ void DatasetRun::simulate(const Sample& sample) {
     if (simulation_ && options.overrides == overrides_ && sample.scene == scene_) return;
     try {
         before_ = std::exchange(simulation_, std::make_unique<deployer::Simulation>(deployment_, options));
+        hiding_.reset();
+        if (sweep_.annotations.shadows) hiding_ = std::make_unique<deployer::Simulation>(deployment_, options);
+        if (hiding_) hiding_->setHideable(getHiders(sample.scene));
     } catch (const types::ConfigError& error) {
         throw placed(error.diagnostics(), sample);
     }
     overrides_ = options.overrides, scene_ = sample.scene;
 }
 
+/** Returns the objects of a scene that are of an instance whose shadow is annotated. */
+std::vector<uint32_t> DatasetRun::getHiders(size_t scene) const {
+    const Instances& instances = instances_[scene];
+    std::vector<uint32_t> objects;
+    for (size_t i = 0; i < instances.objectCount(); ++i)
+        if (instances.shadow(instances.of(static_cast<int32_t>(i))) != 0) objects.push_back(static_cast<uint32_t>(i));
+    return objects;
+}
+
+std::map<std::string, types::Pose> DatasetRun::placeObjects(const Sample& sample) const {
+    std::map<std::string, types::Pose> at;
+    for (const PlacedObject& object : sample.objects) at[deployer::Simulation::objectPort(object.name)] = object.at;
+    return at;
+}
+
+/** Returns the instance whose shadow each bin of a sample is: lines that show an instance, and the lines next to them,
+ *  are rendered again without it. */
+std::vector<int32_t> DatasetRun::findHiders(const Sample& sample, const std::string& vehicle, const Run& run) {
+    constexpr size_t margin = 2;  // lines before and behind those with an echo
+    const Instances& instances = instances_[sample.scene];
+    std::map<int32_t, std::vector<bool>> shown;  // lines by instance
+    for (size_t line = 0; line < run.size(); ++line)
+        for (const int32_t object : run.truths()[line]->object)
+            if (object >= 0 && static_cast<size_t>(object) < instances.objectCount() &&
+                instances.shadow(instances.of(object)) != 0) {
+                std::vector<bool>& lines = shown[instances.of(object)];
+                lines.resize(run.size());
+                lines[line] = true;
+            }
+    std::map<std::string, types::Pose> at = placeObjects(sample);
+    const size_t bins = run.truths()[0]->object.size();
+    std::vector<int32_t> hiders(run.size() * bins, types::SonarTruth::no_object);
+    for (const auto& [instance, lines] : shown) {
+        const std::vector<int32_t> parts = instances.parts(instance);
+        hiding_->hide({parts.begin(), parts.end()});
+        hiding_->reset(sample.seed);
+        const double start = hiding_->time();
+        for (size_t line = 0; line < run.size(); ++line) {
+            const auto first = lines.begin() + static_cast<ptrdiff_t>(line > margin ? line - margin : 0);
+            const auto last = lines.begin() + static_cast<ptrdiff_t>(std::min<size_t>(run.size(), line + margin + 1));
+            if (std::find(first, last, true) == last) continue;
+            at[vehicle] = sample.run[line].at;
+            const deployer::SteppedPing made = hiding_->step(at, start + sample.run[line].time).front();
+            if (!made.truth) throw std::runtime_error(fmt::format("sample {} made no ping", sample.index));
+            addShadow(*run.truths()[line], *made.truth, instance, std::span(hiders).subspan(line * bins, bins));
+        }
+    }
+    return hiders;
+}
+
 void DatasetRun::make(uint64_t index, SampleFiles& files) {
     const Sample sample = samples_->at(index);
     simulate(sample);
     std::vector<std::string> vehicles = simulation_->poses();
-    std::map<std::string, types::Pose> at;
-    for (const PlacedObject& object : sample.objects) {
-        at[deployer::Simulation::objectPort(object.name)] = object.at;
-        std::erase(vehicles, deployer::Simulation::objectPort(object.name));
-    }
+    std::map<std::string, types::Pose> at = placeObjects(sample);
+    for (const auto& [port, pose] : at) std::erase(vehicles, port);
     const std::string vehicle = findOnly(vehicles, deployment_, "vehicles");
     findOnly(simulation_->pings(), deployment_, "pings");
     const bool is_3d = simulation_->hasRangeImages(0);
@@ -486,7 +536,8 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
     for (const auto& [property, yaml] : sample.settings)
         settings.emplace_back(property, deployer::toJson(framework::parseValue(yaml)));
     files.write({sample, run, instances_[sample.scene], scenes_[sample.scene].name, std::move(settings),
-                 made.range_image, made.range_truth});
+                 made.range_image, made.range_truth,
+                 hiding_ ? findHiders(sample, vehicle, run) : std::vector<int32_t>()});
 }
 
 }  // namespace insonify::dataset

@@ -87,6 +87,9 @@ private:
     std::vector<std::string> tasksOfType(const std::string& type) const;
     types::ConfigError placed(types::Diagnostics diagnostics, const Sample& sample) const;
     void simulate(const Sample& sample);
+    std::map<std::string, types::Pose> placeObjects(const Sample& sample) const;
+    std::vector<uint32_t> getHiders(size_t scene) const;
+    std::vector<int32_t> findHiders(const Sample& sample, const std::string& vehicle, const Run& run);
 
     const std::string deployment_;
     const Changes changes_;
@@ -101,6 +104,7 @@ private:
     std::string digest_, origin_;                       ///< As in Title.
     std::unique_ptr<deployer::Simulation> simulation_;  ///< One scene with its settings.
     std::unique_ptr<deployer::Simulation> before_;      ///< The previous one, kept until the next first sample.
+    std::unique_ptr<deployer::Simulation> hiding_;      ///< The same without single objects, where shadows are wanted.
     std::vector<std::string> overrides_;                ///< Overrides of the current simulation.
     size_t scene_ = 0;                                  ///< Scene of the current simulation.
 };
