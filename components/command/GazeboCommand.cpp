@@ -99,12 +99,17 @@ public:
             "# The sonars of world {0}. Made by `insonify gazebo {1} --print`.\nschedule: realtime\ntasks:\n"
             "  world:\n    type: gazebo::PoseTask\n    properties:\n      world: {2}\n{3}      bodies:\n",
             quoted(sonars_.world), quoted(asked_.world), quoted(sonars_.world), partition("      "));
+        const auto addBody = [&](const std::string& port, const std::string& entity, double rate) {
+            text += fmt::format("        - {{port: {}, entity: {}, period: {}}}\n", port, quoted(entity),
+                                rate > 0 ? 1 / rate : 0.0);
+        };
+        const double rate = sonars_.sonars.front().update_rate;
+        const bool is_common =
+            std::ranges::all_of(sonars_.sonars, [&](auto& each) { return each.update_rate == rate; });
         // What moves comes before the sonars, whose poses cause pings.
         for (size_t i = 0; i < moving_ports_.size(); ++i)
-            text += fmt::format("        - {{port: {}, entity: {}}}\n", moving_ports_[i], quoted(sonars_.moving[i]));
-        for (const SonarSensor& sonar : sonars_.sonars)
-            text += fmt::format("        - {{port: {}, entity: {}, period: {}}}\n", names_.at(&sonar),
-                                quoted(sonar.link), sonar.update_rate > 0 ? 1 / sonar.update_rate : 0.0);
+            addBody(moving_ports_[i], sonars_.moving[i], is_common ? rate : 0);
+        for (const SonarSensor& sonar : sonars_.sonars) addBody(names_.at(&sonar), sonar.link, sonar.update_rate);
         text += tasks_;
         text += fmt::format(
             "  to_gazebo:\n    type: gazebo::PublisherTask\n    properties:\n      world: {}\n{}      topics:\n{}",
@@ -167,12 +172,14 @@ private:
         const std::string name = unique(getWord(sonar.name));
         names_[&sonar] = name;
         const types::Mount& mount = sonar.mount;
+        const bool is_rare = sonar.update_rate > 0 && sonar.update_rate < 2;  // for the usual timeout of a second
         addTask(
             name + "_scene", "scene::SceneTask",
             fmt::format(
-                "      gazebo: {{world: {}, timeout: {}{}}}\n      mount: {{position: [{}, {}, {}], roll_deg: {}, "
+                "{}      gazebo: {{world: {}, timeout: {}{}}}\n      mount: {{position: [{}, {}, {}], roll_deg: {}, "
                 "pitch_deg: {}, yaw_deg: {}}}\n",
-                quoted(sonars_.world), asked_.gazebo.timeout,
+                is_rare ? fmt::format("      pose_timeout: {}\n", 2 / sonar.update_rate) : "", quoted(sonars_.world),
+                asked_.gazebo.timeout,
                 asked_.gazebo.partition.empty() ? "" : ", partition: " + quoted(asked_.gazebo.partition),
                 mount.position.x, mount.position.y, mount.position.z, mount.roll_deg, mount.pitch_deg, mount.yaw_deg));
         for (size_t i = 0; i < moving_ports_.size(); ++i)

@@ -247,12 +247,18 @@ TEST_F(GazeboSensorTest, AWorldThatRunsIsAskedForItsSdf) {
     ASSERT_TRUE(server.Advertise("/world/two_vehicles/generate_world_sdf", answer));
     const Outcome outcome = callInsonify(folder, {"gazebo", "two_vehicles", "--print", "--timeout", "20"});
     ASSERT_THAT(outcome, succeeds());
-    for (const char* part : {"entity: \"red::hull\", period: 0.2",
+    for (const char* part : {"entity: \"red::hull\", period: 0.2", "entity: \"mooring::float\", period: 0.2",
                              "topic: \"/world/two_vehicles/model/red/link/hull/sensor/fls/insonify\"", "range: 30",
                              "beam_count: 64", "{from: world.model_blue, to: \"red_hull_fls_scene.blue.pose\"}"})
         EXPECT_THAT(outcome.out, HasSubstr(part));
+    EXPECT_THAT(outcome.out, Not(HasSubstr("pose_timeout")));
     writeFile(folder / "a.yml", outcome.out);
     EXPECT_THAT(callInsonify(folder, {"check", "a.yml"}), succeeds()) << outcome.out;
+
+    const auto print = [&](const std::string& rates) { return call(worldWith(rates), {"--print"}).out; };
+    const std::string slow = sensor("slow", properties, "<update_rate>0.5</update_rate>");
+    EXPECT_THAT(print(slow), AllOf(HasSubstr("entity: \"blue\", period: 2}"), HasSubstr("pose_timeout: 4\n")));
+    EXPECT_THAT(print(slow + sensor("all", properties, "")), HasSubstr("entity: \"blue\", period: 0}"));
 }
 
 TEST_F(GazeboSensorTest, EveryKindOfSonarAndAnyNamesMakeADeployment) {
