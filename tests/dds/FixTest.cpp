@@ -373,7 +373,7 @@ TEST_F(FixRunTest, FaultyDeploymentsAreRefusedWithTheirPlace) {
     const std::string datum = "datum: {latitude_deg: 54.5, longitude_deg: 10.25, height_m: 40}\n";
     EXPECT_THAT(checkWith("x.0.log", "x.1.log"), succeeds());
     EXPECT_THAT(checkWith(datum, ""),
-                isRefused(AllOf(HasSubstr("x.yml:5:"), HasSubstr("tasks.gps.properties.datum: is missing"))));
+                isRefused(AllOf(HasSubstr("x.yml:7:"), HasSubstr("tasks.gps.properties.datum: is missing"))));
     EXPECT_THAT(
         checkWith("    properties:\n", "    properties:\n      datum: {latitude_deg: 54.6, longitude_deg: 10.25}\n"),
         isRefused(HasSubstr("tasks.gps.properties.datum: is {latitude_deg: 54.6, longitude_deg: 10.25, "
