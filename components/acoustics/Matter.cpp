@@ -32,14 +32,20 @@ double rockRms(double longest) {
 constexpr double computeLength(double longest) { return longest / (2 * std::numbers::pi); }
 constexpr double longest_of_bed = 1, longest_of_block = 0.1;  ///< [m]
 
-/** Returns the speed of sound [m/s] of a mixture of water and calcite of a density [kg/m^3], by Wood's equation
+/** A solid whose grains or fibres are mixed with water. */
+struct Mixed {
+    double density, modulus;  ///< [kg/m^3], [Pa]
+};
+constexpr Mixed calcite{2710, 70e9}, cell_wall{1500, 10e9};
+
+/** Returns the speed of sound [m/s] of a mixture of water and a solid of a density [kg/m^3], by Wood's equation
  *  (1955). */
-double mixtureSpeed(double density) {
-    constexpr double water = 1025, water_speed = 1500, calcite = 2710, calcite_modulus = 70e9;
-    const double solid = (density - water) / (calcite - water);
-    return 1 / std::sqrt(density * ((1 - solid) / (water * water_speed * water_speed) + solid / calcite_modulus));
+double mixtureSpeed(double density, const Mixed& solid) {
+    constexpr double water = 1025, water_speed = 1500;
+    const double share = (density - water) / (solid.density - water);
+    return 1 / std::sqrt(density * ((1 - share) / (water * water_speed * water_speed) + share / solid.modulus));
 }
-constexpr double fouling_density = 1400;
+constexpr double fouling_density = 1400, paper_density = (1025 + cell_wall.density) / 2;  ///< [kg/m^3]
 
 constexpr std::string_view none = "not known";
 constexpr std::string_view moody = "Moody 1944, by Adams et al. 2012; length decided here";
@@ -101,11 +107,21 @@ const MatterProperties table[] = {
      "Haynes 2014, nylon", "derived here, strands of 10 mm"},
     {Matter::Net, 0.31, 1110, 2620, 1070, 2e-2, strand_rms * net_twine, strand_length * net_twine, false,
      "Haynes 2014, nylon", "derived here, twine of 2 mm"},
-    {Matter::Fouling, 0.14, fouling_density, mixtureSpeed(fouling_density), 0, 5e-2, rms(3e-3),
+    {Matter::Fouling, 0.14, fouling_density, mixtureSpeed(fouling_density, calcite), 0, 5e-2, rms(3e-3),
      length_over_rms * rms(3e-3), false, "ISO 19902 2020, by Wood 1955",
      "Schultz 2007, medium calcareous, by Adams et al. 2012; length decided here"},
     {Matter::HumanBody, 0.08, 1109, 1624, 0, 5e-2, 20e-6, 200e-6, false, "Hasgall et al. 2022, skin",
      "Tchvialeva et al. 2010; length decided here"},
+    {Matter::Pet, 0.39, 1380, 2540, 1150, 1e-2, rms(1.5e-6), length_over_rms * rms(1.5e-6), true,
+     "Selfridge 1985, Mylar; density and shear speed typical", moody},
+    {Matter::Polypropylene, 0.22, 880, 2740, 1200, 5e-3, rms(1.5e-6), length_over_rms * rms(1.5e-6), true,
+     "Selfridge 1985, shear speed typical", moody},
+    {Matter::Paper, 0.17, paper_density, mixtureSpeed(paper_density, cell_wall), 0, 5e-2, 6e-6, length_over_rms * 6e-6,
+     true, "Gibson and Ashby 1997, half cell walls of fibres, by Wood 1955",
+     "typical of uncoated paper; length decided here"},
+    {Matter::PaintedMetal, 0.936, 7850, 5900, 3230, 1e-4, rms(30e-6), length_over_rms * rms(30e-6), true,
+     "ASTM E494 2015, density Haynes 2014, steel",
+     "Schultz 2007, coating as applied, by Adams et al. 2012; length decided here"},
     // clang-format on
 };
 

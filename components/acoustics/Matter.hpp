@@ -39,7 +39,11 @@ enum class Matter {
     Rope,
     Net,
     Fouling,
-    HumanBody
+    HumanBody,
+    Pet,
+    Polypropylene,
+    Paper,
+    PaintedMetal
 };
 
 /** Properties of a matter and of a surface that is made of it. */
@@ -98,5 +102,9 @@ struct insonify::types::EnumNames<insonify::acoustics::Matter> {
                                                  "rope",
                                                  "net",
                                                  "fouling",
-                                                 "human_body"};
+                                                 "human_body",
+                                                 "pet",
+                                                 "polypropylene",
+                                                 "paper",
+                                                 "painted_metal"};
 };

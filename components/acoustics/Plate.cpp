@@ -54,6 +54,31 @@ std::vector<double> computeTerms(double sum, size_t max_count, const auto& term)
 
 }  // namespace
 
+PlateShares computeShares(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
+                          double cos_incidence) {
+    const PlateResponse response = plateResponse(plate, before, behind, frequency, cos_incidence);
+    const double slowness = std::sqrt(std::max(1 - cos_incidence * cos_incidence, 0.0)) / before.sound_speed;
+    const double admittance = (1.0 / computeImpedance(behind, slowness)).real();  // 0 beyond the critical angle
+    return {std::norm(response.reflected),
+            std::norm(response.transmitted) * admittance * computeImpedance(before, slowness).real()};
+}
+
+bool isNearResonance(const Plate& plate, double frequency) {
+    constexpr double near = 0.1;
+    const double halves = countHalfWaves(plate, frequency);
+    return halves > 1 - near && std::abs(halves - std::round(halves)) <= near;
+}
+
+Plate makePlate(const types::Shell& shell) {
+    return {shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss};
+}
+
+Fluid getFluidBehind(const types::Shell& shell, const Fluid& water) {
+    constexpr Fluid air{1.23, 340};  // compressed air is denser, which has no effect on a wall
+    if (shell.has_air) return air;
+    return shell.fill_density > 0 ? Fluid{shell.fill_density, shell.fill_speed} : water;
+}
+
 PlateReturns plateReturns(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
                           size_t max_count) {
     const Complex number = Complex(1, plate.loss) / plate.sound_speed;  // over the angular frequency [s/m]

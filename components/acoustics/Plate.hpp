@@ -2,6 +2,8 @@
 #include <complex>
 #include <vector>
 
+#include "types/geometry/Geometry.hpp"
+
 namespace insonify::acoustics {
 
 /** A homogeneous fluid. */
@@ -29,6 +31,27 @@ struct PlateResponse {
  *  @param cos_incidence cosine of the angle to the plate's normal in the first fluid, 0 to 1 [1] */
 PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
                             double cos_incidence);
+
+/** Shares of the energy of a plane wave that a plate reflects and passes on [1]. */
+struct PlateShares {
+    double reflected, passed;
+};
+
+/** Returns the shares of the energy for the arguments of plateResponse(). */
+PlateShares computeShares(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
+                          double cos_incidence);
+
+/** Returns how many halves of a wavelength a plate is thick at a frequency [Hz]. Near a whole number from 1 on it is
+ *  nearly transparent between equal fluids [1]. */
+inline double countHalfWaves(const Plate& plate, double frequency) {
+    return 2 * plate.thickness * frequency / plate.sound_speed;
+}
+/** Returns whether a plate is within a tenth of a half-wave resonance. */
+bool isNearResonance(const Plate& plate, double frequency);
+
+/** Returns the plate of a shell, and the fluid behind it in this water. */
+Plate makePlate(const types::Shell& shell);
+Fluid getFluidBehind(const types::Shell& shell, const Fluid& water);
 
 /** Energies of the returns from a plate at normal incidence, relative to the energy of the pulse [1]. The pulse is
  *  shorter than the time of sound across the plate and back; return k is late by k times that time. The loss is that of

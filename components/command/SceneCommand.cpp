@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
+#include "components/acoustics/Plate.hpp"
 #include "components/command/CommandLine.hpp"
 #include "components/command/RunCommand.hpp"
 #include "components/console/Console.hpp"
@@ -68,18 +69,28 @@ const char* source(const types::Material& material) {
 }
 
 /** Returns a thin wall: {thickness_m, density [kg/m^3], sound_speed [m/s], behind: "water", "air" or {density,
- *  sound_speed}}, or null. */
-Json makeJson(const std::optional<types::Shell>& shell) {
+ *  sound_speed}, half_wave_khz, and with a frequency [kHz] reflected_db and passed_db}, or null. */
+Json makeJson(const std::optional<types::Shell>& shell, std::optional<double> frequency_khz) {
     if (!shell) return {};
     Json behind = shell->has_air ? "air" : "water";
     if (shell->fill_density > 0) behind = {{"density", shell->fill_density}, {"sound_speed", shell->fill_speed}};
-    return {{"thickness_m", shell->thickness},
-            {"density", shell->density},
-            {"sound_speed", shell->sound_speed},
-            {"behind", behind}};
+    const acoustics::Plate plate = acoustics::makePlate(*shell);
+    Json wall = {{"thickness_m", shell->thickness},
+                 {"density", shell->density},
+                 {"sound_speed", shell->sound_speed},
+                 {"behind", behind},
+                 {"half_wave_khz", plate.sound_speed / (2000 * plate.thickness)}};
+    if (!frequency_khz) return wall;
+    constexpr acoustics::Fluid water{1025, 1500};
+    const acoustics::PlateShares shares =
+        acoustics::computeShares(plate, water, acoustics::getFluidBehind(*shell, water), 1000 * *frequency_khz, 1);
+    wall["frequency_khz"] = *frequency_khz;
+    wall["reflected_db"] = 10 * std::log10(std::max(shares.reflected, 1e-30));
+    wall["passed_db"] = 10 * std::log10(std::max(shares.passed, 1e-30));
+    return wall;
 }
 
-Json makeJson(const types::Material& material, size_t triangles, double area) {
+Json makeJson(const types::Material& material, size_t triangles, double area, std::optional<double> frequency_khz) {
     return {{"name", material.name},
             {"source", source(material)},
             {"matter", material.matter.empty() ? Json() : Json(material.matter)},
@@ -91,7 +102,7 @@ Json makeJson(const types::Material& material, size_t triangles, double area) {
             {"reflectivity", material.reflectivity},
             {"normal_map", material.normal_map >= 0},
             {"surface_map", material.max_map_strength > 0},
-            {"shell", makeJson(material.shell)},
+            {"shell", makeJson(material.shell, frequency_khz)},
             {"mirror", material.mirror},
             {"triangles", triangles},
             {"area_m2", area}};
@@ -155,7 +166,7 @@ Json describeAnimations(const scene::Scene& scene) {
  *  connection may move], animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets,
  *  omitted: [{name, reason}] of what is omitted, not_understood: [], warnings: []}. Throws types::ConfigError for a
  * file that cannot be read. */
-Json sceneReport(const std::string& file, const scene::OmitRules& rules) {
+Json sceneReport(const std::string& file, const scene::OmitRules& rules, std::optional<double> frequency_khz) {
     const scene::Scene scene = scene::withoutOmitted(scene::readScene(file), rules);
     const types::GeometryPtr named = scene::applyMaterialNames(scene.geometry);
     const types::Geometry& geometry = *named;
@@ -164,7 +175,8 @@ Json sceneReport(const std::string& file, const scene::OmitRules& rules) {
     Json materials = Json::array(), nodes = Json::array();
     for (size_t i = 0; i < geometry.materials.size(); ++i)
         if (surfaces.triangles[i] > 0)
-            materials.push_back(makeJson(geometry.materials[i], surfaces.triangles[i], surfaces.areas[i]));
+            materials.push_back(
+                makeJson(geometry.materials[i], surfaces.triangles[i], surfaces.areas[i], frequency_khz));
     for (const scene::Node& node : scene.nodes) nodes.push_back(node.name);
     Json omitted = Json::array(), warnings = findWarnings(file, geometry, extent, materials);
     for (const types::Omission& omission : scene.omitted)
@@ -213,16 +225,25 @@ std::string lawText(const Json& material) {
     return text + (material["source"] == "name" ? ", by its name" : "");
 }
 
-/** Returns ", wall of 3 mm, 2230 kg/m3 and 5640 m/s, before air", or nothing without a wall. */
+/** Returns ", wall of 3 mm, 2230 kg/m3 and 5640 m/s, before air", with what it reflects and passes, or nothing without
+ *  a wall. */
 std::string shellText(const Json& shell) {
     if (shell.is_null()) return "";
     const Json& behind = shell["behind"];
-    return fmt::format(", wall of {:.4g} mm, {:.4g} kg/m3 and {:.4g} m/s, before {}",
+    std::string shares;
+    if (shell.contains("frequency_khz"))
+        shares = fmt::format(", at {:g} kHz it reflects {:.1f} dB and passes {:.1f} dB",
+                             shell["frequency_khz"].get<double>(), shell["reflected_db"].get<double>(),
+                             shell["passed_db"].get<double>());
+    else if (behind != "air")
+        shares = fmt::format(", passes most sound near multiples of {:.4g} kHz", shell["half_wave_khz"].get<double>());
+    return fmt::format(", wall of {:.4g} mm, {:.4g} kg/m3 and {:.4g} m/s, before {}{}",
                        1e3 * shell["thickness_m"].get<double>(), shell["density"].get<double>(),
                        shell["sound_speed"].get<double>(),
                        behind.is_string() ? behind.get<std::string>()
                                           : fmt::format("{:.4g} kg/m3 and {:.4g} m/s", behind["density"].get<double>(),
-                                                        behind["sound_speed"].get<double>()));
+                                                        behind["sound_speed"].get<double>()),
+                       shares);
 }
 
 void printMaterial(const Json& material) {
@@ -301,8 +322,11 @@ void printScene(const Json& scene) {
 
 }  // namespace
 
-int showScene(const std::string& file, bool json, const scene::OmitRules& rules) {
-    const Json scene = sceneReport(file, rules);
+int showScene(const std::string& file, bool json, const scene::OmitRules& rules, std::optional<double> frequency_khz) {
+    if (frequency_khz && !(*frequency_khz >= 0.001 && *frequency_khz <= 1e5))
+        throw types::ConfigError("", "--frequency-khz",
+                                 fmt::format("is {:g}; must be from 0.001 to 100000", *frequency_khz));
+    const Json scene = sceneReport(file, rules, frequency_khz);
     json ? print(scene) : printScene(scene);
     return 0;
 }
@@ -368,6 +392,7 @@ void addSceneCommand(CLI::App& app, Action& action) {
         std::string file;
         bool json = false;
         scene::OmitRules rules;
+        std::optional<double> frequency_khz;
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command =
@@ -381,11 +406,15 @@ void addSceneCommand(CLI::App& app, Action& action) {
         ->allow_extra_args(false);
     command->add_option("--water-surface", options->rules.water_surface, "as `water_surface` of scene::SceneTask [m]")
         ->type_name("Z");
+    command->add_option("--frequency-khz", options->frequency_khz, "at which thin walls reflect and pass sound [kHz]")
+        ->type_name("F");
     addMakeCommand(*command, action);
     command->callback([options, command, &action] {
         if (!command->get_subcommands().empty()) return;
         if (options->file.empty()) throw CLI::RequiredError("FILE");
-        action = [options] { return showScene(exampleAt(options->file), options->json, options->rules); };
+        action = [options] {
+            return showScene(exampleAt(options->file), options->json, options->rules, options->frequency_khz);
+        };
     });
 }
 

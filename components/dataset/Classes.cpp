@@ -1,6 +1,7 @@
 #include "components/dataset/Classes.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "components/dataset/Samples.hpp"
@@ -19,11 +20,17 @@ Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects, co
     : rules_(sweep.classes) {
     std::vector<std::string> known = objects;
     known.insert(known.end(), nodes.begin(), nodes.end());
+    types::Diagnostics unmatched;
+    size_t patterns = 0;
     for (const ClassRule& rule : rules_) {
-        resolve(sweep, rule.patterns, known, "classes." + rule.name, rule.line, rule.column,
-                sweep.scenes.size() > 1 ? "any of the scenes" : "the scene");
+        std::ranges::move(findUnmatched(sweep, rule.patterns, known, "classes." + rule.name, rule.line, rule.column,
+                                        sweep.scenes.size() > 1 ? "any of the scenes" : "the scene"),
+                          std::back_inserter(unmatched));
+        patterns += rule.patterns.size();
         names_.push_back(rule.name);
     }
+    if (patterns > 0 && unmatched.size() == patterns) throw types::ConfigError(unmatched);
+    for (const types::Diagnostic& each : unmatched) notices_.push_back(each.text());
     std::set<std::string> bare;
     for (const std::string& object : objects) bare.insert(withoutNumber(object));
     if (rules_.empty()) names_.assign(bare.begin(), bare.end());

@@ -119,11 +119,12 @@ Collection::Collection(Title title, const fs::path& folder) : title_(std::move(t
 
 void Collection::describe() { stores_[0].putText(description_file, title_.text()); }
 
-bool Collection::isWhole(bool closely) const {
+bool Collection::isWhole(bool closely, const std::set<uint64_t>& known) const {
     for (size_t member = 0; member < stores_.size(); ++member)
         for (uint64_t i = 0; i < selections_[member].size(); ++i) {
             const Store& store = stores_[member];
             const uint64_t index = selections_[member][i];
+            if (known.contains(index)) continue;
             if (!(closely ? store.has(index) : fs::exists(store.folder() / (store.makeStem(index) + ".json"))))
                 return false;
         }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,8 +55,9 @@ public:
     const Selection& selection(size_t member) const { return selections_[member]; }
     /** Writes dataset.json. Call it before the first sample. */
     void describe();
-    /** Returns whether every sample exists. With `closely` all files of each sample are read as well. */
-    bool isWhole(bool closely) const;
+    /** Returns whether every sample exists. With `closely` all files of each sample are read as well.
+     *  @param known samples that are there, which are not read */
+    bool isWhole(bool closely, const std::set<uint64_t>& known = {}) const;
     /** Writes the files of all samples. Throws std::runtime_error if a record was deleted in the meantime. */
     void write();
 

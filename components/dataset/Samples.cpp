@@ -39,25 +39,28 @@ std::vector<double> drawn(const PoseAxes& axes, uint64_t seed, uint64_t pose) {
 
 }  // namespace
 
-std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::string>& patterns,
+types::Diagnostics findUnmatched(const Sweep& sweep, const std::vector<std::string>& patterns,
                                  const std::vector<std::string>& known, const std::string& what, int line, int column,
                                  const char* where) {
-    std::vector<std::string> names;
     types::Diagnostics diagnostics;
-    for (size_t i = 0; i < patterns.size(); ++i) {
-        bool found = false;
-        for (const std::string& name : known) {
-            if (!matches(patterns[i], name)) continue;
-            found = true;
-            if (std::ranges::count(names, name) == 0) names.push_back(name);
-        }
-        if (!found)
+    for (size_t i = 0; i < patterns.size(); ++i)
+        if (std::ranges::none_of(known, [&](const std::string& name) { return matches(patterns[i], name); }))
             diagnostics.push_back({fmt::format("{}[{}]", what, i),
                                    fmt::format("is {}, which is no name in {}; {}insonify scene lists them",
                                                patterns[i], where, types::didYouMean(patterns[i], known)),
                                    sweep.file, line, column});
-    }
-    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
+    return diagnostics;
+}
+
+std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::string>& patterns,
+                                 const std::vector<std::string>& known, const std::string& what, int line, int column,
+                                 const char* where) {
+    if (types::Diagnostics wrong = findUnmatched(sweep, patterns, known, what, line, column, where); !wrong.empty())
+        throw types::ConfigError(std::move(wrong));
+    std::vector<std::string> names;
+    for (const std::string& pattern : patterns)
+        for (const std::string& name : known)
+            if (matches(pattern, name) && std::ranges::count(names, name) == 0) names.push_back(name);
     return names;
 }
 

@@ -8,6 +8,7 @@
 #include "components/dataset/Sweep.hpp"
 #include "types/geometry/Extent.hpp"
 #include "types/samples/Pose.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::dataset {
 
@@ -117,6 +118,12 @@ private:
 
 /** Returns the random word with which a sample draws the setting `number` of Sweep::drawn. */
 uint64_t word(const Sweep& sweep, uint64_t index, size_t number);
+
+/** Returns the errors of patterns without a match, at `what` of the sweep.
+ *  @param where description of the place of the known names */
+types::Diagnostics findUnmatched(const Sweep& sweep, const std::vector<std::string>& patterns,
+                                 const std::vector<std::string>& known, const std::string& what, int line, int column,
+                                 const char* where = "the scene");
 
 /** Returns the names that match one of the patterns, in order. Throws types::ConfigError at `what` of the sweep for a
  *  pattern without a match.

@@ -48,6 +48,8 @@ TEST(MatterTest, ReliefOfPipesIsAThirdOfTheirEquivalentSand) {
     EXPECT_NEAR(getProperties(Matter::Rock).roughness, 0.0172, 2e-4);
     EXPECT_NEAR(getProperties(Matter::Granite).roughness, 0.0041, 1e-4);
     EXPECT_NEAR(getProperties(Matter::Fouling).sound_speed, 1449, 2) << "Wood's equation";
+    EXPECT_NEAR(getProperties(Matter::Paper).sound_speed, 1723, 2) << "Wood's equation";
+    EXPECT_NEAR(getProperties(Matter::PaintedMetal).roughness, 9.7e-6, 0.1e-6) << "0.03 mm, Schultz 2007";
 }
 
 }  // namespace

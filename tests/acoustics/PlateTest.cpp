@@ -23,6 +23,25 @@ double transmittedPower(const Plate& plate, const Fluid& fluid, double frequency
     return std::norm(plateResponse(plate, fluid, fluid, frequency, cosine).transmitted);
 }
 
+/** A plate of half a wavelength between equal fluids is transparent, one of a quarter reflects most; without losses the
+ *  shares are all of the energy, also between two fluids. */
+TEST(PlateTest, AHalfWavePlateIsTransparentAndAllEnergyIsShared) {
+    const Plate pvc{0.4e-3, 1380, 2400, 1060, 0.01};
+    EXPECT_NEAR(countHalfWaves(pvc, 3e6), 1, 1e-12);
+    EXPECT_TRUE(isNearResonance(pvc, 3e6) && isNearResonance(pvc, 2.75e6) && isNearResonance(pvc, 5.8e6));
+    EXPECT_FALSE(isNearResonance(pvc, 2.6e6) || isNearResonance(pvc, 1.5e6) || isNearResonance(pvc, 1e4));
+    const PlateShares half = computeShares(pvc, water, water, 3e6, 1);
+    const PlateShares quarter = computeShares(pvc, water, water, 1.5e6, 1);
+    EXPECT_LT(half.reflected, 1e-3);
+    EXPECT_GT(half.passed, 0.9);
+    EXPECT_GT(quarter.reflected, 0.3);
+    for (const Fluid& behind : {water, Fluid{1900, 1650}, air})
+        for (const double cosine : {1.0, 0.9, 0.7, 0.3}) {
+            const PlateShares shares = computeShares(steel(2e-3), water, behind, 7e5, cosine);
+            EXPECT_NEAR(shares.reflected + shares.passed, 1, 1e-6) << behind.density << " " << cosine;
+        }
+}
+
 /** Draws random plates and waves. */
 class Draw {
 public:

@@ -43,7 +43,19 @@ TEST(ClassesTest, ClassesOfShadowsFollowAllOthers) {
     EXPECT_EQ(classes.shadow(0), 0u);
 }
 
-TEST(ClassesTest, APatternThatMatchesNothingIsRefused) {
+TEST(ClassesTest, APatternThatMatchesNothingNextToOthersIsANotice) {
+    Sweep sweep;
+    sweep.file = "sweep.yml";
+    sweep.classes = {{"wreck", {"hull"}, 3, 1}, {"pile", {"pile_*", "post_*"}, 4, 1}, {"mine", {"mine_*"}, 5, 1}};
+    const Classes classes(sweep, objects);
+    EXPECT_THAT(classes.names(), ElementsAre("wreck", "pile", "mine"));
+    EXPECT_EQ(classes.of("pile_01"), 2u);
+    EXPECT_THAT(classes.notices(),
+                ElementsAre(HasSubstr("sweep.yml:4:1: classes.pile[1]: is post_*, which is no name in the scene"),
+                            HasSubstr("sweep.yml:5:1: classes.mine[0]: is mine_*, which is no name in the scene")));
+}
+
+TEST(ClassesTest, PatternsThatAllMatchNothingAreRefused) {
     Sweep sweep;
     sweep.file = "sweep.yml";
     sweep.classes = {{"wreck", {"hul"}, 3, 1}};

@@ -80,6 +80,35 @@ TEST(BackscatterCommandTest, AMaterialIsARoughSolidWithItsSources) {
                       HasSubstr("source of roughness"), HasSubstr("without the lobe [dB]")));
 }
 
+TEST(BackscatterCommandTest, AWallNearAHalfWaveIsNearlyTransparent) {
+    const auto of = [](const char* mm, const char* fill) {
+        return backscatter({"--material", "pvc", "--shell-mm", mm, "--fill", fill, "--frequency-khz", "3000",
+                            "--grazing-deg", "30", "--grazing-deg", "90"});
+    };
+    const json half = of("0.4", "water"), quarter = of("0.2", "water"), air = of("0.4", "air");
+    EXPECT_EQ(half["law"], "thin_wall");
+    EXPECT_NEAR(half["parameters"]["half_waves"], 1, 1e-9);
+    EXPECT_NEAR(half["parameters"]["half_wave_khz"], 3000, 1e-6);
+    EXPECT_LT(half["reflected_db"][1], -30);
+    EXPECT_GT(half["passed_db"][1], -0.5);
+    EXPECT_GT(quarter["reflected_db"][1], -6);
+    EXPECT_NEAR(quarter["strength_db"][1].get<double>(), -9.23 + quarter["reflected_db"][1].get<double>(), 0.01);
+    EXPECT_GT(air["reflected_db"][1], -1);
+    ASSERT_EQ(half["warnings"].size(), 1u);
+    EXPECT_THAT(half["warnings"][0].get<std::string>(), HasSubstr("half-wave resonance"));
+    EXPECT_THAT(quarter["warnings"], IsEmpty());
+    EXPECT_THAT(air["warnings"], IsEmpty());
+    const TestFolder folder;
+    EXPECT_THAT(
+        callInsonify(folder, {"backscatter", "--material", "pvc", "--shell-mm", "0.4", "--frequency-khz", "3000"}).out,
+        AllOf(HasSubstr("pvc, by law thin_wall"), HasSubstr("wall reflects [dB]   passes [dB]")));
+    EXPECT_THAT(
+        callInsonify(folder, {"backscatter", "--material", "wood", "--shell-mm", "1", "--frequency-khz", "3000"}),
+        isRefused(HasSubstr("--material: is 'wood'; may be steel, ")));
+    EXPECT_THAT(callInsonify(folder, {"backscatter", "--sediment", "clay", "--shell-mm", "1", "--frequency-khz", "9"}),
+                isRefused(HasSubstr("--shell-mm: is given without --material")));
+}
+
 TEST(BackscatterCommandTest, EveryMaterialIsFiniteAtEveryFrequency) {
     for (const char* name : {"steel", "glass", "acrylic", "pvc", "rubber", "wood", "concrete", "rock", "rope", "net",
                              "fouling", "human_body", "air", "closed_cell_foam", "natural_rubber"})

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
@@ -45,6 +46,24 @@ TEST(PlanCommandTest, TruthIsOmittedUnlessTheDeploymentConnectsIt) {
         const std::string reader = "  - {from: sonar." + port + ", to: log." + port + "}\n";
         EXPECT_THAT(printed(replaced(wall_deployment, ping, ping + reader)), testing::Not(omitted)) << port;
     }
+}
+
+TEST(PlanCommandTest, AWallNearAHalfWaveIsAWarning) {
+    const TestFolder folder;
+    const std::string deployment = insonify::test::sourceFile("deploy/vessels.yml");
+    const auto plan = [&](const char* thickness_mm, const char* fill) {
+        return callInsonify(folder, {"plan", deployment, "--set", "sonar.frequency_khz=3000", "--set",
+                                     fmt::format("scene.materials={{glass bottle: {{shell: {{material: pvc, "
+                                                 "thickness_mm: {}, fill: {}}}}}}}",
+                                                 thickness_mm, fill)})
+            .out;
+    };
+    const auto warns = HasSubstr(
+        "warning: the wall of glass bottle is near a half-wave resonance: 0.41 mm are 1.02 "
+        "half wavelengths at 3000 kHz; it reflects ");
+    EXPECT_THAT(plan("0.41", "water"), warns);
+    EXPECT_THAT(plan("0.41", "air"), testing::Not(HasSubstr("resonance")));
+    EXPECT_THAT(plan("0.3", "water"), testing::Not(HasSubstr("wall of glass bottle")));
 }
 
 TEST(PlanCommandTest, SetChangesThePlan) {

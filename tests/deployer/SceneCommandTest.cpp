@@ -61,6 +61,18 @@ TEST(SceneCommandTest, PrintsWallsAndWhatIsBehindThem) {
     EXPECT_NEAR(walls.at("can with air")["thickness_m"], 0.3e-3, 1e-9);
     const std::string words = callInsonify(folder, {"scene", vessels}).out;
     EXPECT_THAT(words, HasSubstr("wall of 0.3 mm, 2700 kg/m3 and 6320 m/s, before air"));
+    EXPECT_THAT(words, HasSubstr("before water, passes most sound near multiples of "));
+    const json at = makeJson(folder, {"scene", vessels, "--frequency-khz", "900"});
+    for (const json& material : at["materials"])
+        if (const json& wall = material["shell"]; !wall.is_null()) {
+            const double shares = std::pow(10, wall["reflected_db"].get<double>() / 10) +
+                                  std::pow(10, wall["passed_db"].get<double>() / 10);
+            EXPECT_TRUE(shares > 0.5 && shares < 1.0001) << material["name"] << " " << shares;
+        }
+    EXPECT_THAT(callInsonify(folder, {"scene", vessels, "--frequency-khz", "900"}).out,
+                HasSubstr("before air, at 900 kHz it reflects -0.0 dB and passes "));
+    EXPECT_THAT(callInsonify(folder, {"scene", vessels, "--frequency-khz", "0"}),
+                isRefused(HasSubstr("--frequency-khz: is 0; must be from 0.001 to 100000")));
     EXPECT_THAT(words, testing::ContainsRegex("  sand  [^\n]*m2; "));
 }
 

@@ -71,7 +71,12 @@ def test_things_are_closed_and_face_outwards(one_of_each, name):
     "words, size",
     [
         (["tire", "diameter_m=0.7", "width_m=0.22"], (0.7, 0.7, 0.22)),
+        (["tire", "diameter_m=0.08", "width_m=0.03"], (0.08, 0.08, 0.03)),
         (["can"], (0.115, 0.066, 0.066)),
+        (["plastic_bottle", "upright=true"], (0.065, 0.065, 0.22)),
+        (["carton", "upright=true"], (0.07, 0.07, 0.22)),
+        (["valve", "bore_m=0.1"], (0.29, 0.51, 0.3)),
+        (["hook", "upright=true"], (0.125, 0.027, 0.198)),
         (["barrel", "upright=true"], (0.585, 0.585, 0.88)),
         (["ball", "diameter_m=1"], (1, 1, 1)),
         (["container"], (6.06, 2.44, 2.59)),

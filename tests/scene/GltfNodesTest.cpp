@@ -66,6 +66,10 @@ TEST_F(GltfNodesTest, NodesShareAMeshAndHaveNamesOfTheirOwn) {
     EXPECT_EQ(geometry->objects[0].name, "pile");
     EXPECT_EQ(geometry->objects[1].name, "pile_2");
     EXPECT_EQ(geometry->objects[2].name, "tri");
+    EXPECT_TRUE(hasNotice(*geometry, "1 node has the name of another and gets a number: pile is pile_2"));
+    const auto unnamed = nodes(R"([{"mesh":0},{"mesh":0}])");
+    EXPECT_EQ(unnamed->objects[1].name, "tri_2");
+    EXPECT_FALSE(hasNotice(*unnamed, "the name of another"));
 }
 
 TEST_F(GltfNodesTest, InstancesOfAnExtensionAreObjects) {

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "components/console/Action.hpp"
@@ -35,8 +36,14 @@ Format getFormat(const std::string& name) {
 
 struct Made {
     uint64_t made = 0, found = 0;
+    std::set<uint64_t> complete;  ///< Their numbers: they need not be verified again.
     bool stopped = false;
 };
+
+void printWarnings(DatasetRun& run, const DatasetOptions& options) {
+    for (const std::string& warning : run.consumeWarnings())
+        if (!options.quiet) console::printDiagnostic("warning: {}\n", warning);
+}
 
 /** Makes the missing samples of a shard. */
 Made makeMissing(DatasetRun& run, Store& store, const DatasetOptions& options) {
@@ -44,6 +51,7 @@ Made makeMissing(DatasetRun& run, Store& store, const DatasetOptions& options) {
     const std::atomic<bool>& stop = deployer::stopOnSignals();
     const Selection& selection = run.selection();
     SampleFiles files(run.sweep(), run.format(), run.classes(), store);
+    printWarnings(run, options);
     console::ProgressLine line(!options.quiet);
     const auto start = std::chrono::steady_clock::now();
     Made done;
@@ -53,8 +61,10 @@ Made makeMissing(DatasetRun& run, Store& store, const DatasetOptions& options) {
             ++done.found;
         } else {
             run.make(index, files);
+            printWarnings(run, options);
             ++done.made;
         }
+        done.complete.insert(index);
         const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
         const double share = static_cast<double>(i + 1) / static_cast<double>(selection.size());
         line.show(wall.count(),
@@ -81,7 +91,7 @@ int makeDataset(const DatasetOptions& options) {
             console::printResult("others are missing; the run that makes the last one writes manifest.json\n");
         return 0;
     }
-    if (!collection.isWhole(true))
+    if (!collection.isWhole(true, done.complete))
         throw std::runtime_error("a sample of another shard is damaged; run that shard again");
     collection.write();
     if (!options.quiet) console::printResult("all are there: manifest.json, statistics.html\n");

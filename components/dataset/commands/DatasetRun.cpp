@@ -233,6 +233,7 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
     }
     samples_.emplace(sweep_, getRuns(sweep_), std::move(parts));
     classes_.emplace(sweep_, objects, nodes);
+    warnings_ = classes_->notices();
     for (const SceneFile& scene : scenes_) instances_.emplace_back(*classes_, scene.objects);
     selection_ =
         changes_.count ? Selection(samples_->count(), *changes_.count, sweep_.seed) : Selection(samples_->count());
@@ -262,6 +263,17 @@ Title DatasetRun::title(const std::string& sweep) const {
 framework::DeploymentSpec DatasetRun::loaded() const {
     framework::DeploymentSpec spec = framework::DeploymentSpec::load(deployment_);
     for (const std::string& assignment : changes_.set) spec.set(assignment);
+    const bool has_all =
+        std::ranges::all_of(sweep_.scenes, [](const SceneChoice& choice) { return !choice.file.empty(); });
+    std::vector<std::string> absent;  // scene tasks whose file is not there, and not needed
+    for (const framework::TaskSpec& task : spec.tasks) {
+        const YAML::Node own = child(task.properties, "file");
+        if (task.type == scene_type && has_all && own.IsScalar() &&
+            !fs::exists(fs::path(deployment_).parent_path() / own.Scalar()))
+            absent.push_back(task.name);
+    }
+    for (const std::string& task : absent)
+        spec.set(task + ".file=" + quoted(fs::absolute(sweep_.scenes.front().file).string()));
     return spec;
 }
 
@@ -451,6 +463,13 @@ void DatasetRun::simulate(const Sample& sample) {
     overrides_ = options.overrides, scene_ = sample.scene;
 }
 
+/** Collects the warnings of a new simulation, whose plans have theirs from the first ping on. */
+void DatasetRun::collectWarnings() {
+    for (const types::Notice& notice : simulation_->notices())
+        if (notice.kind == types::Notice::Kind::Warning && warned_.insert(notice.text).second)
+            warnings_.push_back(notice.text);
+}
+
 /** Returns the objects of a scene that are of an instance whose shadow is annotated. */
 std::vector<uint32_t> DatasetRun::getHiders(size_t scene) const {
     const Instances& instances = instances_[scene];
@@ -530,6 +549,7 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
                               deployment_, made.ping->beam_count),
                   sweep_.file, sweep_.lines->line, sweep_.lines->column}});
         run.add(made.ping, made.truth);
+        if (before_ || warned_.empty()) collectWarnings();
         before_.reset();
     }
     std::vector<std::pair<std::string, Json>> settings;

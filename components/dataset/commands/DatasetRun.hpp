@@ -2,7 +2,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "components/console/Action.hpp"
@@ -66,6 +68,8 @@ public:
 
     /** Renders and writes one sample. */
     void make(uint64_t index, SampleFiles& files);
+    /** Returns the warnings of tasks and scenes that samples have had since the last call, each once for a run. */
+    std::vector<std::string> consumeWarnings() { return std::exchange(warnings_, {}); }
 
 private:
     struct SceneFile {
@@ -87,6 +91,7 @@ private:
     std::vector<std::string> tasksOfType(const std::string& type) const;
     types::ConfigError placed(types::Diagnostics diagnostics, const Sample& sample) const;
     void simulate(const Sample& sample);
+    void collectWarnings();
     std::map<std::string, types::Pose> placeObjects(const Sample& sample) const;
     std::vector<uint32_t> getHiders(size_t scene) const;
     std::vector<int32_t> findHiders(const Sample& sample, const std::string& vehicle, const Run& run);
@@ -107,6 +112,8 @@ private:
     std::unique_ptr<deployer::Simulation> hiding_;      ///< The same without single objects, where shadows are wanted.
     std::vector<std::string> overrides_;                ///< Overrides of the current simulation.
     size_t scene_ = 0;                                  ///< Scene of the current simulation.
+    std::vector<std::string> warnings_;                 ///< For consumeWarnings().
+    std::set<std::string> warned_;                      ///< All that it has had.
 };
 
 /** Adds the command `dataset` with its options to `app`; parsing it sets `action`. */

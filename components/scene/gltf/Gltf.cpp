@@ -106,7 +106,7 @@ private:
         const tinygltf::Node& from = gltf_.model.nodes[static_cast<size_t>(visit.node)];
         Node node;
         node.parent = visit.parent;
-        node.name = names_.add(getName(from, visit.node));
+        node.name = names_.add(getName(from, visit.node), !from.name.empty());
         const NodeShape shape = getShape(from, path);
         node.parent_from_node = from.matrix.empty() ? shape.matrix() : toMatrix(from, path);
         node.scale = shape.scale;
@@ -176,7 +176,7 @@ private:
         const std::vector<glm::dmat4> instances =
             readInstances(instancing->second, path + ".extensions.EXT_mesh_gpu_instancing");
         for (size_t i = 0; i < instances.size(); ++i)
-            addObject(names_.add(fmt::format("{}[{}]", name, i)), mesh, world_from_node, instances[i], path);
+            addObject(names_.add(fmt::format("{}[{}]", name, i), false), mesh, world_from_node, instances[i], path);
     }
 
     void addObject(const std::string& name, int mesh, const glm::dmat4& world_from_node,
@@ -342,6 +342,7 @@ private:
         for (const int material : omissions.invisible)
             scene_.omitted.push_back({geometry_.materials[static_cast<size_t>(material)].name,
                                       "the material is wholly transparent (alpha) and has no acoustics"});
+        if (const std::string renamed = names_.describeRenamed(); !renamed.empty()) notices.push_back(renamed);
         if (geometry_.objects.empty()) notices.push_back("the scene has no triangles: an empty sea");
     }
 

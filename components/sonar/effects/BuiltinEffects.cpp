@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "components/acoustics/Plate.hpp"
 #include "components/sonar/beams/BinGrid.hpp"
 #include "components/sonar/plan/Effect.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
@@ -205,6 +206,26 @@ public:
         plan.add(Pass::Walls);
         plan.laws.separateReturns();
         return true;
+    }
+    /** Notes walls that are nearly transparent because of their thickness. */
+    void note(const RenderPlan& plan, const types::Geometry& geometry, types::Notices& notices) const override {
+        if (plan.config.model != Model::Physical || !plan.config.frequency_khz) return;
+        const double frequency = 1000 * *plan.config.frequency_khz;
+        const acoustics::Fluid water{water_density, plan.config.speedOfSound()};
+        for (size_t i = 0; i < geometry.materials.size(); ++i) {
+            const types::Material& material = geometry.materials[i];
+            if (!material.shell || material.shell->has_air || plan.laws.walls[i].rings()) continue;
+            const acoustics::Plate plate = acoustics::makePlate(*material.shell);
+            if (!acoustics::isNearResonance(plate, frequency)) continue;
+            const acoustics::PlateShares shares =
+                acoustics::computeShares(plate, water, acoustics::getFluidBehind(*material.shell, water), frequency, 1);
+            const types::Notice notice = types::warning(
+                fmt::format("the wall of {} is near a half-wave resonance: {:.3g} mm are {:.2f} half wavelengths at "
+                            "{:g} kHz; it reflects {:.3g} % of the sound and passes {:.3g} %",
+                            material.name, 1e3 * plate.thickness, acoustics::countHalfWaves(plate, frequency),
+                            *plan.config.frequency_khz, 100 * shares.reflected, 100 * shares.passed));
+            if (std::ranges::count(notices, notice) == 0) notices.push_back(notice);
+        }
     }
     std::string removeFrom(SonarConfig& config) const override {
         if (config.max_walls == 0) return {};

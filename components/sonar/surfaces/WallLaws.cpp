@@ -12,7 +12,6 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr acoustics::Fluid air{1.23, 340};               ///< Compressed air is denser, which has no effect on a wall.
 constexpr size_t narrow_cells = 4096, mean_cells = 512;  ///< Of tables of one frequency, and of means over a resonance.
 constexpr double min_first = 1e-4;  ///< Min share of the first return, to which the others are relative [1].
 
@@ -20,11 +19,9 @@ constexpr double min_first = 1e-4;  ///< Min share of the first return, to which
 class Wall {
 public:
     Wall(const types::Shell& shell, const SonarConfig& config)
-        : plate_{shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss},
+        : plate_(acoustics::makePlate(shell)),
           water_{water_density, config.speedOfSound()},
-          behind_(shell.has_air            ? air
-                  : shell.fill_density > 0 ? acoustics::Fluid{shell.fill_density, shell.fill_speed}
-                                           : water_),
+          behind_(acoustics::getFluidBehind(shell, water_)),
           frequency_(1000 * *config.frequency_khz),
           has_fluid_(shell.fill_density > 0) {}
 

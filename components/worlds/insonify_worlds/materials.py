@@ -28,6 +28,10 @@ REFLECTION = {
     "net": 0.31,
     "fouling": 0.14,
     "human_body": 0.08,
+    "pet": 0.39,
+    "polypropylene": 0.22,
+    "paper": 0.17,
+    "painted_metal": 0.936,
 }
 COLOURS = {
     "steel": (0.55, 0.57, 0.6),
@@ -51,6 +55,10 @@ COLOURS = {
     "net": (0.2, 0.45, 0.35),
     "closed_cell_foam": (0.85, 0.4, 0.1),
     "human_body": (0.12, 0.12, 0.14),
+    "pet": (0.7, 0.82, 0.9),
+    "polypropylene": (0.9, 0.9, 0.88),
+    "paper": (0.66, 0.5, 0.33),
+    "painted_metal": (0.7, 0.1, 0.08),
 }
 SEDIMENTS = (
     "rough_rock",

@@ -1,11 +1,12 @@
-"""Gear of ships, fishers and divers: chains, cables, pipelines, moorings, anchors, nets, pots, propellers."""
+"""Gear of ships, fishers and divers: chains, cables, pipelines, valves, moorings, anchors, hooks, nets, pots,
+propellers."""
 
 import math
 
 import numpy as np
 
 from ..materials import solid, wall
-from ..parameters import Choice, Number
+from ..parameters import Choice, Number, Switch
 from ..places import along
 from ..shapes import (
     ball,
@@ -189,6 +190,49 @@ def blade(radius, pitch, width, skew):
         z = ring[:, 0] * np.sin(turn) + ring[:, 1] * np.cos(turn)
         rings.append(np.c_[np.full(12, part * radius), y, z])
     return loft(rings)
+
+
+@thing(
+    "hook",
+    "a crane hook with its eye",
+    Number("length_m", 0.2, "from the eye to the bend", 0.04, 2),
+    Choice("matter", "painted_metal", "", ("painted_metal", "steel", "carbon_steel")),
+    Switch("upright", "false", "hangs by its eye instead of lying on its side"),
+)
+def hook(rng, p):
+    h = p["length_m"]
+    bend = np.radians(np.linspace(35, 275, 19))  # of the bowl, from its top over the bend to the tip
+    bowl = [(0.27 * h * np.sin(a), 0, 0.345 * h + 0.27 * h * np.cos(a)) for a in bend]
+    path = np.array([(0, 0, 0.84 * h), (0.02 * h, 0, 0.72 * h), (0.09 * h, 0, 0.63 * h)] + bowl)
+    thick = np.r_[0.05, 0.05, 0.05, 0.05 + 0.02 * np.sin(np.linspace(0, np.pi, 14)), np.linspace(0.05, 0.012, 5)] * h
+    eye = moved(torus(0.1 * h, 0.035 * h, 32, 12), (0, 0, 0.87 * h), rotation(roll=90))
+    body = tube(path, thick, 14) + eye
+    if not p["upright"]:
+        body = moved(body, turn=rotation(roll=90))
+    return Model([(body, solid(p["matter"], p["surface"]))])
+
+
+@thing(
+    "valve",
+    "a gate valve of a pipe: body with flanges, bonnet, spindle and handwheel",
+    Number("bore_m", 0.05, "inner diameter of its pipe", 0.01, 0.8),
+    Choice("matter", "painted_metal", "", ("painted_metal", "cast_iron", "bronze", "steel")),
+    Switch("upright", "false", "stands on its body instead of lying on its side"),
+)
+def valve(rng, p):
+    d = p["bore_m"]
+    metal = [cylinder(0.72 * d, 2.6 * d, axis="x"), ball(0.95 * d), cylinder(0.6 * d, 1.8 * d, (0, 0, 0.9 * d))]
+    metal += [cylinder(1.5 * d, 0.3 * d, (s * 1.3 * d, 0, 0), "x") for s in (-1, 1)]
+    metal += [cylinder(0.95 * d, 0.25 * d, (0, 0, 1.25 * d)), cylinder(0.16 * d, 2.2 * d, (0, 0, 2.5 * d))]
+    body = union(metal) - cylinder(d / 2, 3.2 * d, axis="x")
+    top = np.array([0, 0, 3.45 * d])
+    wheel = [moved(torus(1.1 * d, 0.12 * d, 40, 10), top), cylinder(0.25 * d, 0.3 * d, top)]
+    wheel += [
+        bar(top, top + 1.1 * d * np.array([np.cos(a), np.sin(a), 0]), 0.09 * d) for a in np.arange(4) * math.pi / 2
+    ]
+    body = union([body, *wheel])
+    body = moved(body, (0, 0, 1.5 * d)) if p["upright"] else moved(body, turn=rotation(roll=90))
+    return Model([(body, solid(p["matter"], p["surface"]))])
 
 
 @thing(

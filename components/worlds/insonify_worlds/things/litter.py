@@ -1,24 +1,24 @@
-"""Things that were thrown away or lost: tires, cans, bottles, barrels, crates, bicycles."""
+"""Things that were thrown away or lost: tires, cans, bottles, cartons, barrels, crates, bicycles."""
 
 import numpy as np
 
 from ..materials import solid, wall
 from ..parameters import Choice, Number, Switch
-from ..shapes import bar, box, cylinder, moved, revolved, rotation, torus, tube, union
+from ..shapes import bar, box, cylinder, hull, moved, revolved, rotation, torus, tube, union
 from .catalogue import Model, thing
 
 
 @thing(
     "tire",
     "a tire of a car or lorry: hollow, open towards its middle",
-    Number("diameter_m", 0.63, "over the tread", 0.3, 4),
-    Number("width_m", 0.2, "of the tread", 0.08, 1.5),
+    Number("diameter_m", 0.63, "over the tread", 0.06, 4),
+    Number("width_m", 0.2, "of the tread", 0.015, 1.5),
     Number("rim_share", 0.6, "diameter of the opening over that of the tread", 0.4, 0.8),
     Switch("upright", "false", "stands on its tread instead of lying on a side"),
 )
 def tire(rng, p):
     outer, half = p["diameter_m"] / 2, p["width_m"] / 2
-    inner, skin = outer * p["rim_share"], 0.06 * p["diameter_m"] / 2
+    inner, skin = outer * p["rim_share"], min(0.06 * p["diameter_m"] / 2, 0.4 * half)
     tall = outer - inner
     outside = [
         (inner, 0.62),
@@ -30,7 +30,7 @@ def tire(rng, p):
     profile = [(r, z * half) for r, z in outside] + [(r, -z * half) for r, z in reversed(outside)]
     # The hollow is the outside offset inwards, open between the beads.
     inside = [
-        (inner - 0.01, 0.62 * half - skin),
+        (inner - min(0.01, 0.2 * inner), 0.62 * half - skin),
         (inner + 0.35 * tall, 0.96 * half - skin),
         (outer - 1.5 * skin, 0.8 * half - skin),
     ]
@@ -102,6 +102,50 @@ def bottle(rng, p):
         (0, h),
     ]
     return lying(revolved(profile, 40), p, [wall("glass", p["wall_mm"], p["fill"], p["surface"])])
+
+
+@thing(
+    "plastic_bottle",
+    "a bottle of thin plastic with a waist and a screw cap",
+    Number("diameter_m", 0.065, "", 0.03, 0.4),
+    Number("length_m", 0.22, "with its cap", 0.08, 1.2),
+    Choice("matter", "pet", "of the wall", ("pet", "polypropylene", "hdpe", "pvc")),
+    Number("wall_mm", 0.3, "of its wall; near half a wavelength it is transparent", 0.1, 5),
+    Choice("fill", "water", "content", ("water", "air", "sand")),
+    Switch("upright", "false", "stands instead of lying on its side"),
+)
+def plastic_bottle(rng, p):
+    r, h = p["diameter_m"] / 2, p["length_m"]
+    shape = [(0, 0.04), (0.5, 0.03), (0.75, 0), (0.95, 0.01), (1, 0.05), (1, 0.28), (0.88, 0.33), (0.88, 0.42)]
+    shape += [(1, 0.47), (1, 0.62), (0.85, 0.72), (0.55, 0.82), (0.36, 0.88), (0.34, 0.9), (0, 0.9)]
+    body = revolved([(x * r, z * h) for x, z in shape], 40)
+    cap = revolved([(0, 0.9 * h), (0.42 * r, 0.9 * h), (0.42 * r, 0.985 * h), (0.38 * r, h), (0, h)], 40)
+    turn = rotation(pitch=0 if p["upright"] else 90)
+    return Model(
+        [
+            (moved(body, turn=turn), wall(p["matter"], p["wall_mm"], p["fill"], p["surface"])),
+            (moved(cap, turn=turn), solid("polypropylene", p["surface"])),
+        ]
+    )
+
+
+@thing(
+    "carton",
+    "a drink carton with a gable",
+    Number("length_m", 0.07, "", 0.03, 0.6),
+    Number("width_m", 0.07, "", 0.03, 0.6),
+    Number("tall_m", 0.22, "with its gable", 0.05, 0.8),
+    Number("wall_mm", 0.5, "of paper", 0.2, 8),
+    Choice("fill", "water", "content", ("water", "air")),
+    Switch("upright", "false", "stands instead of lying on its side"),
+)
+def carton(rng, p):
+    x, y, z = p["length_m"] / 2, p["width_m"] / 2, p["tall_m"]
+    eaves, ridge, rim = z - min(1.1 * y, 0.4 * z), z - min(0.25 * y, 0.1 * z), 0.02 * y
+    corners = [(sx * x, sy * y, at) for sx in (-1, 1) for sy in (-1, 1) for at in (0, eaves)]
+    corners += [(sx * x, sy * rim, ridge) for sx in (-1, 1) for sy in (-1, 1)]
+    fin = box((2 * x, 2 * rim, z - ridge + 0.01 * z), (0, 0, (z + ridge - 0.01 * z) / 2))
+    return lying(hull(corners) + fin, p, [wall("paper", p["wall_mm"], p["fill"], p["surface"])])
 
 
 @thing(
