@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -86,6 +87,8 @@ private:
     std::string getScale(const std::string& task, const Sample& sample) const;
     std::vector<std::string> tasksOfType(const std::string& type) const;
     types::ConfigError placed(types::Diagnostics diagnostics, const Sample& sample) const;
+    std::optional<std::map<std::string, std::string>> findChanges(const std::vector<std::string>& after) const;
+    bool change(const std::optional<std::map<std::string, std::string>>& changes);
     void simulate(const Sample& sample);
 
     const std::string deployment_;
