@@ -12,7 +12,7 @@ using insonify::dataset::deployment;
 
 namespace {
 
-const std::string sweep = R"(seed: 3
+const std::string drawn_sweep = R"(seed: 3
 poses:
   random: {count: 8, x: {uniform: [0, 20]}, y: {uniform: [-8, 0]}, z: -5.5, yaw_deg: {uniform: [-60, 30]}}
 classes: {pile: pile_*, wreck: hull, rock: rock_*}
@@ -28,14 +28,14 @@ settings:
   scene.water_surface: {choice: [0, 0, 0, 1]}
 )";
 
-const std::string device = R"(
+const std::string imperfect_device = R"(
       frequency_khz: 300
       pulse: {bandwidth_khz: 5}
       beam_pattern: {receive: {azimuth: {weighting: taylor, width_deg: 3}}}
       imperfections: {phase_error_deg: 10, crosstalk_db: -30})";
 
 /** Bytes of all files of a folder, by name. */
-std::map<std::string, std::string> getFiles(const fs::path& folder) {
+std::map<std::string, std::string> readAllFiles(const fs::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::directory_iterator(folder)) files[entry.path().filename()] = readFile(entry.path());
     return files;
@@ -48,8 +48,8 @@ TEST(DrawnSettingsTest, SettingsInAnyOrderLeaveNothingInTheSonarForTheNextSample
         const TestFolder folder;
         const std::string quality = "quality: {rows: 128, columns_per_beam: 1}";
         std::string text = deployment;
-        writeFile(folder / "d.yml", text.replace(text.find(quality), quality.size(), sonar + device));
-        writeFile(folder / "sweep.yml", sweep);
+        writeFile(folder / "d.yml", text.replace(text.find(quality), quality.size(), sonar + imperfect_device));
+        writeFile(folder / "sweep.yml", drawn_sweep);
         const auto make = [&](const std::string& out, const std::string& shard) {
             return callInsonify(folder, {"dataset", "d.yml", "--sweep", "sweep.yml", "--format", "npz", "--out", out,
                                          "--shard", shard});
@@ -57,7 +57,7 @@ TEST(DrawnSettingsTest, SettingsInAnyOrderLeaveNothingInTheSonarForTheNextSample
         ASSERT_EQ(make("one", "0/1").code, 0) << sonar;
         for (int i = 0; i < 8; ++i)  // a process, and so a sonar, for each sample
             ASSERT_EQ(make("fresh", fmt::format("{}/8", i)).code, 0);
-        EXPECT_TRUE(getFiles(folder / "one") == getFiles(folder / "fresh")) << sonar;
+        EXPECT_TRUE(readAllFiles(folder / "one") == readAllFiles(folder / "fresh")) << sonar;
     }
 }
 
