@@ -19,7 +19,7 @@ classes: {pile: pile_*, wreck: hull, rock: rock_*}
 settings:
   sonar.imperfections.seed: {choice: [1, 2, 3]}
   sonar.imperfections.gain_error_db: {choice: [0, 2]}
-  sonar.imperfections.focus_m: {choice: ["null", 4, 8]}
+  sonar.imperfections.focus_m: {choice: [4, 8]}
   sonar.range: {uniform: [15, 25]}
   sonar.beam_count: {choice: [16, 24]}
   sonar.frequency_khz: {uniform: [250, 350]}
