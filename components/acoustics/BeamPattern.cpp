@@ -126,7 +126,15 @@ Side computeSide(const std::function<double(double)>& power) {
 }  // namespace
 
 Taper::Taper(Weighting weighting, double sidelobe_db, int nbar, int elements)
-    : weighting_(weighting), ratio_(std::pow(10, std::abs(sidelobe_db) / 20)), nbar_(nbar), elements_(elements) {}
+    : weighting_(weighting), ratio_(std::pow(10, std::abs(sidelobe_db) / 20)), elements_(elements) {
+    if (weighting != Weighting::Taylor) return;
+    const double a = std::acosh(ratio_) / pi;
+    const double dilation = nbar / std::sqrt(a * a + (nbar - 0.5) * (nbar - 0.5));
+    for (int n = 1; n < nbar; ++n) {
+        const double zero = dilation * std::sqrt(a * a + (n - 0.5) * (n - 0.5));
+        zeros_.push_back(zero * zero);
+    }
+}
 
 double Taper::amplitude(double u) const {
     if (u == 0) return 1;
@@ -145,13 +153,9 @@ double Taper::amplitude(double u) const {
 
 /** Taylor 1955: the first nbar - 1 zeros of sinc moved to where Dolph's are. */
 double Taper::taylor(double u) const {
-    const double a = std::acosh(ratio_) / pi;
-    const double dilation = nbar_ / std::sqrt(a * a + (nbar_ - 0.5) * (nbar_ - 0.5));
     double product = sinc(u);
-    for (int n = 1; n < nbar_; ++n) {
-        const double zero = dilation * std::sqrt(a * a + (n - 0.5) * (n - 0.5));
-        product *= (1 - u * u / (zero * zero)) / (1 - u * u / (n * n));
-    }
+    for (size_t n = 1; n <= zeros_.size(); ++n)
+        product *= (1 - u * u / zeros_[n - 1]) / (1 - u * u / static_cast<double>(n * n));
     return product;
 }
 

@@ -36,7 +36,8 @@ private:
 
     Weighting weighting_;
     double ratio_;  ///< Amplitude of the main lobe over that of the sidelobes [1].
-    int nbar_, elements_;
+    int elements_;
+    std::vector<double> zeros_;  ///< Squares of Taylor's moved zeros [u^2].
 };
 
 /** Returns the weights of adjacent equal elements whose far field is `taper`. They are its Fourier series with the far

@@ -21,8 +21,13 @@ DRAWN = "scene.materials.sand.lambert_db: {uniform: [-30, -15]}"
 FAN = ["sonar.range=10", "sonar.beam_count=128", "sonar.bin_count=506", "sonar.field_of_view_deg=30", "sonar.beam_height_deg=14",
        "sonar.quality={rows: 256, columns_per_beam: 4}", "sonar.frequency_khz=1800", "sonar.pulse={bandwidth_khz: 60}",
        "sonar.beam_pattern={receive: {azimuth: {weighting: taylor, width_deg: 0.3}}}"]
-CASES = {"energies": ([], ""), "coherent speckle": (["sonar.speckle={coherent: true}"], ""),
-         "energies, a drawn material": ([], DRAWN)}
+COHERENT = "sonar.speckle={coherent: true}"
+ERRORS = "sonar.imperfections={gain_error_db: 1, phase_error_deg: 10}"
+SEEDS = f"sonar.imperfections.seed: {{choice: {list(range(1, 200))}}}"
+CASES = {"energies": ([], ""), "coherent speckle": ([COHERENT], ""),
+         "energies, a drawn material": ([], DRAWN), "energies, drawn errors of elements": ([ERRORS], SEEDS),
+         "coherent speckle, errors of elements": ([COHERENT, ERRORS], ""),
+         "coherent speckle, drawn errors of elements": ([COHERENT, ERRORS], SEEDS)}
 
 
 def processor_seconds(command):

@@ -444,14 +444,51 @@ types::ConfigError DatasetRun::placed(types::Diagnostics diagnostics, const Samp
     return types::ConfigError(std::move(diagnostics));
 }
 
-/** Makes the simulation of a sample. Keeps the previous one so that they share the scene, trees, and derived data of
- *  meshes. */
+/** Returns the values in which overrides differ from those before, for Simulation::set(); none where they differ in
+ *  anything else than single values. A block would keep the fields that it does not name. */
+std::optional<std::map<std::string, std::string>> DatasetRun::findChanges(const std::vector<std::string>& after) const {
+    if (after.size() != overrides_.size()) return {};
+    std::map<std::string, std::string> changes;
+    for (size_t i = 0; i < after.size(); ++i) {
+        if (after[i] == overrides_[i]) continue;
+        const size_t end = after[i].find('=');
+        const std::string property = after[i].substr(0, end), value = after[i].substr(end + 1);
+        const YAML::Node node = framework::parseValue(value);
+        const auto replaces = [&](const std::string& later) {  // the same property, or a block around it
+            const std::string other = later.substr(0, later.find('='));
+            return other == property || property.starts_with(other + ".");
+        };
+        if (!overrides_[i].starts_with(property + "=") || !node.IsScalar() ||
+            !framework::parseValue(overrides_[i].substr(end + 1)).IsScalar() ||
+            std::any_of(after.begin() + static_cast<std::ptrdiff_t>(i) + 1, after.end(), replaces))
+            return {};
+        changes[property] = value;
+    }
+    return changes;
+}
+
+/** Sets properties of the current simulation. Returns false, and changes nothing, where it needs to be made anew. */
+bool DatasetRun::change(const std::optional<std::map<std::string, std::string>>& changes) {
+    if (!changes) return false;
+    try {
+        simulation_->set(*changes);
+        return true;
+    } catch (const std::exception&) {  // a running task refuses it; what is wrong, the new simulation reports
+        return false;
+    }
+}
+
+/** Makes the simulation of a sample, or changes the current one. Keeps the previous one so that they share the scene,
+ *  trees, and derived data of meshes. */
 void DatasetRun::simulate(const Sample& sample) {
     deployer::SimulationOptions options;
     options.overrides = makeOverrides(sample);
     options.truth = true;
     options.objects = samples_->getObjects(sample.scene);
-    if (simulation_ && options.overrides == overrides_ && sample.scene == scene_) return;
+    if (simulation_ && sample.scene == scene_ && change(findChanges(options.overrides))) {
+        overrides_ = options.overrides;
+        return;
+    }
     try {
         before_ = std::exchange(simulation_, std::make_unique<deployer::Simulation>(deployment_, options));
         hiding_.reset();

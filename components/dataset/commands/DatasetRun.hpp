@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -90,6 +91,8 @@ private:
     std::string getScale(const std::string& task, const Sample& sample) const;
     std::vector<std::string> tasksOfType(const std::string& type) const;
     types::ConfigError placed(types::Diagnostics diagnostics, const Sample& sample) const;
+    std::optional<std::map<std::string, std::string>> findChanges(const std::vector<std::string>& after) const;
+    bool change(const std::optional<std::map<std::string, std::string>>& changes);
     void simulate(const Sample& sample);
     void collectWarnings();
     std::map<std::string, types::Pose> placeObjects(const Sample& sample) const;

@@ -63,10 +63,15 @@ void FanImage::build(const types::Sonar& ping) {
 void FanImage::buildTables() {
     const cv::Point2d origin = layout_->origin();
     const double cells_per_pixel = columns_ / layout_->radius();
-    cv::Mat column(layout_->size(), CV_32F, cv::Scalar(0)), row(layout_->size(), CV_32F, cv::Scalar(0));
+    const cv::Size size = layout_->size();
+    source_.create(size, CV_16SC2);
+    fraction_.create(size, CV_16UC1);
+    cv::Mat column(1, size.width, CV_32F), row(1, size.width, CV_32F);  // one row of pixels at a time: less memory
     spans_.clear();
-    for (int y = 0; y < column.rows; ++y)
-        for (int x = 0; x < column.cols; ++x) {
+    for (int y = 0; y < size.height; ++y) {
+        column = cv::Scalar(0);
+        row = cv::Scalar(0);
+        for (int x = 0; x < size.width; ++x) {
             const double ahead = origin.y - y, port = origin.x - x;
             const double distance = std::hypot(ahead, port), bearing = std::atan2(port, ahead);
             if (distance >= layout_->radius()) continue;
@@ -74,11 +79,13 @@ void FanImage::buildTables() {
             if (!place) continue;
             if (spans_.empty() || spans_.back().row != y || spans_.back().end != x) spans_.push_back({y, x, x});
             spans_.back().end = x + 1;
-            column.at<float>(y, x) =
+            column.at<float>(0, x) =
                 static_cast<float>(std::clamp(distance * cells_per_pixel - 0.5, 0.0, columns_ - 1.0));
-            row.at<float>(y, x) = static_cast<float>(*place);
+            row.at<float>(0, x) = static_cast<float>(*place);
         }
-    cv::convertMaps(column, row, source_, fraction_, CV_16SC2);
+        cv::Mat source = source_.row(y), fraction = fraction_.row(y);
+        cv::convertMaps(column, row, source, fraction, CV_16SC2);
+    }
 }
 
 void FanImage::buildGround() {

@@ -63,7 +63,7 @@ void PictureTask::show(const types::Sonar& sample) {
     const auto picture = pool_.take();
     paint(sample, *picture);
     recordStage("paint", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    pool_.stock(*picture);
+    if (image.connected() || activity().realtime()) pool_.stock(*picture);
     image.write(picture);
     writeFile(picture);
 }

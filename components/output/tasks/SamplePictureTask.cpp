@@ -75,7 +75,7 @@ void SamplePictureTask<Picture>::show() {
     const auto shown = pool_.take();
     picture_->paint(*shown);
     recordStage("paint", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    pool_.stock(*shown);
+    if (image.connected() || activity().realtime()) pool_.stock(*shown);
     image.write(shown);
     writeFile(shown);
 }

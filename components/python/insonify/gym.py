@@ -50,7 +50,7 @@ class _Frames:
     def add(self, bins: np.ndarray, begins: np.ndarray) -> np.ndarray:
         """The observations [vehicles, ...] with a ping each; where an episode `begins` [vehicles], all frames are its first."""
         floor = 10 ** (self._floor_db / 10)
-        db = 10 * np.log10(np.maximum(np.nan_to_num(bins) / self._reference, floor))
+        db = 10 * np.log10(np.fmax(bins / self._reference, floor))  # of NaN and a number, the number
         levels = np.clip(255 * (1 - db / self._floor_db), 0, 255).astype(np.uint8)
         self._stacked = np.concatenate([self._stacked[:, 1:], levels[:, None]], axis=1)
         self._stacked[begins] = levels[begins, None]

@@ -73,7 +73,7 @@ std::vector<FocusZone> focusZones(double length, double wavelength, double focus
 }
 
 /** Returns the angle modulo a whole turn, within half a turn of 0. */
-double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
+double wrapped(double angle) { return std::abs(angle) <= pi ? angle : std::remainder(angle, 2 * pi); }
 
 /** Returns the angle farthest from `inner` towards `outer` at which `power` is not below the floor, plus a step. */
 double farthest(double outer, double inner, double floor, const auto& power) {
@@ -177,12 +177,12 @@ double Directivity::sentAmplitude(double azimuth) const {
 
 std::complex<double> Directivity::receivedField(double azimuth, double bearing, size_t zone) const {
     const double angle = conical_ ? azimuth : wrapped(azimuth - bearing), axis = conical_ ? bearing : 0;
-    const double ideal = computeAmplitude(receive_azimuth_, angle, axis);
-    if (zones_.empty() || std::abs(angle) > pi / 2) return ideal;
+    if (zones_.empty() || std::abs(angle) > pi / 2) return computeAmplitude(receive_azimuth_, angle, axis);
+    const double u = receive_azimuth_->aperture() * (std::sin(angle) - std::sin(axis));
     // A steered straight array is foreshortened, and so is the path to its ends.
     const double foreshortened = std::cos(axis) * std::cos(axis);
     const Zone& own = conical_ ? zoneOfPhase(zones_[zone].phase * foreshortened) : zones_[zone];
-    return ideal + own.added.at(receive_azimuth_->aperture() * (std::sin(angle) - std::sin(axis)));
+    return receive_azimuth_->taper().amplitude(u) + own.added.at(u);
 }
 
 double Directivity::sentElevation(double angle) const { return computePower(transmit_elevation_, angle); }

@@ -10,6 +10,8 @@
 namespace insonify::sonar {
 namespace {
 
+constexpr size_t tile_rows = 16, tile_bins = 256;  ///< Rows of a tile fit the first cache of a core [1].
+
 /** Returns the mean of a beam's pattern over a cell, by Simpson's rule; for fields the root of the mean power, with the
  *  sign of the middle. */
 double meanOver(const Beamformer::Rules& rules, const Beam& whole, double bearing) {
@@ -59,6 +61,16 @@ void trim(auto& run, double floor) {
 INSONIFY_VECTOR_CLONES void addRows(const float* rows, size_t stride, std::span<const float> weights,
                                     float* __restrict bins, size_t count) {
     size_t i = 0;
+    for (; i + 8 <= weights.size(); i += 8) {
+        const float* row = rows + i * stride;
+        const float a = weights[i], b = weights[i + 1], c = weights[i + 2], d = weights[i + 3], e = weights[i + 4],
+                    f = weights[i + 5], g = weights[i + 6], h = weights[i + 7];
+        for (size_t j = 0; j < count; ++j)
+            bins[j] = bins[j] +
+                      ((a * row[j] + b * row[stride + j]) + (c * row[2 * stride + j] + d * row[3 * stride + j])) +
+                      ((e * row[4 * stride + j] + f * row[5 * stride + j]) +
+                       (g * row[6 * stride + j] + h * row[7 * stride + j]));
+    }
     for (; i + 4 <= weights.size(); i += 4) {
         const float* row = rows + i * stride;
         const float a = weights[i], b = weights[i + 1], c = weights[i + 2], d = weights[i + 3];
@@ -138,20 +150,43 @@ void Beamformer::sumGroup(size_t group, std::span<const float> echoes) {
     addRows(&echoes[groups_[group] * bin_count_], bin_count_, {items, cellsIn(group)}, sum, bin_count_);
 }
 
-void Beamformer::form(size_t beam, std::span<const float> echoes, std::span<float> bins) const {
-    INSONIFY_CHECK(bins.size() == bin_count_, bins.size(), bin_count_);
+void Beamformer::addTile(const Tile& tile, const BandsTo& bands, const auto& run, const float* rows,
+                         std::span<float> bins) const {
+    const std::span beams(&bands.of_beams[tile.first_beam], tile.beams);
+    size_t low = groups_.back(), high = 0;
+    for (const Band& band : beams) {
+        low = std::min(low, run(band).first);
+        high = std::max(high, run(band).first + run(band).weights.size());
+    }
+    for (size_t row = low; row < high; row += tile_rows)
+        for (size_t i = 0; i < beams.size(); ++i) {
+            const Run& own = run(beams[i]);
+            // Rows are added in fours from the run's first, in all tiles.
+            const auto countTo = [&](size_t end) {
+                return std::min(own.weights.size(), end > own.first ? (end - own.first + 3) / 4 * 4 : 0);
+            };
+            const size_t from = countTo(row), to = countTo(row + tile_rows);
+            addRows(rows + (own.first + from) * bin_count_ + tile.first_bin, bin_count_,
+                    std::span(own.weights).subspan(from, to - from), &bins[i * bin_count_ + tile.first_bin], tile.bins);
+        }
+}
+
+void Beamformer::form(size_t first, size_t count, std::span<const float> echoes, std::span<float> bins) const {
+    INSONIFY_CHECK(bins.size() == count * bin_count_, bins.size(), count, bin_count_);
     INSONIFY_CHECK(echoes.size() == groups_.back() * bin_count_, echoes.size(), groups_.back(), bin_count_);
     std::ranges::fill(bins, 0.0f);
     size_t from = 0;
     for (const BandsTo& bands : bands_) {
-        const Band& band = bands.of_beams[beam];
-        const auto add = [&](const Run& run, const float* rows) {
-            addRows(rows + run.first * bin_count_ + from, bin_count_, run.weights, bins.data() + from,
-                    bands.end - from);
-        };
-        for (const Run& run : band.cells) add(run, echoes.data());
-        for (const Run& run : band.groups) add(run, grouped_.data());
-        from = bands.end;
+        for (; from < bands.end; from += std::min(tile_bins, bands.end - from)) {
+            const Tile tile{first, count, from, std::min(tile_bins, bands.end - from)};
+            for (const size_t side : {0, 1})
+                addTile(
+                    tile, bands, [&](const Band& band) -> const Run& { return band.cells[side]; }, echoes.data(), bins);
+            for (const size_t side : {0, 1})
+                addTile(
+                    tile, bands, [&](const Band& band) -> const Run& { return band.groups[side]; }, grouped_.data(),
+                    bins);
+        }
     }
 }
 

@@ -45,7 +45,10 @@ public:
     /** Sums one group of cells: each once per ping, before beams are formed. `echoes`: [cell][bin]. */
     void sumGroup(size_t group, std::span<const float> echoes);
     /** Fills the bins of one beam. Allocates nothing. Thread-safe. */
-    void form(size_t beam, std::span<const float> echoes, std::span<float> bins) const;
+    void form(size_t beam, std::span<const float> echoes, std::span<float> bins) const { form(beam, 1, echoes, bins); }
+    /** Fills the bins of neighbouring beams, [beam][bin], while their cells are in the processor's cache. The bins are
+     *  those of each beam alone, bit for bit. Allocates nothing. Thread-safe. */
+    void form(size_t first, size_t count, std::span<const float> echoes, std::span<float> bins) const;
 
     /** Returns the weight of each cell in beam k, as it is applied in the farthest bins [1]. */
     std::vector<double> weights(size_t beam) const;
@@ -65,6 +68,13 @@ private:
         size_t end;
         std::vector<Band> of_beams;
     };
+    /** Part of the bins of neighbouring beams. */
+    struct Tile {
+        size_t first_beam, beams, first_bin, bins;
+    };
+    /** Adds the rows of one run of each beam in a tile. `run(band)` returns the run. */
+    void addTile(const Tile& tile, const BandsTo& bands, const auto& run, const float* rows,
+                 std::span<float> bins) const;
     size_t cellsIn(size_t group) const { return groups_[group + 1] - groups_[group]; }
 
     std::vector<size_t> groups_;  ///< First cell of each group, and the number of cells.

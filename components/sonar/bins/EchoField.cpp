@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <glm/gtc/quaternion.hpp>
+#include <iterator>
 #include <limits>
 
 #include "components/sonar/base/RandomFields.hpp"
@@ -21,12 +23,21 @@ INSONIFY_VECTOR_CLONES void addScaled(const float* from, float weight, float* __
     for (size_t j = 0; j < count; ++j) fields[j] += weight * from[j];
 }
 
-/** fields[j] += sum of weights[i] * from[i][j]. */
-INSONIFY_VECTOR_CLONES void addFourScaled(const std::array<const float*, 4>& from, const std::array<float, 4>& weights,
-                                          float* __restrict fields, size_t count) {
-    const float *const a = from[0], *const b = from[1], *const c = from[2], *const d = from[3];
-    for (size_t j = 0; j < count; ++j)
-        fields[j] += (weights[0] * a[j] + weights[1] * b[j]) + (weights[2] * c[j] + weights[3] * d[j]);
+using Lanes [[gnu::vector_size(64), gnu::aligned(4), gnu::may_alias]] = float;
+
+/** Fills a block: fields[j] is the sum over taps, four at a time, of weight * values[offset + j]. */
+INSONIFY_VECTOR_CLONES void sumTaps(const float* values, const FieldResponse::Tap* taps, size_t count, float* fields) {
+    constexpr size_t width = sizeof(Lanes) / sizeof(float);
+    Lanes sums[FieldResponse::block / width] = {};
+    for (const FieldResponse::Tap* tap = taps; tap < taps + count; tap += 4)
+        for (size_t i = 0; i < std::size(sums); ++i) {
+            const float* const at = values + width * i;
+            sums[i] += (tap[0].weight * *reinterpret_cast<const Lanes*>(at + tap[0].offset) +
+                        tap[1].weight * *reinterpret_cast<const Lanes*>(at + tap[1].offset)) +
+                       (tap[2].weight * *reinterpret_cast<const Lanes*>(at + tap[2].offset) +
+                        tap[3].weight * *reinterpret_cast<const Lanes*>(at + tap[3].offset));
+        }
+    std::memcpy(fields, sums, sizeof sums);
 }
 
 /** Computes the fields of every `stride`-th range cell from their sums. */
@@ -45,6 +56,8 @@ INSONIFY_VECTOR_CLONES void square(const float* fields, float* __restrict intens
     for (size_t j = 0; j < count; ++j)
         intensities[j] = fields[2 * j] * fields[2 * j] + fields[2 * j + 1] * fields[2 * j + 1];
 }
+
+constexpr size_t together = 8;  ///< Neighbouring beams that are formed together [1].
 
 /** Forms fields by the real or the imaginary part of the patterns. */
 Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers, bool imaginary) {
@@ -122,25 +135,45 @@ FieldResponse::FieldResponse(const RenderPlan& plan) {
                          static_cast<float>(std::copysign(std::sqrt(power), pulse_->amplitude(t * width)))});
         margin_ = std::max(margin_, static_cast<size_t>(std::abs(shift)));
     }
+    while (taps_.size() % 4 != 0) {  // those without a four are added one by one
+        const auto at = taps_.end() - static_cast<ptrdiff_t>(taps_.size() % 4);
+        taps_.insert(at + 1, 3, {at->phase, at->shift, 0});
+    }
+    for (Tap& tap : taps_) tap.offset = static_cast<ptrdiff_t>(tap.phase * phaseLength() + 2 * margin_) + 2 * tap.shift;
+}
+
+std::pair<ptrdiff_t, ptrdiff_t> FieldResponse::findSupport(std::span<const float> phases) const {
+    const auto heard = [](float value) { return value != 0; };
+    size_t first = samples_, end = 0;
+    for (size_t phase = 0; phase < stride_; ++phase) {
+        const auto own = phases.subspan(place(phase), 2 * samples_);
+        const auto found = static_cast<size_t>(std::ranges::find_if(own, heard) - own.begin());
+        first = std::min(first, found / 2);
+        size_t last = own.size();
+        while (last > 2 * std::max(first, end) && !heard(own[last - 1])) --last;
+        end = std::max(end, (last + 1) / 2);
+    }
+    return {static_cast<ptrdiff_t>(first), static_cast<ptrdiff_t>(end)};
 }
 
 void FieldResponse::spread(std::span<const float> phases, std::span<float> fields) const {
     if (!pulse_) {
-        std::ranges::copy(phases, fields.begin());
+        std::copy_n(phases.begin(), fields.size(), fields.begin());
         return;
     }
-    std::ranges::fill(fields, 0.0f);
-    const auto getFrom = [&](const Tap& tap) {
-        return phases.data() + (static_cast<ptrdiff_t>(tap.phase * phaseLength() + 2 * margin_) + 2 * tap.shift);
-    };
-    size_t t = 0;
-    for (; t + 4 <= taps_.size(); t += 4) {
-        std::array<const float*, 4> from;
-        std::array<float, 4> weights;
-        for (size_t i = 0; i < 4; ++i) from[i] = getFrom(taps_[t + i]), weights[i] = taps_[t + i].weight;
-        addFourScaled(from, weights, fields.data(), fields.size());
+    INSONIFY_CHECK(phases.size() == phasesSize(), phases.size(), phasesSize());
+    const auto [first, end] = findSupport(phases);
+    std::array<float, block> sums;
+    for (size_t j = 0; j < fields.size(); j += block) {
+        // Taps that read nothing but zeros change no bit.
+        const auto sample = static_cast<ptrdiff_t>(j / 2), behind = sample + static_cast<ptrdiff_t>(block / 2);
+        const auto reads = [&](ptrdiff_t shift) { return std::ranges::lower_bound(taps_, shift, {}, &Tap::shift); };
+        const auto low = (reads(first - behind + 1) - taps_.begin()) / 4 * 4,
+                   high = (reads(end - sample) - taps_.begin() + 3) / 4 * 4;
+        sumTaps(phases.data() + j, taps_.data() + low, static_cast<size_t>(std::max<ptrdiff_t>(0, high - low)),
+                sums.data());
+        std::copy_n(sums.begin(), std::min(block, fields.size() - j), fields.begin() + static_cast<ptrdiff_t>(j));
     }
-    for (; t < taps_.size(); ++t) addScaled(getFrom(taps_[t]), taps_[t].weight, fields.data(), fields.size());
 }
 
 double FieldResponse::amplitude(size_t sample, double range) const {
@@ -182,12 +215,14 @@ void FieldBeams::form(ThreadPool& threads) {
         beamformer_->sumGroup(group, cells_);
         if (quadrature_) quadrature_->sumGroup(group, cells_);
     });
-    visitEach(beam_count_, [&](size_t number) {
-        beamformer_->form(number, cells_, beam(number));
+    visitEach((beam_count_ + together - 1) / together, [&](size_t number) {
+        const size_t first = number * together, count = std::min(together, beam_count_ - first);
+        const std::span<float> formed(&beams_[first * numbers_], count * numbers_);
+        beamformer_->form(first, count, cells_, formed);
         if (!quadrature_) return;
-        const std::span<float> own(&quadratures_[number * numbers_], numbers_);
-        quadrature_->form(number, cells_, own);
-        addQuadrature(own.data(), beam(number).data(), numbers_ / 2);
+        const std::span<float> own(&quadratures_[first * numbers_], count * numbers_);
+        quadrature_->form(first, count, cells_, own);
+        addQuadrature(own.data(), formed.data(), own.size() / 2);
     });
 }
 

@@ -2,6 +2,7 @@
 #include <complex>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "components/acoustics/Pulse.hpp"
@@ -18,8 +19,9 @@ public:
 
     size_t samples() const { return samples_; }          ///< Samples of a beam [1].
     size_t cells() const { return samples_ * stride_; }  ///< Range cells of a beam [1].
+    static constexpr size_t block = 64;                  ///< Numbers of fields that are summed in registers [1].
     /** Returns the number of values of the range cells in phases, with margins of 0, as spread() reads them. */
-    size_t phasesSize() const { return stride_ * phaseLength(); }
+    size_t phasesSize() const { return stride_ * phaseLength() + block; }
     /** Returns the index in the phases of the real part of a range cell's field; the imaginary part follows. */
     size_t place(size_t cell) const { return cell % stride_ * phaseLength() + 2 * (cell / stride_ + margin_); }
     /** Spreads range cells into `fields`: samples() times real, imaginary. Allocates nothing. */
@@ -30,18 +32,22 @@ public:
     /** Adds an echo at a slant range to samples() fields, times the pulse's amplitude [1/m, m]. */
     void addEcho(double range, std::complex<double> field, std::span<float> fields) const;
 
-private:
     struct Tap {
         size_t phase;
-        ptrdiff_t shift;  ///< [samples]
-        float weight;
+        ptrdiff_t shift;       ///< [samples]
+        float weight;          ///< [1]
+        ptrdiff_t offset = 0;  ///< In the phases, of the value for the first sample.
     };
+
+private:
+    /** Returns the first sample with a value other than 0 in any phase, and the one behind the last. */
+    std::pair<ptrdiff_t, ptrdiff_t> findSupport(std::span<const float> phases) const;
     size_t phaseLength() const { return 2 * (samples_ + 2 * margin_); }
 
     size_t samples_, stride_, margin_ = 0;
     double sample_width_, reach_ = 0;  ///< Distance beyond which an echo has no amplitude [m].
     std::optional<acoustics::Pulse> pulse_;
-    std::vector<Tap> taps_;
+    std::vector<Tap> taps_;  ///< By shift. Each four are added to a sample together.
 };
 
 /** The fields of a plan's beams, formed of those of its azimuth cells; the cells themselves in a plan that forms none.
