@@ -109,6 +109,24 @@ void writePng(const std::filesystem::path& file, const types::Image& picture) {
     fail(file, reason);
 }
 
+types::Image readPng(const std::filesystem::path& file) {
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_file(&png, file.c_str())) throw std::runtime_error(png.message);
+    constexpr png_uint_32 largest = 16384;  // [px]
+    if (png.width > largest || png.height > largest) {
+        png_image_free(&png);
+        throw std::runtime_error("is a picture of more than 16384 pixels on a side");
+    }
+    png.format = PNG_FORMAT_GRAY;
+    types::Image picture;
+    picture.size = {static_cast<uint16_t>(png.width), static_cast<uint16_t>(png.height)};
+    picture.row_size = png.width;
+    picture.image.resize(size_t{png.width} * png.height);
+    if (!png_image_finish_read(&png, nullptr, picture.image.data(), 0, nullptr)) throw std::runtime_error(png.message);
+    return picture;
+}
+
 PictureFiles::PictureFiles(const RecordingConfig& config, const std::filesystem::path& folder) : folder_(folder) {
     if (config.file) {
         pattern_ = FilePattern::parse(*config.file);

@@ -46,6 +46,10 @@ private:
  *  file. */
 void writePng(const std::filesystem::path& file, const types::Image& picture);
 
+/** Reads a PNG file as a grey picture of 8 bits; colours become their luminance. Throws std::runtime_error with the
+ *  reason, without the name of the file. */
+types::Image readPng(const std::filesystem::path& file);
+
 /** Writes a stream of pictures as numbered files, a video, or both. Makes the folders that they need. */
 class PictureFiles {
 public:

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "components/recordings/RecordingReader.hpp"
+#include "components/study/PictureFile.hpp"
 #include "types/geometry/BeamArc.hpp"
 #include "types/geometry/WorldFrame.hpp"
 #include "types/text/ConfigError.hpp"
@@ -102,7 +103,22 @@ std::vector<CodedPing> pingsOfRecording(const fs::path& file, const receiver::Co
                                              "be compared. `insonify log import` makes a log of it, whose pings "
                                              "`insonify replay --rerender --score` compares",
                                              reader->format().device));
-    return codedPings(*reader, assumed);
+    try {
+        return codedPings(*reader, assumed);
+    } catch (const types::ConfigError& error) {
+        if (!reader->format().signature.empty()) throw;
+        throw types::ConfigError(file.string(), "--real",
+                                 fmt::format("{}; what is read: {} recordings, logs of pings, and .png pictures",
+                                             error.diagnostics().front().message, recordings::recordingEndings()));
+    }
+}
+
+/** Returns the ping of a picture. */
+std::vector<CodedPing> pingsOfPicture(const fs::path& file, const receiver::CodeConfig& assumed,
+                                      const PictureConfig* pictures) {
+    if (!pictures)
+        throw types::ConfigError(file.string(), "--real", "is a picture, which `insonify fit` reads; give recordings");
+    return {readPicture(file, *pictures, assumed)};
 }
 
 /** Values of lines; none if unknown. */
@@ -228,12 +244,15 @@ std::vector<CodedPing> codedPings(RecordingReader& reader, const receiver::CodeC
 }
 
 std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, const receiver::CodeConfig* law,
-                                     const ReadLog& readLog) {
+                                     const ReadLog& readLog, const PictureConfig* pictures) {
     const receiver::CodeConfig assumed = law ? *law : receiver::CodeConfig{.law = receiver::CodeLaw::Sqrt};
     std::vector<CodedPing> pings;
     for (const fs::path& file : getFiles(names)) {
-        const std::optional<LoggedPings> logged = readLog ? readLog(file) : std::nullopt;
-        for (CodedPing& coded : logged ? pingsOfLog(*logged, assumed) : pingsOfRecording(file, assumed)) {
+        const bool is_picture = isPicture(file);
+        const std::optional<LoggedPings> logged = readLog && !is_picture ? readLog(file) : std::nullopt;
+        for (CodedPing& coded : is_picture ? pingsOfPicture(file, assumed, pictures)
+                                : logged   ? pingsOfLog(*logged, assumed)
+                                           : pingsOfRecording(file, assumed)) {
             coded.file = file.string();
             const auto isSame = [&](const CodedPing& other) {
                 return other.name == coded.name && other.codes == coded.codes;

@@ -70,13 +70,15 @@ struct LoggedPings {
  *  of codes. */
 using ReadLog = std::function<std::optional<LoggedPings>(const std::filesystem::path& file)>;
 
+struct PictureConfig;
 /** Returns the pings of recordings, which are files or folders of files: of another program or device
- *  (recordings/RecordingReader.hpp), or a log. Names are numbered: "recorded_5". A side-scan becomes a waterfall for
- * each side.
+ *  (recordings/RecordingReader.hpp), a log, or a picture (PictureFile.hpp). Names are numbered: "recorded_5". A
+ * side-scan becomes a waterfall for each side.
  *  @param law of codes whose law the recording does not state; null: codes are proportional to amplitude
  *  @param readLog may be null
+ *  @param pictures what is known of pictures; null: they are refused
  *  @throws types::ConfigError for a file without pings, or a folder without files */
 std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, const receiver::CodeConfig* law = nullptr,
-                                     const ReadLog& readLog = nullptr);
+                                     const ReadLog& readLog = nullptr, const PictureConfig* pictures = nullptr);
 
 }  // namespace insonify::study

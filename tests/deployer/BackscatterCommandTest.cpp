@@ -93,7 +93,7 @@ TEST(BackscatterCommandTest, AWallNearAHalfWaveIsNearlyTransparent) {
     EXPECT_GT(half["passed_db"][1], -0.5);
     EXPECT_GT(quarter["reflected_db"][1], -6);
     EXPECT_NEAR(quarter["strength_db"][1].get<double>(), -9.23 + quarter["reflected_db"][1].get<double>(), 0.01);
-    EXPECT_GT(air["reflected_db"][1], -1);
+    EXPECT_GT(air["reflected_db"][1], -1.5);
     ASSERT_EQ(half["warnings"].size(), 1u);
     EXPECT_THAT(half["warnings"][0].get<std::string>(), HasSubstr("half-wave resonance"));
     EXPECT_THAT(quarter["warnings"], IsEmpty());

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Needs.hpp"
 #include "tests/support/Paths.hpp"

@@ -64,7 +64,7 @@ std::vector<std::string> inCircles(const Graph& graph) {
 // What has been reached. Lower these numbers when the tree gets smaller; a commit that adds a function for users may
 // raise them, and states which. Last: a datum and its fixes, sonars of Gazebo's worlds, a ROS 2 node's services and
 // reports, the live page as a display, services of a vehicle.
-constexpr size_t max_units = 475, max_small_files = 70, max_folder = 25, max_lines = 135'440;
+constexpr size_t max_units = 476, max_small_files = 71, max_folder = 25, max_lines = 136'190;
 
 /** Number of lines of the product, without pages. */
 size_t productLines() {

@@ -1,8 +1,11 @@
 // `insonify fit`, called as a user does.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <random>
 #include <sstream>
 
+#include "components/output/PictureFiles.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/SpeckleRecording.hpp"
 
@@ -134,6 +137,25 @@ TEST(FitCommandTest, AFitToTheFirstHalfOfASideScansLogPassesLikenessOnTheSecond)
     EXPECT_THAT(failedClaims("starboard", {}), ElementsAre(StartsWith("FAIL  share of saturated codes")));
 }
 
+/** Speckle in a polar picture; the range is the deployment's. */
+TEST(FitCommandTest, APictureIsFitted) {
+    const FitFolder folder;
+    insonify::types::Image picture;
+    picture.size = {128, 256}, picture.row_size = 128, picture.pixel_size = 1;
+    picture.frame_mode = insonify::types::ImageMode::Grayscale;
+    std::mt19937 random(3);
+    for (int row = 255; row >= 0; --row)
+        for (int beam = 0; beam < 128; ++beam)
+            picture.image.push_back(static_cast<uint8_t>(
+                std::min(255.0, 40 * std::sqrt(std::exponential_distribution<double>()(random)) + 10)));
+    insonify::output::writePng(folder / "ping.png", picture);
+    EXPECT_THAT(folder.fit("ping.png"), isRefused(HasSubstr("give --field-of-view-deg")));
+    const Outcome outcome = folder.fit(
+        "ping.png", {"--shape", "polar", "--field-of-view-deg", "30", "--scene-is", "rough", "--out", "fitted.yml"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(readFile(folder / "fitted.yml"), AllOf(HasSubstr("range: 2"), HasSubstr("bin_count: 256")));
+}
+
 TEST(FitCommandTest, AFitIsReproducible) {
     const FitFolder folder;
     writeFile(folder / "speckle.raw", insonify::test::recordedSpeckle());
@@ -177,6 +199,7 @@ TEST(FitCommandTest, RefusesWrongUseWithAReasonAndWritesNothing) {
          "has no noise::NoiseTask before it"},
         {{"fit", "wall.yml", "--real", "nothing.raw", "--out", "fitted.yml"}, "nothing.raw"},
         {{"fit", "wall.yml", "--real", "text.raw", "--out", "fitted.yml"}, "text.raw"},
+        {{"fit", "wall.yml", "--real", "text.raw", "--out", "fitted.yml"}, "logs of pings, and .png pictures"},
         {{"fit", "wall.yml", "--real", "empty.raw", "--out", "fitted.yml"}, "empty.raw"},
         {{"fit", "wall.yml", "--real", "small.raw", "--out", "fitted.yml"},
          "pings of 3 beams and 2 bins; a fit needs at least 32 and 64"},

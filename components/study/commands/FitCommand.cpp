@@ -8,6 +8,7 @@
 #include "components/console/Console.hpp"
 #include "components/console/ProgressLine.hpp"
 #include "components/deployer/FittedDeployment.hpp"
+#include "components/study/PictureFile.hpp"
 #include "components/study/commands/StudyCommand.hpp"
 #include "components/study/fit/FitReport.hpp"
 #include "components/study/fit/RecordingFit.hpp"
@@ -23,6 +24,8 @@ struct FitOptions {
     std::vector<std::string> real;
     uint64_t ping = 1;
     bool quiet = false;
+    std::string shape;
+    PictureConfig pictures;
 };
 
 /** Refuses recordings that do not exist and a result that cannot be written, before anything is computed. */
@@ -50,7 +53,11 @@ int runFit(const FitOptions& options) {
     refuseFiles(options);
     ChainAt at = chainAt(options.deployment, options.ping, {});
     const receiver::CodeConfig law = at.chain.code();
-    const std::vector<CodedPing> recorded = recordedPings(options.real, &law, readLog);
+    PictureConfig pictures = options.pictures;
+    if (!options.shape.empty()) pictures.is_fan = options.shape == "fan";
+    if (pictures.range <= 0) pictures.range = at.chain.sonar.range;
+    if (pictures.beams == 0) pictures.beams = static_cast<size_t>(at.chain.sonar.beams());
+    const std::vector<CodedPing> recorded = recordedPings(options.real, &law, readLog, &pictures);
     console::StudyProgress progress(!options.quiet);
     const RecordingFit fit = fitRecording(recorded, std::move(at.chain), options.scene_is == "rough",
                                           [&](const std::string& doing) { progress(doing); });
@@ -81,7 +88,16 @@ void addFit(CLI::App& app, console::Action& action) {
         ->add_option("DEPLOYMENT", options->deployment,
                      "a YAML file with scene, sonar, noise and a receiver that outputs codes")
         ->required();
-    command->add_option("--real", options->real, "recordings: files, or folders of them")->required();
+    command->add_option("--real", options->real, "recordings, or .png pictures of pings: files, or folders of them")
+        ->required();
+    const auto picture = [&](const char* name, double& value, const char* meaning) {
+        command->add_option(name, value, std::string("of a picture: ") + meaning)->check(CLI::PositiveNumber);
+    };
+    command->add_option("--shape", options->shape, "of a picture: fan, or polar with a column for each beam")
+        ->check(CLI::IsMember({"fan", "polar"}));
+    picture("--range", options->pictures.range, "slant range of its far edge; absent: the deployment's [m]");
+    picture("--range-min", options->pictures.range_min, "slant range of its near edge; absent: 0, a fan shows it [m]");
+    picture("--field-of-view-deg", options->pictures.field_of_view_deg, "angle between its sides; a fan shows it");
     command
         ->add_option(
             "--scene-is", options->scene_is,
