@@ -70,8 +70,9 @@ TEST(CommandLineTest, TheVersionHasTheCommitAndTheParts) {
         std::string head, word;
         for (each >> head; each >> word;) words[head].insert(word);
     }
-    if (fs::exists(insonify::test::sourceFile(".git")) && std::system("git --version > /dev/null 2>&1") == 0)
+    if (fs::exists(insonify::test::sourceFile(".git")) && std::system("git --version > /dev/null 2>&1") == 0) {
         EXPECT_THAT(outcome.out, testing::ContainsRegex("\ncommit [0-9a-f]{10} of [0-9]{4}-[0-9]{2}-[0-9]{2}"));
+    }
     const json libraries = json::parse(callInsonify(folder, {"libraries", "--json"}).out);
     std::set<std::string> present;
     for (const json& each : libraries)
