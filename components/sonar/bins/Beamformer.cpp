@@ -155,12 +155,14 @@ void Beamformer::addTile(const Tile& tile, const BandsTo& bands, const auto& run
     const std::span beams(&bands.of_beams[tile.first_beam], tile.beams);
     size_t low = groups_.back(), high = 0;
     for (const Band& band : beams) {
+        if (run(band).weights.empty()) continue;  // its first row is not known
         low = std::min(low, run(band).first);
         high = std::max(high, run(band).first + run(band).weights.size());
     }
     for (size_t row = low; row < high; row += tile_rows)
         for (size_t i = 0; i < beams.size(); ++i) {
             const Run& own = run(beams[i]);
+            if (own.weights.empty()) continue;
             // Rows are added in fours from the run's first, in all tiles.
             const auto countTo = [&](size_t end) {
                 return std::min(own.weights.size(), end > own.first ? (end - own.first + 3) / 4 * 4 : 0);

@@ -55,7 +55,7 @@ public:
 
 private:
     struct Run {
-        size_t first;
+        size_t first = 0;
         std::vector<float> weights;
     };
     /** Cells near a beam, in two runs where these continue across the seam, and the groups of all other cells. */
