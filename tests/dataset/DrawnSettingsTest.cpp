@@ -49,7 +49,8 @@ TEST(DrawnSettingsTest, SettingsInAnyOrderLeaveNothingInTheSonarForTheNextSample
         const std::string quality = "quality: {rows: 128, columns_per_beam: 1}";
         std::string text = deployment;
         writeFile(folder / "d.yml", text.replace(text.find(quality), quality.size(), sonar + imperfect_device));
-        writeFile(folder / "sweep.yml", drawn_sweep);
+        // Shadows are of a second simulation, which must have the same settings; one of the sonars suffices.
+        writeFile(folder / "sweep.yml", drawn_sweep + (sonar == few_rows ? "annotations: {shadows: true}\n" : ""));
         const auto make = [&](const std::string& out, const std::string& shard) {
             return callInsonify(folder, {"dataset", "d.yml", "--sweep", "sweep.yml", "--format", "npz", "--out", out,
                                          "--shard", shard});

@@ -73,7 +73,8 @@ TEST_F(OperatorTest, ATargetStaysWhereItIsWhileTheVehicleMoves) {
     clickAt(10, 0);
     EXPECT_EQ(value("insonify.settings.targets.length"), 1) << "the tool is put away";
     value("self.is_old = true, location.reload()");
-    ASSERT_TRUE(becomes("!self.is_old && self.insonify?.settings.targets.length === 1 && !" + byId("marked") + ".hidden"));
+    ASSERT_TRUE(
+        becomes("!self.is_old && self.insonify?.settings.targets.length === 1 && !" + byId("marked") + ".hidden"));
     enter("document.querySelector('#targets input')", "wreck");
     EXPECT_TRUE(becomes("insonify.settings.targets[0].name === 'wreck'"));
     browser->click("document.querySelector('#targets button')");

@@ -467,11 +467,12 @@ std::optional<std::map<std::string, std::string>> DatasetRun::findChanges(const 
     return changes;
 }
 
-/** Sets properties of the current simulation. Returns false, and changes nothing, where it needs to be made anew. */
+/** Sets properties of the current simulations. Returns false where they need to be made anew. */
 bool DatasetRun::change(const std::optional<std::map<std::string, std::string>>& changes) {
     if (!changes) return false;
     try {
         simulation_->set(*changes);
+        if (hiding_) hiding_->set(*changes);
         return true;
     } catch (const std::exception&) {  // a running task refuses it; what is wrong, the new simulation reports
         return false;

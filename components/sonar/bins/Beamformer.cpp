@@ -155,7 +155,7 @@ void Beamformer::addTile(const Tile& tile, const BandsTo& bands, const auto& run
     const std::span beams(&bands.of_beams[tile.first_beam], tile.beams);
     size_t low = groups_.back(), high = 0;
     for (const Band& band : beams) {
-        if (run(band).weights.empty()) continue;  // its first row is not known
+        if (run(band).weights.empty()) continue;
         low = std::min(low, run(band).first);
         high = std::max(high, run(band).first + run(band).weights.size());
     }

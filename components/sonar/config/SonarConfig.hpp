@@ -227,8 +227,10 @@ struct QualityConfig {
     bool isGiven() const { return rows || columns_per_beam; }
 
     static void describe(auto& self, auto& visit) {
-        visit({"rows", "1", "rows of samples over beam_height_deg; 256 where only columns_per_beam is given", 1, 16384}, self.rows);
-        visit({"columns_per_beam", "1", "columns of samples per beam; 2 where only rows is given", 1, 4096}, self.columns_per_beam);
+        visit({"rows", "1", "rows of samples over beam_height_deg; 256 where only columns_per_beam is given", 1, 16384},
+              self.rows);
+        visit({"columns_per_beam", "1", "columns of samples per beam; 2 where only rows is given", 1, 4096},
+              self.columns_per_beam);
         visit({"target_error", "1",
                "instead of rows and columns: relative L2 error of energies times r^5; default 0.05", 1e-4, 1},
               self.target_error);

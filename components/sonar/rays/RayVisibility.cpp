@@ -540,9 +540,9 @@ uint32_t RayVisibility::blocked(const PathRays& rays) const {
         direct(Rows(mover.from_sonar), mover.place, rays, all);
         occlude(mover.tree, valid.of, are_coherent, all);
     }
-    uint32_t is_hit = 0;
-    for (int i = 0; i < tile_samples; ++i) is_hit |= static_cast<uint32_t>(all.tfar[i] < 0) << i;
-    return is_hit & rays.towards.active;
+    uint32_t hits = 0;
+    for (int i = 0; i < tile_samples; ++i) hits |= static_cast<uint32_t>(all.tfar[i] < 0) << i;
+    return hits & rays.towards.active;
 }
 
 }  // namespace insonify::sonar

@@ -32,23 +32,23 @@ public:
     }
 
     void add(const TracedTile& tile) {
-        uint32_t hit = 0;
+        uint32_t hits = 0;
         for (int i = 0; i < tile_samples; ++i) {
             command_[place_[i]] = tile.hits->command[i];
             triangle_[place_[i]] = tile.hits->triangle[i];
-            hit |= static_cast<uint32_t>(tile.hits->command[i] != TileHits::nothing) << place_[i];
+            hits |= static_cast<uint32_t>(tile.hits->command[i] != TileHits::nothing) << place_[i];
         }
-        for (uint32_t left = echoes_from_misses_ ? ~hit & 0xffff : 0; left != 0; left &= left - 1)
+        for (uint32_t left = echoes_from_misses_ ? ~hits & 0xffff : 0; left != 0; left &= left - 1)
             addMiss(tile, std::countr_zero(left));
-        while (hit != 0) {
-            const int first = std::countr_zero(hit);
+        while (hits != 0) {
+            const int first = std::countr_zero(hits);
             uint32_t same = 0;
             for (int i = 0; i < tile_samples; ++i)
                 same |= static_cast<uint32_t>((command_[i] == command_[first]) & (triangle_[i] == triangle_[first]))
                         << i;
-            same = tile.apparent ? 1u << first : getPart(tile, same & hit);
+            same = tile.apparent ? 1u << first : getPart(tile, same & hits);
             addPatch(tile, same);
-            hit &= ~same;
+            hits &= ~same;
         }
     }
 
