@@ -448,13 +448,19 @@ TEST_F(Ros2RunTest, ALifecycleNodeMakesTheTransitionsOfItsTaskAndRefusesOthers) 
                            {7, "", true, "finalized", none},
                            {1, "", false, "finalized", none}};
     EXPECT_EQ(found["steps"], expected);
+    json events = found["events"];
+    if (events[0]["transition"]["id"] == 0) {  // the run's own start, where the peer was there in time to hear of it
+        EXPECT_EQ(events[0]["start_state"]["label"], "inactive");
+        EXPECT_EQ(events[0]["goal_state"]["label"], "active");
+        events.erase(0);
+    }
     std::vector<std::string> goals;
-    for (const json& event : found["events"]) goals.push_back(event["goal_state"]["label"]);
+    for (const json& event : events) goals.push_back(event["goal_state"]["label"]);
     EXPECT_THAT(goals, testing::ElementsAre("deactivating", "inactive", "cleaningup", "unconfigured", "configuring",
                                             "inactive", "activating", "active", "shuttingdown", "finalized"));
-    EXPECT_EQ(found["events"][0]["transition"], json({{"id", 4}, {"label", "deactivate"}}));
-    EXPECT_EQ(found["events"][0]["start_state"]["label"], "active");
-    EXPECT_GT(found["events"][0]["timestamp"], 1'600'000'000'000'000'000);
+    EXPECT_EQ(events[0]["transition"], json({{"id", 4}, {"label", "deactivate"}}));
+    EXPECT_EQ(events[0]["start_state"]["label"], "active");
+    EXPECT_GT(events[0]["timestamp"], 1'600'000'000'000'000'000);
     std::apply([&](const auto&... service) { (expectAnnounced(found["endpoints"], service), ...); },
                std::tuple(ros::change_state, ros::get_state, ros::get_available_states, ros::get_available_transitions,
                           ros::get_transition_graph));

@@ -101,7 +101,7 @@ TEST(LikenessCommandTest, RefusesWhatCannotBeCompared) {
     Outcome outcome = callInsonify(folder, {"study", "likeness", "wall.yml", "--real", "pings.raw", "--out", "report"});
     EXPECT_THAT(outcome, isRefused(HasSubstr("has no receiver that outputs codes")));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "wall.yml", "--out", "report"});
-    EXPECT_THAT(outcome, isRefused(HasSubstr("wall.yml: holds no ping of an Oculus")));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("wall.yml: --real: holds no ping of an Oculus")));
     fs::create_directory(folder / "empty");
     outcome = callInsonify(folder, {"study", "likeness", "--real", "empty", "--out", "report"});
     EXPECT_THAT(outcome, isRefused(HasSubstr("is a folder without a file")));
