@@ -20,7 +20,7 @@ public:
         const uint32_t* triangle;  ///< Within the object's mesh [1].
         const float *u, *v;        ///< Barycentric coordinates of the triangle's second and third corner [1].
         const float *x, *y, *z;    ///< Directions of the rays, unit, sonar axes [1].
-        const float* extent;       ///< Extent of the sample across the ray [m].
+        const float* extent;       ///< Longer side of the sample's footprint on the triangle's plane [m].
         const float*
             normal;  ///< Length of the triangle's unit normal after rotation by ObjectRecord::normal_x to normal_z [1].
     };
@@ -29,8 +29,8 @@ public:
     explicit NormalMapping(const types::Geometry& geometry);
     bool isMapped(int material) const { return maps_[static_cast<size_t>(material)] != nullptr; }
     /** Fills `cosine` with the cosines of the angles between rays and mapped normals, on the side that the ray hits; at
-     *  least 1e-6. Cosines are averaged over the part of the map that the sample covers. `placed`: the object relative
-     *  to the sonar. */
+     *  least 1e-6. They are means over the part of the map that the sample covers, in which normals that face away
+     * count as 0. `placed`: the object relative to the sonar. */
     void cosines(const ObjectRecord& placed, uint32_t object, int material, const Samples& samples,
                  double* cosine) const;
 
@@ -39,6 +39,9 @@ private:
     struct Level {
         int width, height;
         std::vector<uint8_t> texels;
+        /** Roots of the mean squares along and across of the normals within a texel, and of their mean product, with
+         *  sign about 128. Empty for the finest level. */
+        std::vector<uint8_t> squares;
     };
     struct Map {
         std::shared_ptr<const types::NormalMap> source;
@@ -50,13 +53,11 @@ private:
     static std::shared_ptr<const Map> sharedMap(const std::shared_ptr<const types::NormalMap>& source, float scale);
     /** Frames and map coordinates of samples. */
     struct Frames;
-    /** Normals of the map, interpolated bilinearly, each in its own level. */
-    struct Leanings;
     void interpolate(uint32_t object, const Samples& samples, Frames& frames) const;
-    /** Rotates normals and tangents into unit frames of sonar axes, and computes the number of texels that samples
-     *  cover. `texels` is the geometric mean of the map's sides. */
+    /** Rotates normals and tangents into unit frames of sonar axes, and computes rays in these frames and the number of
+     *  texels that samples cover. `texels` is the geometric mean of the map's sides. */
     static void place(const ObjectRecord& placed, float texels, const Samples& samples, Frames& frames);
-    static void lookUp(const Map& map, int count, const Frames& frames, Leanings& bent);
+    static void lookUp(const Map& map, int count, const Frames& frames, double* cosine);
 
     const types::Geometry& geometry_;
     std::vector<std::shared_ptr<const Map>>

@@ -172,11 +172,16 @@ INSONIFY_VECTOR_CLONES void MappedCells::setCosines(const PlacedScene& scene, in
         const double x = cells.cos_el[i] * cells.cos_az[i], y = cells.cos_el[i] * cells.sin_az[i], z = cells.sin_el[i];
         const double nx = cells.normal_x[i], ny = cells.normal_y[i], nz = cells.normal_z[i];
         const double facing = std::abs(nx * x + ny * y + nz * z), larger = facing > 1e-6 ? facing : 1e-6;
-        const double extent = cells.width[i] > cells.height[i] ? cells.width[i] : cells.height[i];
+        // Along the plane, a step across the ray is longer by the part of it that is along the normal.
+        const double aside = (ny * cells.cos_az[i] - nx * cells.sin_az[i]) / larger,
+                     above = (nz * cells.cos_el[i] - (nx * cells.cos_az[i] + ny * cells.sin_az[i]) * cells.sin_el[i]) /
+                             larger;
+        const double across = cells.width[i] * cells.cos_el[i] * std::sqrt(1 + aside * aside),
+                     up = cells.height[i] * std::sqrt(1 + above * above);
         x_[i] = static_cast<float>(x);
         y_[i] = static_cast<float>(y);
         z_[i] = static_cast<float>(z);
-        extent_[i] = static_cast<float>(std::abs(cells.distance[i]) / larger * extent);
+        extent_[i] = static_cast<float>(std::abs(cells.distance[i]) / larger * (across > up ? across : up));
         normal_[i] = static_cast<float>(std::sqrt(nx * nx + ny * ny + nz * nz));
     }
     for (int i = first, next; i < end; i = next) {
