@@ -89,13 +89,14 @@ def test_faults_are_found(described):
     without = {name: each for name, each in table.items() if name != "vessels"}
     twice = table | {"again": table["vessels"]}
     unshown = pages | {page: pages[page].replace("vessels.png", "none.png")}
-    unprinted = pages | {page: pages[page].replace("insonify run deploy/vessels.yml --pings 1 --set fan.width", "insonify run deploy/vessels.yml --set fan.width")}
+    other = "components/sonar/README.md"
+    unprinted = pages | {other: pages[other].replace("insonify run deploy/harbour_altimeter.yml --set echoes.width=640", "insonify run deploy/harbour_altimeter.yml")}
     cases = [
         (without, pages, tree, "deploy/pictures/vessels.png has 0 entries"),
         (twice, pages, tree, "deploy/pictures/vessels.png has 2 entries"),
         (table, pages, tree - {"deploy/pictures/vessels.png"}, "vessels: deploy/pictures/vessels.png is not there"),
         (table, unshown, tree, "vessels: no page shows it"),
-        (table, unprinted, tree, "prints neither its commands nor scripts/pictures vessels"),
+        (table, unprinted, tree, "harbour_altimeter: components/sonar/README.md shows it, and prints neither its commands nor scripts/pictures harbour_altimeter"),
         (with_entry(table, "vessels", commands=[]), pages, tree, "vessels: neither drawn nor made by a command"),
         (with_entry(table, "vessels", commands=["insonify rnu x.yml"]), pages, tree, "vessels: there is no insonify rnu"),
         (with_entry(table, "vessels", commands=["scripts/polt x"]), pages, tree, "vessels: there is no scripts/polt x"),
