@@ -44,9 +44,11 @@ Json toJson(const YAML::Node& node) {
 std::string qualityText(const types::Plan& plan) {
     const std::string error =
         plan.predicted_error >= 0 ? fmt::format(", predicted error {:.2g}", plan.predicted_error) : "";
-    const std::string device = plan.device.empty() ? "" : fmt::format(", on {}", plan.device);
-    return fmt::format("quality: {} rows, {} columns per beam, {} frusta{}{}", plan.rows, plan.columns_per_beam,
-                       plan.slabs, error, device);
+    const std::string frusta = plan.slabs > 0 ? fmt::format(", {} frusta", plan.slabs) : "";  // none with rays
+    const std::string device =
+        plan.device.empty() ? "" : fmt::format(", {} {}", plan.slabs > 0 ? "on" : "by", plan.device);
+    return fmt::format("quality: {} rows, {} columns per beam{}{}{}", plan.rows, plan.columns_per_beam, frusta, error,
+                       device);
 }
 
 Json toJson(const types::Plan& plan) {

@@ -26,7 +26,7 @@ TEST(PlanCommandTest, JsonHasRunAndOmittedFeatures) {
 TEST(PlanCommandTest, TheTextNamesEachOmissionWithItsReason) {
     const WallFolder folder;
     ASSERT_THAT(callInsonify(folder, {"plan", "wall.yml"}),
-                prints(AllOf(HasSubstr("sonar\n  quality: 32 rows, 2 columns per beam"),
+                prints(AllOf(HasSubstr("sonar\n  quality: 32 rows, 2 columns per beam, by rays on the processor\n"),
                              HasSubstr("  omitted: motion within a ping: motion_in_ping is false; from "))));
     const Outcome slow = callInsonify(folder, {"plan", "wall.yml", "--set", "sonar.speed_of_sound=1000"});
     EXPECT_THAT(slow.out, HasSubstr("  warning: speed of sound is 1000 m/s; water has 1350 to 1650"));

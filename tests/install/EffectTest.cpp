@@ -1,4 +1,4 @@
-// An effect in a library outside of the tree, by the recipe of components/sonar/README.md alone.
+// An effect in a library outside of the tree, by the recipe of components/sonar/DEVELOP.md alone.
 #include <gmock/gmock.h>
 
 #include "tests/install/Outside.hpp"
@@ -19,7 +19,7 @@ std::string deploymentWith(const std::string& effects) {
 /** Builds the library of the page in the folder. */
 void buildEffect(const TestFolder& folder) {
     install(folder);
-    const insonify::test::Page page = insonify::test::readPage("components/sonar/README.md");
+    const insonify::test::Page page = insonify::test::readPage("components/sonar/DEVELOP.md");
     writeFile(folder / "afterglow.cpp", getCode(page, "cpp", "A new effect"));
     writeFile(folder / "CMakeLists.txt", R"(cmake_minimum_required(VERSION 3.22)
 project(Afterglow CXX)

@@ -18,9 +18,12 @@ std::string fileText(const std::string& path) {
     return text;
 }
 
-/** The page of a source's component, or of types. */
+/** The page that lists the sources of a component, or of types. */
 std::string makePage(const Source& source) {
-    return (source.path.starts_with("types/") ? "" : "components/") + source.folder() + "/README.md";
+    const std::string folder = (source.path.starts_with("types/") ? "" : "components/") + source.folder();
+    const bool has_own =
+        std::filesystem::exists(std::filesystem::path(insonify::test::source_dir) / folder / "DEVELOP.md");
+    return folder + (has_own ? "/DEVELOP.md" : "/README.md");
 }
 
 /** The text between "## Files" and the next heading of that level; "" if there is none. */

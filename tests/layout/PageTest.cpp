@@ -210,6 +210,17 @@ TEST(PageTest, EveryMessageOfTheTroubleshootingPageIsOneThatTheCodePrints) {
     EXPECT_GT(messages, 30u);
 }
 
+TEST(PageTest, EveryEnvironmentVariableIsOnThePageOfTheCommand) {
+    static const std::regex name(R"re("(INSONIFY_[A-Z_]+)")re");
+    const std::string code = printingCode();
+    std::set<std::string> variables;
+    for (std::sregex_iterator it(code.begin(), code.end(), name); it != std::sregex_iterator(); ++it)
+        variables.insert((*it)[1].str());
+    const Texts shown = readPage("components/command/README.md").inlineCode();
+    for (const std::string& variable : variables) EXPECT_THAT(shown, Contains(variable));
+    EXPECT_GT(variables.size(), 5u);
+}
+
 TEST(PageTest, TheRulesRefuseWhatTheyShould) {
     const Page page(
         "components/README.md",

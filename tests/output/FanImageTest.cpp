@@ -88,6 +88,18 @@ TEST(FanImageTest, NoLabelOfAFanTouchesTheColourBarOrItsLabels) {
     EXPECT_GT(touched, 3) << "labels would touch it";
 }
 
+TEST(FanImageTest, LabelsOverEchoesAreOnADarkPlate) {
+    for (const auto& [half, darkest] : {std::pair(M_PI, 50), {M_PI / 3, 200}}) {  // a fan has its labels at its side
+        Overlay overlay = fanOverlay(FanLayout(600, -half, half, 50));
+        overlay.finish();
+        cv::Mat picture(overlay.size(), CV_8UC3, cv::Scalar(200, 200, 200));
+        overlay.blend(picture);
+        double least = 0;
+        cv::minMaxLoc(picture.reshape(1), &least);
+        EXPECT_EQ(least, darkest) << half;
+    }
+}
+
 TEST(FanImageTest, DrawsRingsAtRoundRanges) {
     FanImage fan(test::grayPicture(800));
     const cv::Mat picture = paint(fan, emptyPing(120, 60, 1000));

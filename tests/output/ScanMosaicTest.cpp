@@ -115,7 +115,7 @@ TEST_F(ScanMosaicTest, TheMapMovesWithTheSonarAndKeepsCellsWithinIt) {
     std::fill(ping.bins.begin(), ping.bins.end(), 0.f);
     ping.bearings[0].rad = std::numbers::pi;
     const glm::dvec2 echo(50.5 * ping.binStart(1), 0);
-    for (const glm::dvec2 place : {glm::dvec2(0, 0), glm::dvec2(3.217, -4.71), glm::dvec2(-9, 2)}) {
+    for (const glm::dvec2 place : {glm::dvec2(0, 0), glm::dvec2(3.217, -4.71), glm::dvec2(-9, -2)}) {
         pose.position = {place, 0};
         mosaic_.place(pose);
         mosaic_.paint(ping, picture);

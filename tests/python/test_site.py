@@ -67,7 +67,7 @@ def test_every_page_exists_and_no_link_is_broken(site):
 
 def test_the_search_finds_a_section(site):
     found = json.loads((site / "search/search_index.json").read_text())["docs"]
-    assert any(entry["location"] == "components/sonar/index.html#thin-walls" for entry in found)
+    assert any(entry["location"] == "components/sonar/EFFECTS.html#thin-walls" for entry in found)
 
 
 @pytest.mark.parametrize("page, fault", [("[a](nowhere)", "nowhere"), ("[a](#nowhere)", "#nowhere")])

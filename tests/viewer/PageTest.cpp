@@ -54,7 +54,7 @@ TEST_F(PageTest, ListsTasksPlansAndLosses) {
     EXPECT_EQ(value("[...document.querySelectorAll('#plan h3')].map((one) => one.textContent)"),
               json({"world", "omitted", "lost samples", "replaced by newer samples, as configured"}));
     EXPECT_THAT(text("plan"),
-                testing::AllOf(HasSubstr("64 rows, 2 columns per beam, 1 frusta, predicted error 0.01"),
+                testing::AllOf(HasSubstr("64 rows, 2 columns per beam, rays, predicted error 0.01"),
                                HasSubstr("compiled: cones"), HasSubstr("run: draw, sum"), HasSubstr("a notice")));
     EXPECT_TRUE(
         becomes("/^[1-9][0-9]*  world.pose > viewer.pose \\(buffer\\)$/.test(document.querySelector('#plan "

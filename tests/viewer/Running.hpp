@@ -140,7 +140,7 @@ private:
 
     std::atomic<double> at_s_{25};
     const types::GeometryPtr geometry_ = scene();
-    const types::Plan plan_{{"cones"}, {"draw", "sum"}, {{"multipath", "not asked for"}}, {"a notice"}, 64, 2, 1,
+    const types::Plan plan_{{"cones"}, {"draw", "sum"}, {{"multipath", "not asked for"}}, {"a notice"}, 64, 2, 0,
                             0.01,      "llvmpipe"};
 };
 

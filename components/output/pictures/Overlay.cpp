@@ -41,7 +41,7 @@ void addRings(Overlay& overlay, const FanLayout& layout) {
         const cv::Point2d at = layout.pixel(range, bearing);
         const cv::Point2d aside = half_plane ? cv::Point2d(8, 9 * std::sin(-bearing)) : cv::Point2d(5, 9);
         if (half_plane || radius < layout.radius() - 12)
-            overlay.text(fmt::format("{:g} m", range), at + aside, Overlay::Anchor::Left);
+            overlay.text(fmt::format("{:g} m", range), at + aside, Overlay::Anchor::Left, false, !half_plane);
     }
 }
 
@@ -85,7 +85,7 @@ void Overlay::arc(cv::Point2d centre, double radius, double right, double left, 
     cv::polylines(cover_, points, false, opacity, 1, cv::LINE_AA, label_bits);
 }
 
-void Overlay::text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees) {
+void Overlay::text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees, bool on_echoes) {
     constexpr int ring_width = 6, margin = 2;
     int baseline = 0;
     const cv::Size size = cv::getTextSize(text, label_font, label_scale, 1, &baseline);
@@ -94,6 +94,7 @@ void Overlay::text(const std::string& text, cv::Point2d at, Anchor anchor, bool 
     const cv::Rect box(start.x - margin, start.y - size.height - margin,
                        size.width + 2 * margin + (degrees ? ring_width : 0), size.height + baseline + 2 * margin);
     if ((box & taken_).area() > 0) return;
+    if (on_echoes) plates_.push_back(box & cv::Rect({}, cover_.size()));
     cv::putText(cover_, text, start, label_font, label_scale, full, 1, cv::LINE_AA);
     if (degrees)
         cv::circle(cover_, subPixel({start.x + size.width + 2.0, start.y - size.height + 1.0}), 2 << label_bits, full,
@@ -107,6 +108,9 @@ void Overlay::finish() {
 }
 
 void Overlay::blend(cv::Mat& picture) const {
+    for (const cv::Rect& plate : plates_)
+        for (int row = plate.y; row < plate.br().y; ++row)
+            for (int column = plate.x; column < plate.br().x; ++column) picture.at<cv::Vec3b>(row, column) /= 4;
     for (const Touch& touch : touched_) {
         cv::Vec3b& pixel = picture.at<cv::Vec3b>(touch.row, touch.column);
         for (int channel = 0; channel < 3; ++channel)

@@ -17,8 +17,9 @@ public:
     enum class Anchor { Left, Centre, Right };
     void line(cv::Point2d from, cv::Point2d to, int opacity);
     void arc(cv::Point2d centre, double radius, double right, double left, int opacity);
-    /** Draws text whose middle line runs through `at`, which is its left end, centre or right end. */
-    void text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees = false);
+    /** Draws text whose middle line runs through `at`, which is its left end, centre or right end; the picture below
+     *  text on echoes is darkened. */
+    void text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees = false, bool on_echoes = false);
     /** From here on, text that would touch this area is omitted. */
     void take(const cv::Rect& area) { taken_ = area; }
     /** Must be called after all drawing. */
@@ -33,6 +34,7 @@ private:
     };
     cv::Mat cover_;
     cv::Rect taken_;
+    std::vector<cv::Rect> plates_;
     std::vector<Touch> touched_;
 };
 

@@ -393,14 +393,14 @@ void SonarConfig::describeBeam(auto& self, auto& visit) {
     visit({"multipath", "", "echoes via mirrors; absent: none"}, self.multipath);
     visit({"max_walls", "1", "max walls (`shell` of a material) on a sound path", 0, 16}, self.max_walls);
     visit({"imperfections", "",
-           "errors of this device: elements, beams, focus, clock (components/sonar/README.md); absent: none"},
+           "errors of this device: elements, beams, focus, clock (components/sonar/EFFECTS.md); absent: none"},
           self.imperfections);
     visit({"crosstalk", "",
            "pings of the sonars connected to port `others` are received; absent: nothing may be connected"},
           self.crosstalk);
     visit({"effects", "",
            "numbers of effects, by name: `edge_diffraction: {min_turn_deg: 60}` for echoes of straight edges, and "
-           "effects of other libraries (components/sonar/README.md)"},
+           "effects of other libraries (components/sonar/DEVELOP.md)"},
           self.effects);
 }
 

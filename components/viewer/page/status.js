@@ -102,7 +102,7 @@ function showPlan(status) {
   for (const task of status.tasks) {
     if (!task.plan) continue;
     const plan = task.plan;
-    const quality = `${plan.rows} rows, ${plan.columns_per_beam} columns per beam, ${plan.slabs} frusta` +
+    const quality = `${plan.rows} rows, ${plan.columns_per_beam} columns per beam, ${plan.slabs ? `${plan.slabs} frusta` : 'rays'}` +
         (plan.predicted_error === null ? '' : `, predicted error ${plan.predicted_error.toPrecision(2)}`);
     parts.push(['h3', {}, task.name], ['div', {}, quality],
                ['div', {class: 'dim'}, 'compiled: ' + (plan.features.join(', ') || 'nothing beyond the minimum')],
