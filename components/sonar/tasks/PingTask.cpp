@@ -370,8 +370,10 @@ void PingTask::render() {
     render_seconds_ = took.count() / 1e3;
     for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
     counted_.add(before, renderStages(*renderer_));
-    counted_.all_seconds += render_seconds_;
-    counted_.divided_seconds += divided_seconds - divided_before;
+    if (counted_.pings > 1) {  // the first ping builds trees
+        counted_.all_seconds += render_seconds_;
+        counted_.divided_seconds += divided_seconds - divided_before;
+    }
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
         for (const Omitted& what : renderer_->omissions()) {
             plan_->omitted.push_back(describe(what, grid()));
