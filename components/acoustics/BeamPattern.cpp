@@ -1,6 +1,7 @@
 #include "components/acoustics/BeamPattern.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +17,7 @@ double sinc(double u) { return u == 0 ? 1 : std::sin(pi * u) / (pi * u); }
 /** Moves u away from places where numerator and denominator are both 0: multiples of 1/2. */
 double betweenPoles(double u) {
     constexpr double near = 1e-7;
-    const double off = std::remainder(u, 0.5);
+    const double off = u - 0.5 * std::nearbyint(2 * u);  // std::remainder(u, 0.5), which is slow
     return std::abs(u) > 0.25 && std::abs(off) < near ? u - off + near : u;
 }
 
@@ -177,12 +178,13 @@ std::vector<double> elementWeights(size_t count, double aperture, const Taper& t
     std::vector<double> weights;
     const auto terms = static_cast<size_t>(std::ceil(std::min(0.5 * static_cast<double>(count), aperture)));
     const auto size = static_cast<double>(count);
+    std::vector<double> amplitudes;
+    for (size_t n = 0; n < terms; ++n) amplitudes.push_back(taper.amplitude(static_cast<double>(n)));
     for (size_t m = 0; m < count; ++m) {
         const double place = (static_cast<double>(m) + 0.5) / size - 0.5;
         double weight = 1;
         for (size_t n = 1; n < terms; ++n)
-            weight += 2 * taper.amplitude(static_cast<double>(n)) *
-                      std::cos(2 * std::numbers::pi * static_cast<double>(n) * place);
+            weight += 2 * amplitudes[n] * std::cos(2 * std::numbers::pi * static_cast<double>(n) * place);
         weights.push_back(weight / size);
     }
     return weights;
@@ -195,33 +197,44 @@ double elementPlace(size_t element, size_t count) {
 ElementField::ElementField(std::span<const std::complex<double>> parts)
     : period_(static_cast<long>(parts.size()) * places_per_unit), sign_(parts.size() % 2 == 0 ? -1 : 1) {
     table_.resize(static_cast<size_t>(period_));
-    for (size_t m = 0; m < parts.size(); ++m) {
-        if (parts[m] == 0.0) continue;
-        const double turns = elementPlace(m, parts.size()) / places_per_unit;
-        const std::complex<double> step = std::polar(1.0, 2 * std::numbers::pi * turns);
-        std::complex<double> turned = parts[m];
+    constexpr size_t together = 4;  // chains of products, each of which waits for its last
+    for (size_t first = 0; first < parts.size(); first += together) {
+        const size_t count = std::min(together, parts.size() - first);
+        std::array<double, together> turns{};
+        std::array<std::complex<double>, together> step{}, turned{};
+        for (size_t i = 0; i < count; ++i) {
+            turns[i] = elementPlace(first + i, parts.size()) / places_per_unit;
+            step[i] = std::polar(1.0, 2 * std::numbers::pi * turns[i]);
+        }
         for (size_t place = 0; place < table_.size(); ++place) {
             if (place % 256 == 0)  // so that rounding does not add up
-                turned = parts[m] * std::polar(1.0, 2 * std::numbers::pi * turns * static_cast<double>(place));
-            table_[place] += turned;
-            turned *= step;
+                for (size_t i = 0; i < count; ++i)
+                    turned[i] = parts[first + i] *
+                                std::polar(1.0, 2 * std::numbers::pi * turns[i] * static_cast<double>(place));
+            for (size_t i = 0; i < together; ++i) {
+                table_[place] += turned[i];
+                turned[i] = {turned[i].real() * step[i].real() - turned[i].imag() * step[i].imag(),
+                             turned[i].real() * step[i].imag() + turned[i].imag() * step[i].real()};
+            }
         }
     }
-}
-
-std::complex<double> ElementField::entry(long place) const {
-    const long rest = place % period_, within = rest < 0 ? rest + period_ : rest;
-    const bool is_negative = sign_ < 0 && (place - within) / period_ % 2 != 0;
-    return is_negative ? -table_[static_cast<size_t>(within)] : table_[static_cast<size_t>(within)];
 }
 
 std::complex<double> ElementField::at(double u) const {
     if (table_.empty()) return 0;
     const double place = u * places_per_unit, low = std::floor(place), t = place - low;
-    const long first = static_cast<long>(low);
+    const long first = static_cast<long>(low) - 1, rest = first % period_;
+    long within = rest < 0 ? rest + period_ : rest;
+    double sign = (first - within) / period_ % 2 != 0 ? sign_ : 1;
     // Lagrange's cubic through the two places to either side.
-    return entry(first - 1) * (-t * (t - 1) * (t - 2) / 6) + entry(first) * ((t + 1) * (t - 1) * (t - 2) / 2) -
-           entry(first + 1) * ((t + 1) * t * (t - 2) / 2) + entry(first + 2) * ((t + 1) * t * (t - 1) / 6);
+    const double weights[] = {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
+                              (t + 1) * t * (t - 1) / 6};
+    std::complex<double> sum;
+    for (const double weight : weights) {
+        sum += table_[static_cast<size_t>(within)] * (sign * weight);
+        if (++within == period_) within = 0, sign *= sign_;
+    }
+    return sum;
 }
 
 void BeamLaw::check(types::Diagnostics& diagnostics) const {

@@ -61,8 +61,6 @@ public:
     std::complex<double> at(double u) const;
 
 private:
-    std::complex<double> entry(long place) const;
-
     long period_ = 0;  ///< Entries of the table after which the field, or its negative, repeats.
     double sign_ = 1;  ///< Factor of the field from one period to the next, 1 or -1.
     std::vector<std::complex<double>> table_;

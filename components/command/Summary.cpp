@@ -66,8 +66,13 @@ std::vector<CountRow> countRows(const sonar::CountedPings& counted) {
     return rows;
 }
 
+/** Returns the share of the pings' time in which no work was divided among threads [1]. */
+double getUndividedShare(const sonar::CountedPings& counted) {
+    return counted.all_seconds > 0 ? 1 - counted.divided_seconds / counted.all_seconds : 0;
+}
+
 Json countsJson(const sonar::CountedPings& counted) {
-    Json counts = {{"pings", counted.pings}};
+    Json counts = {{"pings", counted.pings}, {"undivided_share", getUndividedShare(counted)}};
     for (const CountRow& row : countRows(counted))
         counts[row.of.name] = {
             {"stage", row.of.stage}, {"total", row.total}, {"per_ping", row.per_ping}, {"per_second", row.per_second}};
@@ -91,7 +96,8 @@ std::string statsText(const Summary::Task& task) {
         }
         if (!begin.empty()) text += begin + "\n";
     }
-    return text;
+    return text +
+           fmt::format("  not divided among threads: {:.1f} % of a ping\n", 100 * getUndividedShare(task.counted));
 }
 
 Json taskJson(const Summary::Task& task, bool realtime) {

@@ -9,9 +9,10 @@ types::Notices PictureHealth::notices() const {
     return {types::warning(std::to_string(lost) + " pictures are in no file; the last reason: " + failure)};
 }
 
-PictureWriter::PictureWriter(PictureFiles files, AtPictureFailure at_failure)
+PictureWriter::PictureWriter(PictureFiles files, AtPictureFailure at_failure, size_t queue)
     : files_(std::move(files)),
       at_failure_(at_failure),
+      waiting_(queue),
       thread_(types::startThread("the files of pictures", [this] { loop(); })) {}
 
 PictureWriter::~PictureWriter() { end(); }

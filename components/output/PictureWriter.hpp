@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -32,7 +31,8 @@ struct PictureHealth {
  *  is lost. */
 class PictureWriter {
 public:
-    explicit PictureWriter(PictureFiles files, AtPictureFailure at_failure = AtPictureFailure::Throw);
+    /** `queue`: max pictures that wait, beside the one that is being written [1]. */
+    explicit PictureWriter(PictureFiles files, AtPictureFailure at_failure = AtPictureFailure::Throw, size_t queue = 4);
     /** Writes the queue; errors are no longer reported. */
     ~PictureWriter();
     PictureWriter(const PictureWriter&) = delete;
@@ -57,7 +57,7 @@ private:
     PictureHealth health_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::array<types::ImagePtr, 4> waiting_;
+    std::vector<types::ImagePtr> waiting_;
     size_t first_ = 0, count_ = 0;
     bool ending_ = false;
     std::exception_ptr error_;

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <future>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
 #include <span>
+#include <thread>
 #include <utility>
 
 #include "types/geometry/PosedMesh.hpp"
@@ -40,13 +43,60 @@ int patchSizesBelow(size_t triangles) {
     return count;
 }
 
-/** Splits a mesh whose `clusters` and `patches` are being rebuilt. */
+/** Returns the number of threads for a mesh. Smaller meshes are built several at a time (Gltf.cpp). */
+unsigned countThreads(size_t triangles) {
+    return triangles < 500'000 ? 1 : std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
+}
+
+/** Calls work(i) for each i below `count`, on some threads where the system permits them. */
+void forEach(size_t count, size_t parts, const auto& work) {
+    std::vector<std::future<void>> others;
+    const auto workOn = [&](size_t part) {
+        for (size_t i = part * count / parts; i < (part + 1) * count / parts; ++i) work(i);
+    };
+    for (size_t part = 1; part < parts; ++part)
+        others.push_back(std::async(std::launch::async | std::launch::deferred, workOn, part));
+    workOn(0);
+    for (std::future<void>& other : others) other.get();
+}
+
+/** A triangle of a run that is being split, by its number in the mesh, and three times its centroid. */
+struct Item {
+    glm::vec3 centroid;
+    uint32_t triangle;
+};
+
+size_t halve(std::span<Item> items) {
+    Box box;
+    for (const Item& item : items) box.add(item.centroid);
+    const int axis = box.longestAxis();
+    const size_t half = items.size() / 2;
+    std::ranges::nth_element(items, items.begin() + static_cast<std::ptrdiff_t>(half),
+                             [axis](const Item& a, const Item& b) { return a.centroid[axis] < b.centroid[axis]; });
+    return half;
+}
+
+/** Halves items at the median of the longest axis until each part is small enough for a cluster. `threads`: that may
+ *  work on them. */
+void arrange(std::span<Item> items, unsigned threads) {
+    if (items.size() <= cluster_triangles) return;
+    const size_t half = halve(items);
+    std::future<void> other;
+    if (threads > 1)
+        other = std::async(std::launch::async | std::launch::deferred, arrange, items.first(half), threads / 2);
+    else
+        arrange(items.first(half), 1);
+    arrange(items.subspan(half), threads - threads / 2);
+    if (other.valid()) other.get();
+}
+
+/** Adds the clusters and patches of arranged triangles to a mesh. */
 class Splitter {
 public:
     explicit Splitter(types::Mesh& mesh) : mesh_(mesh) {}
 
     /** Adds one patch of `triangles`, with the patches and clusters below it. */
-    void addPatch(std::span<Triangle> triangles, const types::Cluster& run) {
+    void addPatch(size_t triangles, const types::Cluster& run) {
         const size_t node = mesh_.cluster_nodes.size();
         mesh_.cluster_nodes.push_back({.first_cluster = static_cast<uint32_t>(mesh_.clusters.size())});
         split(triangles, run);
@@ -56,17 +106,16 @@ public:
     }
 
 private:
-    /** Halves `triangles` at the median of the longest axis until each part is small enough for a cluster. The first
-     *  part that is small enough for a patch size becomes a patch. */
-    void split(std::span<Triangle> triangles, types::Cluster cluster) {
-        if (triangles.size() <= cluster_triangles) {
-            cluster.index_count = static_cast<uint32_t>(3 * triangles.size());
+    /** Halves `triangles` as arrange() does. The first part that is small enough for a patch size becomes a patch. */
+    void split(size_t triangles, types::Cluster cluster) {
+        if (triangles <= cluster_triangles) {
+            cluster.index_count = static_cast<uint32_t>(3 * triangles);
             mesh_.clusters.push_back(cluster);
             return;
         }
-        const size_t half = halve(triangles);
-        for (const std::span part : {triangles.first(half), triangles.subspan(half)}) {
-            if (patchSizesBelow(part.size()) < patchSizesBelow(triangles.size()))
+        const size_t half = triangles / 2;
+        for (const size_t part : {half, triangles - half}) {
+            if (patchSizesBelow(part) < patchSizesBelow(triangles))
                 addPatch(part, cluster);
             else
                 split(part, cluster);
@@ -74,28 +123,24 @@ private:
         }
     }
 
-    size_t halve(std::span<Triangle> triangles) const {
-        const auto centroid = [this](const Triangle& t) {  // times 3
-            return mesh_.positions[t[0]] + mesh_.positions[t[1]] + mesh_.positions[t[2]];
-        };
-        Box box;
-        for (const Triangle& triangle : triangles) box.add(centroid(triangle));
-        const int axis = box.longestAxis();
-        const size_t half = triangles.size() / 2;
-        std::ranges::nth_element(
-            triangles, triangles.begin() + static_cast<std::ptrdiff_t>(half),
-            [&](const Triangle& a, const Triangle& b) { return centroid(a)[axis] < centroid(b)[axis]; });
-        return half;
-    }
-
     types::Mesh& mesh_;
 };
 
 void splitRuns(types::Mesh& mesh) {
     const std::vector<types::Cluster> runs = std::exchange(mesh.clusters, {});
-    auto* triangles = reinterpret_cast<Triangle*>(mesh.indices.data());
+    auto* const triangles = reinterpret_cast<Triangle*>(mesh.indices.data());
     for (const types::Cluster& run : runs) {
-        Splitter(mesh).addPatch({triangles + run.first_index / 3, run.index_count / 3}, run);
+        const size_t first = run.first_index / 3, count = run.index_count / 3;
+        std::vector<Item> items(count);
+        for (size_t i = 0; i < count; ++i) {
+            const auto& [a, b, c] = triangles[first + i];
+            items[i] = {mesh.positions[a] + mesh.positions[b] + mesh.positions[c], static_cast<uint32_t>(first + i)};
+        }
+        arrange(items, countThreads(count));
+        std::vector<Triangle> arranged(count);
+        for (size_t i = 0; i < count; ++i) arranged[i] = triangles[items[i].triangle];
+        std::ranges::copy(arranged, triangles + first);
+        Splitter(mesh).addPatch(count, run);
     }
 }
 
@@ -161,17 +206,26 @@ Indices welded(const types::Mesh& mesh) {
     return indices;
 }
 
-/** Returns whether every edge occurs once in either direction. */
-bool isWatertight(const Indices& indices) {
-    std::vector<uint64_t> there, back;
-    for (size_t i = 0; i < indices.size(); ++i) {
-        const uint64_t from = indices[i], to = indices[i % 3 == 2 ? i - 2 : i + 1];
-        there.push_back(from << 32 | to);
-        back.push_back(to << 32 | from);
+/** Returns whether every edge occurs once in either direction. `vertices`: their number. */
+bool isWatertight(const Indices& indices, size_t vertices) {
+    const auto forEachEdge = [&indices](const auto& act) {
+        for (size_t i = 0; i < indices.size(); ++i) act(indices[i], indices[i % 3 == 2 ? i - 2 : i + 1]);
+    };
+    std::vector<uint32_t> end(vertices);  // of the edges whose lower vertex it is, after they are placed
+    forEachEdge([&](uint32_t from, uint32_t to) { ++end[std::min(from, to)]; });
+    std::exclusive_scan(end.begin(), end.end(), end.begin(), 0u);
+    std::vector<uint64_t> others(indices.size());  // the higher vertex of an edge, and its direction
+    forEachEdge([&](uint32_t from, uint32_t to) {
+        others[end[std::min(from, to)]++] = uint64_t{std::max(from, to)} << 1 | (from < to ? 1u : 0u);
+    });
+    for (size_t vertex = 0, begin = 0; vertex < vertices; begin = end[vertex++]) {
+        const std::span edges = std::span(others).subspan(begin, end[vertex] - begin);
+        std::ranges::sort(edges);
+        if (edges.size() % 2 != 0) return false;
+        for (size_t i = 0; i < edges.size(); i += 2)
+            if (edges[i] % 2 != 0 || edges[i + 1] != edges[i] + 1) return false;
     }
-    std::ranges::sort(there);
-    std::ranges::sort(back);
-    return std::ranges::adjacent_find(there) == there.end() && there == back;
+    return true;
 }
 
 /** Returns the volume of each connected piece, positive if it is wound outward; 0 for vertices that represent no piece
@@ -194,9 +248,33 @@ std::vector<double> volumes(const types::Mesh& mesh, const Indices& indices) {
     return volume;
 }
 
+/** Returns whether a mesh is certainly open: the areas of its triangles, as vectors, do not add up to 0. Welding moves
+ *  corners by at most 2^-21 of the largest coordinate (types::weldedPlaces()), which changes the sum by the lengths of
+ *  edges times that. */
+bool isOpen(const types::Mesh& mesh) {
+    glm::dvec3 sum(0);
+    double edges = 0, areas = 0;
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const glm::dvec3 a(mesh.positions[mesh.indices[i]]), b = glm::dvec3(mesh.positions[mesh.indices[i + 1]]) - a,
+                                                             c = glm::dvec3(mesh.positions[mesh.indices[i + 2]]) - a;
+        const glm::dvec3 across = glm::cross(b, c);
+        sum += across;
+        areas += glm::length(across);
+        edges += glm::length(b) + glm::length(c);
+    }
+    double largest = 0;
+    for (const types::Cluster& cluster : mesh.clusters)
+        for (int axis = 0; axis < 3; ++axis)
+            largest = std::max(largest, static_cast<double>(std::abs(cluster.centre[axis]) + cluster.half[axis]));
+    const double moved = 0x1p-20 * largest, triangles = static_cast<double>(mesh.indices.size()) / 3;
+    return glm::length(sum) > 4 * moved * (edges + triangles * moved) + 1e-9 * areas;
+}
+
 bool isClosed(const types::Mesh& mesh) {
+    if (isOpen(mesh)) return false;
     const Indices indices = welded(mesh);
-    return isWatertight(indices) && std::ranges::none_of(volumes(mesh, indices), [](double v) { return v < 0; });
+    return isWatertight(indices, mesh.positions.size()) &&
+           std::ranges::none_of(volumes(mesh, indices), [](double v) { return v < 0; });
 }
 
 /** Sets `coarse_indices` of a mesh: at most this number of triangles for each patch that is part of no other. */
@@ -236,8 +314,10 @@ void buildClusters(types::Mesh& mesh, std::vector<uint32_t>* numbers) {
         if (mesh.uvs.empty() && mesh.map_uvs.empty() && !numbers) weld(mesh);
         splitRuns(mesh);
     }
-    for (const types::Cluster& cluster : mesh.clusters)
+    forEach(mesh.clusters.size(), countThreads(mesh.indices.size() / 3), [&mesh](size_t i) {
+        const types::Cluster& cluster = mesh.clusters[i];
         orderTriangles(std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count));
+    });
     orderVertices(mesh, numbers);
     types::boundClusters(mesh);
     if (mesh.cluster_nodes.empty()) return;

@@ -127,7 +127,10 @@ void appendSurface(const Surface& surface, int material, types::Mesh& mesh) {
     appendFilled(mesh.uvs, surface.uvs, base, glm::vec2(0));
     appendFilled(mesh.map_uvs, surface.map_uvs, base, glm::vec2(0));
     mesh.positions.insert(mesh.positions.end(), surface.positions.begin(), surface.positions.end());
-    for (const uint32_t index : surface.indices) mesh.indices.push_back(static_cast<uint32_t>(base) + index);
+    const size_t first = mesh.indices.size();
+    mesh.indices.resize(first + surface.indices.size());
+    for (size_t i = 0; i < surface.indices.size(); ++i)
+        mesh.indices[first + i] = static_cast<uint32_t>(base) + surface.indices[i];
 }
 
 void fillAttributes(types::Mesh& mesh) {

@@ -48,6 +48,9 @@ TEST(RunCommandTest, StatsPrintsWhatTheStagesOfASonarCount) {
     EXPECT_THAT(plain.out, testing::Not(HasSubstr("stage")));
     const json counts = json::parse(readFile(folder / "summary.json"))["tasks"]["sonar"]["counts"];
     EXPECT_EQ(counts["pings"], 3);
+    EXPECT_GE(counts["undivided_share"], 0);
+    EXPECT_LT(counts["undivided_share"], 1);
+    EXPECT_THAT(counted.out, HasSubstr("not divided among threads: "));
     EXPECT_EQ(counts["rays"]["total"], 3 * 1024);
     EXPECT_EQ(counts["rays"]["per_ping"], 1024);
     EXPECT_EQ(counts["rays"]["stage"], "draw");

@@ -77,11 +77,16 @@ TEST(PictureFilesTest, NamesAFileThatCannotBeWritten) {
 TEST(PictureWriterTest, WritesEveryPictureBeforeTheEnd) {
     const Folder folder;
     const auto picture = std::make_shared<const types::Image>(fanPicture());
-    PictureWriter writer(PictureFiles(recording("%d.png"), folder.path()));
-    for (int i = 0; i < 20; ++i) writer.write(picture);
-    writer.close();
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / "19.png"));
-    EXPECT_EQ(picture.use_count(), 1);
+    for (const size_t queue : {size_t{1}, size_t{4}}) {
+        PictureWriter writer(PictureFiles(recording("%d.png"), folder.path()), AtPictureFailure::Throw, queue);
+        for (int i = 0; i < 20; ++i) {
+            writer.write(picture);
+            EXPECT_LE(picture.use_count(), static_cast<long>(queue) + 2) << "those that wait, the one that is written";
+        }
+        writer.close();
+        EXPECT_TRUE(std::filesystem::remove(folder.path() / "19.png"));
+        EXPECT_EQ(picture.use_count(), 1);
+    }
 }
 
 TEST(PictureWriterTest, AnErrorReachesTheCaller) {

@@ -1,3 +1,5 @@
+#include <sched.h>
+
 #include <array>
 #include <set>
 
@@ -58,6 +60,33 @@ TEST(ClustersTest, ALargeMeshIsSplitIntoCompactClustersOfTheSameTriangles) {
         // a square of this number of triangles has a half diagonal of sqrt(n / 4); up to twice that is compact
         EXPECT_LT(glm::length(cluster.half), 2 * std::sqrt(cluster.index_count / 12.0));
     }
+}
+
+/** Returns a mesh in clusters, built on some of the processors that this thread may use; 0: on all. */
+types::Mesh buildOn(types::Mesh mesh, int processors) {
+    cpu_set_t allowed, some;
+    sched_getaffinity(0, sizeof allowed, &allowed);
+    CPU_ZERO(&some);
+    for (int cpu = 0; cpu < CPU_SETSIZE && CPU_COUNT(&some) < processors; ++cpu)
+        if (CPU_ISSET(cpu, &allowed)) CPU_SET(cpu, &some);
+    if (processors > 0) sched_setaffinity(0, sizeof some, &some);
+    buildClusters(mesh);
+    sched_setaffinity(0, sizeof allowed, &allowed);
+    return mesh;
+}
+
+TEST(ClustersTest, SeveralThreadsSplitAMeshAsOneThreadDoes) {
+    const types::Mesh mesh = grid(708), one = buildOn(mesh, 1), all = buildOn(mesh, 0);
+    EXPECT_EQ(one.indices, all.indices);
+    EXPECT_EQ(one.positions, all.positions);
+    EXPECT_EQ(one.coarse_indices, all.coarse_indices);
+    ASSERT_EQ(one.clusters.size(), all.clusters.size());
+    for (size_t i = 0; i < one.clusters.size(); ++i) {
+        EXPECT_EQ(one.clusters[i].first_index, all.clusters[i].first_index);
+        EXPECT_EQ(one.clusters[i].index_count, all.clusters[i].index_count);
+        EXPECT_EQ(one.clusters[i].centre, all.clusters[i].centre);
+    }
+    EXPECT_GT(one.clusters.size(), 4000u);
 }
 
 TEST(ClustersTest, ASmallMeshKeepsOneClusterForEachMaterial) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "components/sonar/beams/Directivity.hpp"
 #include "components/sonar/bins/Beamformer.hpp"
@@ -89,6 +90,63 @@ TEST_F(BeamformerTest, WeightsBelowTheFloorAreOmitted) {
     EXPECT_EQ(weights.back(), 0);
     EXPECT_GT(weights[60], 0.1) << "its own bearing";
     EXPECT_GT(beamformer_.weights(0).back(), 0);
+}
+
+/** Echoes drawn at random in some of the bins of each cell, 0 in the others. */
+std::vector<float> drawEchoes(size_t cells, size_t bins, size_t first, size_t end) {
+    std::mt19937 random(1);
+    std::normal_distribution<float> normal;
+    std::vector<float> echoes(cells * bins);
+    for (size_t cell = 0; cell < cells; ++cell)
+        for (size_t k = first; k < end; ++k) echoes[cell * bins + k] = normal(random);
+    return echoes;
+}
+
+TEST_F(BeamformerTest, BinsWithoutEchoesAreLeftOutBitForBit) {
+    constexpr size_t bins = 600, first = 290, end = 390;  // across tiles
+    const Beamformer::Rules rules{lobe, radians(8), 1e-6};
+    Beamformer sparse{beams_, cells_, bins, rules}, dense{beams_, cells_, end - first, rules};
+    const std::vector<float> echoes = drawEchoes(cells_.size(), bins, first, end),
+                             part = drawEchoes(cells_.size(), end - first, 0, end - first);
+    for (size_t group = 0; group < sparse.groupCount(); ++group) {
+        sparse.sumGroup(group, echoes);
+        dense.sumGroup(group, part);
+    }
+    std::vector<float> of_sparse(bins), of_dense(end - first);
+    for (const size_t beam : {size_t{0}, size_t{15}, size_t{29}}) {
+        sparse.form(beam, echoes, of_sparse);
+        dense.form(beam, part, of_dense);
+        for (size_t k = 0; k < bins; ++k)
+            ASSERT_EQ(of_sparse[k], k >= first && k < end ? of_dense[k - first] : 0) << beam << " " << k;
+    }
+}
+
+/** A complex pattern is formed as two real ones; the edges that its cells share may round differently. */
+TEST_F(BeamformerTest, TheQuadratureIsFormedByTheImaginaryPartOfThePattern) {
+    const auto pattern = [](double azimuth, double bearing) {
+        return std::polar(std::sqrt(lobe(azimuth, bearing)), 40 * (azimuth - bearing));
+    };
+    const auto real = [&](double azimuth, double bearing) { return pattern(azimuth, bearing).real(); };
+    const auto imaginary = [&](double azimuth, double bearing) { return pattern(azimuth, bearing).imag(); };
+    Beamformer::Rules rules{pattern, radians(360), 1e-6, true};
+    rules.is_complex = true;
+    Beamformer both{beams_, cells_, bin_count, rules};
+    Beamformer first{beams_, cells_, bin_count, {real, radians(360), 1e-6, true}};
+    Beamformer second{beams_, cells_, bin_count, {imaginary, radians(360), 1e-6, true}};
+    ASSERT_TRUE(both.isComplex());
+    ASSERT_FALSE(first.isComplex());
+    const std::vector<float> echoes = drawEchoes(cells_.size(), bin_count, 0, bin_count);
+    std::vector<float> quadrature(bin_count);
+    for (const size_t beam : {size_t{0}, size_t{15}, size_t{29}}) {
+        const std::vector<float> a = formed(both, beam, echoes), b = formed(first, beam, echoes),
+                                 c = formed(second, beam, echoes);
+        both.formQuadrature(beam, 1, echoes, quadrature);
+        for (size_t k = 0; k < bin_count; ++k) {
+            EXPECT_NEAR(a[k], b[k], 1e-6);
+            EXPECT_NEAR(quadrature[k], c[k], 1e-6);
+            EXPECT_GT(std::abs(c[k]), 1e-4) << "there is one";
+        }
+    }
 }
 
 SonarConfig sonarWith(acoustics::BeamLaw law) {

@@ -56,6 +56,20 @@ TEST(ThreadPoolTest, EachPartIsDoneOnceAndBeforeRunReturns) {
     }
 }
 
+TEST(ThreadPoolTest, TheTimeOfJobsIsCountedByTheirCaller) {
+    for (const int threads : {1, 3}) {
+        ThreadPool pool(threads);
+        const double before = divided_seconds;
+        const auto sleep = [](int, int) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
+        pool.run(sleep);
+        pool.share(sleep);
+        const double in_jobs = divided_seconds - before;
+        EXPECT_GE(in_jobs, (threads == 1 ? 0.04 : 0.02) * 0.99) << threads;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        EXPECT_EQ(divided_seconds - before, in_jobs) << "outside of jobs";
+    }
+}
+
 TEST(ThreadPoolTest, AvailableThreadsShareAJob) {
     ThreadPool pool(4);
     for (int job = 0; job < 500; ++job) {

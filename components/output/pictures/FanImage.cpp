@@ -27,7 +27,7 @@ void FanImage::paint(const types::Sonar& ping, types::Image& picture) {
 cv::Mat FanImage::draw(const types::Sonar& ping, types::Image& picture) {
     if (!fits(ping)) build(ping);
     cv::Mat canvas = openCanvas(picture, layout_->size(), ping.time);
-    ground_.copyTo(canvas);
+    paintBackground(canvas, palette_, bar_);
     if (!polar_.empty()) {
         gather(ping);
         scale_.apply(polar_, polar_levels_);
@@ -56,7 +56,7 @@ void FanImage::build(const types::Sonar& ping) {
     bins_.create(rows, bins, CV_32F);
     polar_.create(rows, columns_, CV_32F);
     buildTables();
-    buildGround();
+    buildOverlay();
     ++tables_built_;
 }
 
@@ -88,12 +88,10 @@ void FanImage::buildTables() {
     }
 }
 
-void FanImage::buildGround() {
-    ground_.create(layout_->size(), CV_8UC3);
-    const cv::Point bar = placeOfBar(*layout_, colour_bar);
-    paintBackground(ground_, palette_, bar);
-    overlay_.emplace(fanOverlay(*layout_, {bar, labelled_bar_size}));
-    addColourBar(*overlay_, bar, config_);
+void FanImage::buildOverlay() {
+    bar_ = placeOfBar(*layout_, colour_bar);
+    overlay_.emplace(fanOverlay(*layout_, {bar_, labelled_bar_size}));
+    addColourBar(*overlay_, bar_, config_);
     overlay_->finish();
 }
 

@@ -39,7 +39,7 @@ private:
     bool fits(const types::Sonar& ping) const;
     void build(const types::Sonar& ping);
     void buildTables();
-    void buildGround();
+    void buildOverlay();
     void gather(const types::Sonar& ping);
     void colour(cv::Mat& canvas) const;
 
@@ -56,7 +56,7 @@ private:
     cv::Mat source_, fraction_;
     std::vector<Span> spans_;
     std::optional<Overlay> overlay_;
-    cv::Mat ground_;
+    cv::Point bar_;  // of colours
     int tables_built_ = 0;
 
     cv::Mat bins_, polar_, polar_levels_, levels_;

@@ -105,6 +105,7 @@ void Overlay::finish() {
     for (int row = 0; row < cover_.rows; ++row)
         for (int column = 0; column < cover_.cols; ++column)
             if (const uint8_t opacity = cover_.at<uint8_t>(row, column)) touched_.push_back({row, column, opacity});
+    cover_.release();
 }
 
 void Overlay::blend(cv::Mat& picture) const {

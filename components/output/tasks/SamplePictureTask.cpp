@@ -17,7 +17,8 @@ void RecordingTask::openFiles(const RecordingConfig& config) {
     health_ = {};
     if (!config.file && !config.video) return;
     const auto at_failure = environment().mayLose() ? AtPictureFailure::Count : AtPictureFailure::Throw;
-    writer_ = std::make_unique<PictureWriter>(PictureFiles(config, outputPath("")), at_failure);
+    const size_t queue = activity().realtime() ? 4 : 1;  // in lockstep a run waits for its pictures, and saves memory
+    writer_ = std::make_unique<PictureWriter>(PictureFiles(config, outputPath("")), at_failure, queue);
 }
 
 void RecordingTask::skipFile() {

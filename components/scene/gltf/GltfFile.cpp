@@ -10,6 +10,7 @@
 #include <set>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "types/NamedFile.hpp"
 #include "types/text/ConfigError.hpp"
@@ -179,12 +180,12 @@ void checkExtensions(GltfFile& gltf) {
 
 /** Returns a glTF text in which names with a percent sign that are files as they stand have it encoded: tinygltf
  * decodes all names. */
-std::string withFilesAsNamed(const std::string& text, const std::string& folder) {
+std::string withFilesAsNamed(std::string text, const std::string& folder) {
     if (isBinary(text) || text.find('%') == std::string::npos) return text;
     static const std::regex uri("\"uri\"\\s*:\\s*\"([^\"\\\\]{1,1024})\"");
     std::string out;
-    auto from = text.begin();
-    for (std::sregex_iterator found(text.begin(), text.end(), uri), none; found != none; ++found) {
+    auto from = text.cbegin();
+    for (std::sregex_iterator found(text.cbegin(), text.cend(), uri), none; found != none; ++found) {
         std::string name = (*found)[1].str();
         std::error_code error;
         if (name.find('%') == std::string::npos || !std::filesystem::is_regular_file(folder + "/" + name, error))
@@ -193,13 +194,13 @@ std::string withFilesAsNamed(const std::string& text, const std::string& folder)
         out.append(from, (*found)[1].first).append(name);
         from = (*found)[1].second;
     }
-    return out.append(from, text.end());
+    return out.append(from, text.cend());
 }
 
 /** Returns false and fills `errors` when tinygltf refuses the file. Exceptions that it throws on bad input are
  *  converted to errors. */
-bool parse(GltfFile& gltf, const std::string& given, NamedFiles& files, std::string& errors) try {
-    const std::string bytes = withFilesAsNamed(given, files.folder);
+bool parse(GltfFile& gltf, std::string given, NamedFiles& files, std::string& errors) try {
+    const std::string bytes = withFilesAsNamed(std::move(given), files.folder);
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keepEncoded, nullptr);
     loader.SetFsCallbacks(callbacksFor<tinygltf::FsCallbacks>(files));
@@ -291,7 +292,7 @@ GltfFile readGltfFile(const std::filesystem::path& file) {
     }
     std::string errors;
     NamedFiles files{file, file.has_parent_path() ? file.parent_path().string() : "."};
-    const bool parsed = parse(gltf, bytes, files, errors);
+    const bool parsed = parse(gltf, std::move(bytes), files, errors);
     checkExtensions(gltf);
     for (const std::string& named : files.foreign) {
         const std::string text = fmt::format("names {}, which {}", named, types::not_its_own);
@@ -367,6 +368,11 @@ GltfAccessors::Layout GltfAccessors::layout(const tinygltf::Accessor& accessor, 
     return layout;
 }
 
+/** Returns whether elements are adjacent, and all in one place. */
+bool GltfAccessors::isPacked(const tinygltf::Accessor& accessor, const Layout& base) {
+    return base.stride == base.element_size && !accessor.sparse.isSparse;
+}
+
 /** Calls store(element, bytes) for each element that has data, sparse elements last. */
 template <class Store>
 void GltfAccessors::forEach(const tinygltf::Accessor& accessor, const Layout& base, const std::string& path,
@@ -402,6 +408,10 @@ std::vector<Vector> GltfAccessors::vectors(int accessor) const {
         fail(path + ".type", fmt::format("has the wrong number of components; must be VEC{}", Vector::length()));
     const Layout base = layout(from, path);
     std::vector<Vector> result(from.count, Vector(0));
+    if (base.data && from.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT && isPacked(from, base)) {
+        std::memcpy(result.data(), base.data, from.count * base.element_size);
+        return result;
+    }
     const size_t step = componentSize(from.componentType);
     forEach(from, base, path, [&](size_t i, const uint8_t* bytes) {
         for (int c = 0; c < Vector::length(); ++c)
@@ -445,6 +455,10 @@ std::vector<uint32_t> GltfAccessors::indices(int accessor) const {
                                from.componentType));
     const Layout base = layout(from, path);
     std::vector<uint32_t> result(from.count, 0);
+    if (base.data && from.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT && isPacked(from, base)) {
+        std::memcpy(result.data(), base.data, from.count * base.element_size);
+        return result;
+    }
     forEach(from, base, path,
             [&](size_t i, const uint8_t* bytes) { result[i] = loadIndex(bytes, from.componentType); });
     return result;

@@ -53,6 +53,7 @@ private:
     Layout locate(Layout layout, int buffer_view, size_t offset, size_t count, const std::string& path) const;
     template <class Store>
     void forEach(const tinygltf::Accessor& accessor, const Layout& base, const std::string& path, Store store) const;
+    static bool isPacked(const tinygltf::Accessor& accessor, const Layout& base);
     [[noreturn]] void fail(const std::string& path, const std::string& message) const;
 
     const tinygltf::Model& model_;

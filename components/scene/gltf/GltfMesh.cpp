@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <memory>
 #include <numeric>
+#include <utility>
 
 #include "components/scene/Clusters.hpp"
 #include "types/text/ConfigError.hpp"
@@ -18,7 +19,11 @@ namespace {
 constexpr size_t max_elements = 200'000'000;
 
 /** Returns the corners of triangles from the corners of a list, strip or fan. `restart` ends a strip or fan. */
-std::vector<uint32_t> triangulate(const std::vector<uint32_t>& corners, int mode, uint32_t restart) {
+std::vector<uint32_t> triangulate(std::vector<uint32_t>&& corners, int mode, uint32_t restart) {
+    if (mode == TINYGLTF_MODE_TRIANGLES && std::ranges::find(corners, restart) == corners.end()) {
+        corners.resize(corners.size() / 3 * 3);
+        return std::move(corners);
+    }
     std::vector<uint32_t> triangles;
     size_t first = 0;
     for (size_t i = 0; i < corners.size(); ++i) {
@@ -177,7 +182,7 @@ Surface GltfMeshes::getSurface(const tinygltf::Primitive& primitive, int positio
     for (const uint32_t index : corners)
         if (index >= count && index != restart)
             fail(path + ".indices", fmt::format("hold {}; the primitive has {} vertices", index, count));
-    surface.indices = triangulate(corners, mode, restart);
+    surface.indices = triangulate(std::move(corners), mode, restart);
     cleanUp(surface, omissions_.dropped);
     return surface;
 }

@@ -55,6 +55,8 @@ struct CountedPings {
     uint64_t pings = 0;
     Counts counts{};
     std::array<double, 5> seconds{};  ///< Stages in the order of StageOf (plan/EchoRenderer.hpp) [s].
+    double all_seconds = 0;           ///< Of the pings but the first, from start to end [s].
+    double divided_seconds = 0;       ///< The part in which their work was divided among threads [s].
 
     /** Adds a ping before which the thread had counted `before`. */
     void add(const Counts& before, const auto& stages) {

@@ -13,6 +13,7 @@
 namespace insonify::sonar {
 
 constinit thread_local Counts thread_counts{};
+constinit thread_local double divided_seconds = 0;
 
 WorkerTeam::WorkerTeam(int parts) {
     workers_.reserve(static_cast<size_t>(parts));

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <memory>
@@ -50,6 +51,10 @@ private:
 
 class SharedTeams;
 
+/** Time that this thread has spent in jobs of its pools since it started, with its waits for workers [s]. The rest of a
+ *  ping's time is not divided among threads. */
+extern constinit thread_local double divided_seconds;
+
 /** A few threads that share the parts of one job. Running a job allocates nothing, and what its threads count
  *  (Counters.hpp) is counted by the caller. In a forked child, where the threads are missing, it throws
  *  std::runtime_error.
@@ -73,6 +78,7 @@ public:
      *  always does the same part. Returns when all are done. Throws what a part threw, the caller's first. */
     template <class Job>
     void run(const Job& job) {
+        const Lap lap;
         const Lease team(*this, &invoke<Job>, &job);
         std::exception_ptr thrown = caught([&] { job(0, size()); });
         for (int part = 1; part < size() && !team; ++part)
@@ -85,6 +91,7 @@ public:
      *  own number. It is for jobs that the available threads share. Does not wait for workers that have not begun. */
     template <class Job>
     void share(const Job& job) {
+        const Lap lap;
         const Lease team(*this, &invoke<Job>, &job);
         std::exception_ptr thrown = caught([&] { job(0, size()); });
         if (team) team->dismiss();
@@ -93,6 +100,11 @@ public:
     }
 
 private:
+    /** Adds its life to divided_seconds. */
+    struct Lap {
+        ~Lap() { divided_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+        std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    };
     /** The team of one job, which has started; none for a pool of one thread, and where the system refuses another
      *  team: then the caller does all parts. */
     class Lease {

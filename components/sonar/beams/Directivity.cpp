@@ -179,10 +179,10 @@ std::complex<double> Directivity::receivedField(double azimuth, double bearing, 
     const double angle = conical_ ? azimuth : wrapped(azimuth - bearing), axis = conical_ ? bearing : 0;
     if (zones_.empty() || std::abs(angle) > pi / 2) return computeAmplitude(receive_azimuth_, angle, axis);
     const double u = receive_azimuth_->aperture() * (std::sin(angle) - std::sin(axis));
+    const std::complex<double> ideal = receive_azimuth_->taper().amplitude(u);
+    if (!conical_ || zones_.size() == 1) return ideal + zones_[zone].added.at(u);
     // A steered straight array is foreshortened, and so is the path to its ends.
-    const double foreshortened = std::cos(axis) * std::cos(axis);
-    const Zone& own = conical_ ? zoneOfPhase(zones_[zone].phase * foreshortened) : zones_[zone];
-    return receive_azimuth_->taper().amplitude(u) + own.added.at(u);
+    return ideal + zoneOfPhase(zones_[zone].phase * std::cos(axis) * std::cos(axis)).added.at(u);
 }
 
 double Directivity::sentElevation(double angle) const { return computePower(transmit_elevation_, angle); }

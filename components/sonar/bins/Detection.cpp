@@ -38,8 +38,7 @@ void Detector::take(const types::Sonar& ping, const DetectionConfig& config, con
     range_min_ = rules.returns.range_min;
     levels_.resize(ping.bins.size());
     double strongest = 0;
-    for (size_t i = 0; i < levels_.size(); ++i) {
-        const size_t k = i % ping.bin_count;
+    for (size_t i = 0, k = 0; i < levels_.size(); ++i, k = k + 1 < ping.bin_count ? k + 1 : 0) {
         const double level = tables_.at(k, static_cast<double>(ping.bins[i]));
         const bool is_water = i < rules.water.size() && level <= static_cast<double>(rules.water[i]) * tables_.gain(k);
         levels_[i] = is_water ? 0 : level;

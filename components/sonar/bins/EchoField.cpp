@@ -52,6 +52,21 @@ INSONIFY_VECTOR_CLONES void scaleSums(const uint64_t* sums, const double* amplit
     }
 }
 
+/** Returns range cells without which all sums are 0, in blocks; empty where all are. */
+std::pair<size_t, size_t> findEchoes(const uint64_t* sums, size_t cells) {
+    constexpr size_t block = 32;
+    const auto is_silent = [sums](size_t from, size_t to) {
+        uint64_t any = 0;
+        for (size_t i = 2 * from; i < 2 * to; ++i) any |= sums[i];
+        return any == 0;
+    };
+    size_t first = 0, end = cells;
+    while (first < end && is_silent(first, std::min(first + block, end))) first = std::min(first + block, end);
+    while (first < end && is_silent(std::max(first + block, end) - block, end))
+        end = std::max(first + block, end) - block;
+    return {first, end};
+}
+
 INSONIFY_VECTOR_CLONES void square(const float* fields, float* __restrict intensities, size_t count) {
     for (size_t j = 0; j < count; ++j)
         intensities[j] = fields[2 * j] * fields[2 * j] + fields[2 * j + 1] * fields[2 * j + 1];
@@ -59,22 +74,21 @@ INSONIFY_VECTOR_CLONES void square(const float* fields, float* __restrict intens
 
 constexpr size_t together = 8;  ///< Neighbouring beams that are formed together [1].
 
-/** Forms fields by the real or the imaginary part of the patterns. */
-Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers, bool imaginary) {
+Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers) {
     const Directivity& directivity = *plan.directivity;
     const bool each = plan.config.elements || directivity.isComplex();
     const auto zoneRules = [&](size_t zone) {
         if (directivity.hasBoxes())
             return boxRules([&](double azimuth, double) { return directivity.sentAmplitude(azimuth); }, plan, true);
-        const auto pattern = [&directivity, zone, imaginary](double azimuth, double bearing) {
-            const std::complex<double> field = directivity.azimuthField(azimuth, bearing, zone);
-            return imaginary ? field.imag() : field.real();
+        const auto pattern = [&directivity, zone](double azimuth, double bearing) {
+            return directivity.azimuthField(azimuth, bearing, zone);
         };
         return Beamformer::Rules{pattern, each ? 2 * std::numbers::pi : directivity.nearAzimuth(),
                                  std::sqrt(directivity.floor()), true};
     };
     Beamformer::Rules rules = rulesOfZones(plan, numbers / 2, zoneRules);
     for (Beamformer::Zone& zone : rules.nearer) zone.end *= 2;  // real, imaginary
+    rules.is_complex = directivity.isComplex();
     return {plan.beams, plan.cells, numbers, rules};
 }
 
@@ -142,27 +156,13 @@ FieldResponse::FieldResponse(const RenderPlan& plan) {
     for (Tap& tap : taps_) tap.offset = static_cast<ptrdiff_t>(tap.phase * phaseLength() + 2 * margin_) + 2 * tap.shift;
 }
 
-std::pair<ptrdiff_t, ptrdiff_t> FieldResponse::findSupport(std::span<const float> phases) const {
-    const auto heard = [](float value) { return value != 0; };
-    size_t first = samples_, end = 0;
-    for (size_t phase = 0; phase < stride_; ++phase) {
-        const auto own = phases.subspan(place(phase), 2 * samples_);
-        const auto found = static_cast<size_t>(std::ranges::find_if(own, heard) - own.begin());
-        first = std::min(first, found / 2);
-        size_t last = own.size();
-        while (last > 2 * std::max(first, end) && !heard(own[last - 1])) --last;
-        end = std::max(end, (last + 1) / 2);
-    }
-    return {static_cast<ptrdiff_t>(first), static_cast<ptrdiff_t>(end)};
-}
-
-void FieldResponse::spread(std::span<const float> phases, std::span<float> fields) const {
+void FieldResponse::spread(std::span<const float> phases, Support support, std::span<float> fields) const {
     if (!pulse_) {
         std::copy_n(phases.begin(), fields.size(), fields.begin());
         return;
     }
     INSONIFY_CHECK(phases.size() == phasesSize(), phases.size(), phasesSize());
-    const auto [first, end] = findSupport(phases);
+    const auto first = static_cast<ptrdiff_t>(support.first), end = static_cast<ptrdiff_t>(support.end);
     std::array<float, block> sums;
     for (size_t j = 0; j < fields.size(); j += block) {
         // Taps that read nothing but zeros change no bit.
@@ -197,11 +197,9 @@ void FieldResponse::addEcho(double range, std::complex<double> field, std::span<
 FieldBeams::FieldBeams(const RenderPlan& plan, size_t numbers)
     : numbers_(numbers), beam_count_(plan.beams.size()), cells_(plan.cells.size() * numbers) {
     if (!plan.has(Pass::Beamform)) return;
-    beamformer_ = fieldBeamformer(plan, numbers, false);
+    beamformer_ = fieldBeamformer(plan, numbers);
     beams_.resize(beam_count_ * numbers);
-    if (!plan.directivity->isComplex()) return;
-    quadrature_ = fieldBeamformer(plan, numbers, true);
-    quadratures_.resize(beams_.size());
+    if (beamformer_->isComplex()) quadratures_.resize(beams_.size());
 }
 
 void FieldBeams::form(ThreadPool& threads) {
@@ -211,17 +209,14 @@ void FieldBeams::form(ThreadPool& threads) {
             for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts)) work(i);
         });
     };
-    visitEach(beamformer_->groupCount(), [&](size_t group) {
-        beamformer_->sumGroup(group, cells_);
-        if (quadrature_) quadrature_->sumGroup(group, cells_);
-    });
+    visitEach(beamformer_->groupCount(), [&](size_t group) { beamformer_->sumGroup(group, cells_); });
     visitEach((beam_count_ + together - 1) / together, [&](size_t number) {
         const size_t first = number * together, count = std::min(together, beam_count_ - first);
         const std::span<float> formed(&beams_[first * numbers_], count * numbers_);
         beamformer_->form(first, count, cells_, formed);
-        if (!quadrature_) return;
+        if (!beamformer_->isComplex()) return;
         const std::span<float> own(&quadratures_[first * numbers_], count * numbers_);
-        quadrature_->form(first, count, cells_, own);
+        beamformer_->formQuadrature(first, count, cells_, own);
         addQuadrature(own.data(), formed.data(), own.size() / 2);
     });
 }
@@ -274,15 +269,23 @@ bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, 
     Scratch& scratch = scratch_[thread];
     const double quantum = std::sqrt(solid_angle / rules.strength_scale) / quanta_per_unit;
     const size_t cells = response_.cells(), samples = response_.samples(), stride = cells / samples;
-    for (size_t phase = 0; phase < stride; ++phase)
-        scaleSums(sums + 2 * phase, amplitudes_.data() + phase, stride, quantum,
-                  &scratch.phases[response_.place(phase)], samples);
+    const auto [first_cell, end_cell] = findEchoes(sums, cells);
+    FieldResponse::Support support{first_cell / stride, (end_cell + stride - 1) / stride};
+    for (size_t phase = 0; phase < stride; ++phase) {
+        float* const fields = &scratch.phases[response_.place(phase)];
+        std::fill(fields, fields + 2 * support.first, 0.0f);
+        std::fill(fields + 2 * support.end, fields + 2 * samples, 0.0f);
+        const size_t first = stride * support.first + phase;
+        scaleSums(sums + 2 * first, amplitudes_.data() + first, stride, quantum, fields + 2 * support.first,
+                  support.end - support.first);
+    }
     if (!rules.own.empty()) {
         addOwnSums(rules, sums, cell, solid_angle, energies(cell, thread));
         scatter(cell, 1, scratch);
+        support = {0, samples};
     }
-    response_.spread(scratch.phases, beams_.cell(cell));
-    return std::any_of(sums, sums + 2 * cells, [](uint64_t sum) { return sum != 0; });
+    response_.spread(scratch.phases, support, beams_.cell(cell));
+    return first_cell < end_cell;
 }
 
 std::span<float> EchoField::energies(size_t /*cell*/, size_t thread) {
@@ -302,7 +305,7 @@ void EchoField::addEnergies(size_t cell, size_t thread) {
     for (size_t k = 0; k < response_.cells(); ++k)
         scratch.phases[response_.place(k)] = scratch.phases[response_.place(k) + 1] = 0;
     scatter(cell, 2, scratch);
-    response_.spread(scratch.phases, scratch.spread);
+    response_.spread(scratch.phases, {0, response_.samples()}, scratch.spread);
     addScaled(scratch.spread.data(), 1, beams_.cell(cell).data(), numbers());
 }
 

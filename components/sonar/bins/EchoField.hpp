@@ -24,8 +24,12 @@ public:
     size_t phasesSize() const { return stride_ * phaseLength() + block; }
     /** Returns the index in the phases of the real part of a range cell's field; the imaginary part follows. */
     size_t place(size_t cell) const { return cell % stride_ * phaseLength() + 2 * (cell / stride_ + margin_); }
+    /** Samples outside of which all values are 0. */
+    struct Support {
+        size_t first, end;
+    };
     /** Spreads range cells into `fields`: samples() times real, imaginary. Allocates nothing. */
-    void spread(std::span<const float> phases, std::span<float> fields) const;
+    void spread(std::span<const float> phases, Support support, std::span<float> fields) const;
     double sampleWidth() const { return sample_width_; }  ///< [m]
     /** Returns the amplitude at a sample, of an echo at a slant range [1, m]. */
     double amplitude(size_t sample, double range) const;
@@ -40,8 +44,6 @@ public:
     };
 
 private:
-    /** Returns the first sample with a value other than 0 in any phase, and the one behind the last. */
-    std::pair<ptrdiff_t, ptrdiff_t> findSupport(std::span<const float> phases) const;
     size_t phaseLength() const { return 2 * (samples_ + 2 * margin_); }
 
     size_t samples_, stride_, margin_ = 0;
@@ -70,10 +72,9 @@ private:
 
     size_t numbers_, beam_count_;
     std::optional<Beamformer> beamformer_;
-    std::optional<Beamformer> quadrature_;  ///< By the imaginary part of patterns; none where they have signs only.
-    std::vector<float> cells_;              ///< [cell][sample][real, imaginary].
-    std::vector<float> beams_;              ///< The same of the beams; empty where cells are beams.
-    std::vector<float> quadratures_;        ///< Beams by `quadrature_`.
+    std::vector<float> cells_;        ///< [cell][sample][real, imaginary].
+    std::vector<float> beams_;        ///< The same of the beams; empty where cells are beams.
+    std::vector<float> quadratures_;  ///< Beams by the imaginary part of patterns; empty where they have signs only.
 };
 
 /** Random fields of given energies, which belong to places in the world: the scattering of the water. */

@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "components/sonar/surfaces/StraightEdges.hpp"
 
@@ -315,8 +316,8 @@ constexpr double coarse = 0.3;     ///< Turn between facets of a body with 20 ar
 /** Finds the facets that represent a smooth convex surface. */
 class SmoothFacets {
 public:
-    SmoothFacets(const types::Mesh& mesh, const glm::dmat3& world_from_mesh)
-        : mesh_(mesh), world_from_mesh_(world_from_mesh), edges_(findEdges(mesh)) {
+    SmoothFacets(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, std::vector<Edge> edges)
+        : mesh_(mesh), world_from_mesh_(world_from_mesh), edges_(std::move(edges)) {
         for (const glm::vec3& at : mesh.positions) {
             const glm::dvec3 size = glm::abs(glm::dvec3(at));
             rounding_ = std::max({rounding_, size.x, size.y, size.z});
@@ -423,22 +424,32 @@ CurveRecord curve(const FacetRecord& facet, const glm::dvec3& normal, const glm:
     return {vec4(mesh_from_world * axis * std::sqrt(more - less), less)};
 }
 
-/** Returns for each facet the first facet with the same corners in any order. */
-std::vector<size_t> findFirsts(const types::Mesh& mesh) {
-    const std::vector<uint32_t> first = weld(mesh);
-    std::vector<std::pair<std::array<uint32_t, 3>, size_t>> facets;
-    facets.reserve(mesh.indices.size() / 3);
-    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        std::array corners{first[mesh.indices[i]], first[mesh.indices[i + 1]], first[mesh.indices[i + 2]]};
-        std::ranges::sort(corners);
-        facets.emplace_back(corners, i / 3);
+/** Returns for each facet the first facet with the same corners in any order; empty: all differ. `first`: of weld(). */
+std::vector<uint32_t> findFirsts(const types::Mesh& mesh, const std::vector<uint32_t>& first) {
+    std::vector<uint32_t> firsts(mesh.indices.size() / 3), end(first.size());
+    const auto forEachFacet = [&](const auto& act) {
+        for (uint32_t t = 0; t < firsts.size(); ++t) {
+            const uint32_t* const index = &mesh.indices[3 * size_t{t}];
+            std::array corners{first[index[0]], first[index[1]], first[index[2]]};
+            std::ranges::sort(corners);
+            act(corners[0], std::array{corners[1], corners[2], t});
+        }
+    };
+    forEachFacet([&](uint32_t lowest, const auto&) { ++end[lowest]; });
+    std::exclusive_scan(end.begin(), end.end(), end.begin(), 0u);
+    std::vector<std::array<uint32_t, 3>> facets(firsts.size());  // the other corners, and the facet
+    forEachFacet([&](uint32_t lowest, const auto& rest) { facets[end[lowest]++] = rest; });
+    bool all_differ = true;
+    for (size_t vertex = 0, begin = 0; vertex < end.size(); begin = end[vertex++]) {
+        const std::span own = std::span(facets).subspan(begin, end[vertex] - begin);
+        std::ranges::sort(own);
+        for (size_t k = 0; k < own.size(); ++k) {
+            const bool same = k > 0 && own[k][0] == own[k - 1][0] && own[k][1] == own[k - 1][1];
+            firsts[own[k][2]] = same ? firsts[own[k - 1][2]] : own[k][2];
+            all_differ = all_differ && !same;
+        }
     }
-    std::ranges::sort(facets);
-    std::vector<size_t> firsts(facets.size());
-    for (size_t k = 0; k < facets.size(); ++k) {
-        const bool same = k > 0 && facets[k].first == facets[k - 1].first;
-        firsts[facets[k].second] = same ? firsts[facets[k - 1].second] : facets[k].second;
-    }
+    if (all_differ) firsts.clear();
     return firsts;
 }
 
@@ -481,29 +492,44 @@ std::vector<FacetRecord> facetLobes(const types::Geometry& geometry, const Mater
     return all;
 }
 
+namespace {
+
+/** Returns the curvatures of the facets of a mesh that has none twice. */
+std::vector<CurveRecord> computeCurves(const types::Mesh& mesh, const glm::dmat3& world_from_mesh,
+                                       std::vector<Edge> edges) {
+    const std::vector<bool> smooth = SmoothFacets(mesh, world_from_mesh, std::move(edges)).smooth();
+    if (std::ranges::none_of(smooth, [](bool is) { return is; })) return {};
+    const std::vector<FacetRecord> facets = facetLobes(mesh, world_from_mesh, 0);
+    std::vector<CurveRecord> curves(facets.size(), CurveRecord{vec4(0)});
+    for (size_t t = 0; t < facets.size(); ++t) {
+        if (!smooth[t]) continue;
+        const auto place = [&](size_t k) {
+            return world_from_mesh * glm::dvec3(mesh.positions[mesh.indices[3 * t + k]]);
+        };
+        const glm::dvec3 across = glm::cross(place(1) - place(0), place(2) - place(0));
+        if (glm::length(across) > 0) curves[t] = curve(facets[t], glm::normalize(across), world_from_mesh);
+    }
+    return curves;
+}
+
+}  // namespace
+
 std::vector<CurveRecord> facetCurves(const types::Mesh& mesh, const glm::dmat3& world_from_mesh) {
-    const std::vector<size_t> firsts = findFirsts(mesh);
+    const std::vector<uint32_t> welded = weld(mesh);
+    const std::vector<uint32_t> firsts = findFirsts(mesh, welded);
+    if (firsts.empty()) return computeCurves(mesh, world_from_mesh, findEdges(mesh, welded));
     types::Mesh once;
     once.positions = mesh.positions;
-    std::vector<size_t> number(firsts.size());  // index of each facet in `once`
+    std::vector<uint32_t> number(firsts.size());  // index of each facet in `once`
     for (size_t i = 0; i < firsts.size(); ++i) {
-        number[i] = firsts[i] == i ? once.indices.size() / 3 : number[firsts[i]];
+        number[i] = firsts[i] == i ? static_cast<uint32_t>(once.indices.size() / 3) : number[firsts[i]];
         if (firsts[i] == i)
             once.indices.insert(once.indices.end(), mesh.indices.data() + 3 * i, mesh.indices.data() + 3 * i + 3);
     }
-    const std::vector<bool> smooth = SmoothFacets(once, world_from_mesh).smooth();
-    if (std::ranges::none_of(smooth, [](bool is) { return is; })) return {};
-    const std::vector<FacetRecord> facets = facetLobes(once, world_from_mesh, 0);
-    std::vector<CurveRecord> curves(firsts.size(), CurveRecord{vec4(0)});
-    for (size_t i = 0; i < firsts.size(); ++i) {
-        const size_t t = number[i];
-        if (!smooth[t]) continue;
-        const auto place = [&](size_t k) {
-            return world_from_mesh * glm::dvec3(once.positions[once.indices[3 * t + k]]);
-        };
-        const glm::dvec3 across = glm::cross(place(1) - place(0), place(2) - place(0));
-        if (glm::length(across) > 0) curves[i] = curve(facets[t], glm::normalize(across), world_from_mesh);
-    }
+    const std::vector<CurveRecord> of_once = computeCurves(once, world_from_mesh, findEdges(once));
+    if (of_once.empty()) return {};
+    std::vector<CurveRecord> curves(firsts.size());
+    for (size_t i = 0; i < firsts.size(); ++i) curves[i] = of_once[number[i]];
     return curves;
 }
 

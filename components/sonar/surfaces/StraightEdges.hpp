@@ -24,6 +24,8 @@ std::vector<uint32_t> weld(const types::Mesh& mesh);
 /** Returns the edges of all triangles of a mesh, ascending: common edges of neighbours are adjacent. Omits triangles
  *  with two corners at one place, which have no area: their neighbours meet. */
 std::vector<Edge> findEdges(const types::Mesh& mesh);
+/** The same with the result of weld(). */
+std::vector<Edge> findEdges(const types::Mesh& mesh, const std::vector<uint32_t>& welded);
 
 /** A face that ends at an edge. */
 struct EdgeFace {

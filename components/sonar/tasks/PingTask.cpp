@@ -12,6 +12,7 @@
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/SoundSpeed.hpp"
 #include "components/framework/execution/Activity.hpp"
+#include "components/sonar/base/ThreadPool.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/multipath/OtherSonars.hpp"
 #include "components/sonar/renderer/BinExplanation.hpp"
@@ -362,12 +363,17 @@ void PingTask::render() {
     const auto signals = elements.connected() ? signals_.take() : nullptr;
     renderer_->setElements(*sample, signals.get());
     const Counts before = thread_counts;
+    const double divided_before = divided_seconds;
     const auto start = std::chrono::steady_clock::now();
     const bool received = renderPing(*renderer_, takenScene(), *sample, reported.get());
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     render_seconds_ = took.count() / 1e3;
     for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
     counted_.add(before, renderStages(*renderer_));
+    if (counted_.pings > 1) {  // the first ping builds trees
+        counted_.all_seconds += render_seconds_;
+        counted_.divided_seconds += divided_seconds - divided_before;
+    }
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
         for (const Omitted& what : renderer_->omissions()) {
             plan_->omitted.push_back(describe(what, grid()));

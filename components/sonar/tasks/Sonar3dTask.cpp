@@ -153,7 +153,8 @@ void Sonar3dTask::shape(types::Sonar& sample) {
 
 void Sonar3dTask::addTo(types::Sonar& sample, int column, const SonarRenderer& renderer) {
     float* const sum = sample.bins.data() + static_cast<size_t>(column) * sample.bin_count;
-    for (size_t i = 0; i < fan_.bins.size(); ++i) sum[i % fan_.bin_count] += fan_.bins[i];
+    for (size_t row = 0; row < fan_.bins.size(); row += fan_.bin_count)
+        for (size_t k = 0; k < fan_.bin_count; ++k) sum[k] += fan_.bins[row + k];
     if (fan_.beam_count < 2 || !renderer.computeAlike(fan_, alike_)) return;
     // The sonar rings once: its mean over the beams that were summed remains.
     const double too_many = 1 - 1.0 / fan_.beam_count;
