@@ -20,6 +20,7 @@
 #include "components/study/likeness/Likeness.hpp"
 #include "components/study/likeness/ObjectLooks.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::study {
 namespace {

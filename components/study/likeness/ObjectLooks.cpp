@@ -12,8 +12,10 @@ namespace insonify::study {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr double to_deviation = 1.4826;  // of a normal law, from the median distance
-constexpr double background_deviations = 2;
+constexpr double to_deviation = 1.4826;     // of a normal law, from the median distance
+constexpr double background_share = 0.5;    // of a deviation, between the mean of a window and the background
+constexpr double highlight_deviations = 2;  // also beyond which a level counts for no skew
+constexpr size_t reach_px = 4;              // of a window, 9 x 9 pixels
 constexpr size_t enough_crops = 10, enough_pixels = 100;
 
 double quantile(std::vector<double> values, double share) {
@@ -36,32 +38,52 @@ struct Moments {
     }
 };
 
+/** Returns the mean of the window about each pixel, as far as it is within the crop. */
+std::vector<double> computeMeans(const ObjectCrop& crop) {
+    std::vector<double> means;
+    for (size_t row = 0; row < crop.height; ++row)
+        for (size_t column = 0; column < crop.width; ++column) {
+            Moments moments;
+            for (size_t y = row - std::min(row, reach_px); y <= std::min(row + reach_px, crop.height - 1); ++y)
+                for (size_t x = column - std::min(column, reach_px); x <= std::min(column + reach_px, crop.width - 1);
+                     ++x)
+                    moments.add(crop.at(x, y));
+            means.push_back(moments.mean());
+        }
+    return means;
+}
+
 /** A crop with its background. */
 class Scaled {
 public:
     explicit Scaled(const ObjectCrop& crop) : crop_(crop) {
-        std::vector<double> levels(crop.levels.begin(), crop.levels.end());
-        median_ = quantile(levels, 0.5);
-        darkest_ = quantile(levels, 0.03);
-        for (double& level : levels) level = std::abs(level - median_);
-        reach_ = background_deviations * to_deviation * std::max(0.5, quantile(levels, 0.5));
-        for (size_t row = 0; row < crop.height; ++row) {
-            Moments moments;
-            for (size_t column = 0; column < crop.width; ++column)
-                if (isBackground(column, row)) moments.add(crop.at(column, row));
-            row_mean_.push_back(moments.mean());
+        const std::vector<double> means = computeMeans(crop);
+        level_ = quantile(means, 0.5);
+        std::vector<double> off;
+        for (size_t i = 0; i < means.size(); ++i) off.push_back(std::abs(crop.levels[i] - means[i]));
+        deviation_ = to_deviation * std::max(0.5, quantile(std::move(off), 0.5));
+        double count = 0, rows = 0, levels = 0, products = 0, squares = 0;
+        for (size_t i = 0; i < means.size(); ++i) {
+            is_background_.push_back(std::abs(means[i] - level_) <= background_share * deviation_);
+            if (!is_background_.back()) continue;
+            const double row = static_cast<double>(i / crop.width), level = crop.levels[i];
+            ++count, rows += row, levels += level, products += row * level, squares += row * row;
         }
+        const double spread = squares - rows * rows / count;
+        slope_ = count > 1 && spread > 0 ? (products - rows * levels / count) / spread : 0;
     }
-    double depth() const { return median_ - darkest_; }
-    bool isBackground(size_t column, size_t row) const { return std::abs(crop_.at(column, row) - median_) <= reach_; }
-    bool isHighlight(size_t column, size_t row) const { return crop_.at(column, row) - median_ > reach_; }
-    /** Returns a background pixel's level above the mean of the background in its row. */
-    double residual(size_t column, size_t row) const { return crop_.at(column, row) - row_mean_[row]; }
+    bool isBackground(size_t column, size_t row) const { return is_background_[row * crop_.width + column]; }
+    /** Returns how many deviations a pixel's level is above that of the background. */
+    double above(size_t column, size_t row) const { return (crop_.at(column, row) - level_) / deviation_; }
+    bool isHighlight(size_t column, size_t row) const { return above(column, row) > highlight_deviations; }
 
-    /** Returns the correlation of background pixels that are apart by columns and rows. */
+    /** Returns the correlation of background pixels that are apart by columns and rows, about their linear trend. */
     double correlation(size_t columns, size_t rows) const {
         Moments one, other;
         double products = 0;
+        const auto residual = [&](size_t column, size_t row) {
+            return crop_.at(column, row) - slope_ * static_cast<double>(row);
+        };
         for (size_t row = 0; row + rows < crop_.height; ++row)
             for (size_t column = 0; column + columns < crop_.width; ++column) {
                 if (!isBackground(column, row) || !isBackground(column + columns, row + rows)) continue;
@@ -85,8 +107,8 @@ public:
 
 private:
     const ObjectCrop& crop_;
-    double median_, darkest_, reach_;
-    std::vector<double> row_mean_;
+    double level_ = 0, deviation_ = 0, slope_ = 0;
+    std::vector<bool> is_background_;
 };
 
 double meanLevel(const ObjectCrop& crop, size_t from, size_t to) {
@@ -123,11 +145,15 @@ ObjectLooks computeLooks(const ObjectCrop& crop) {
     for (size_t i = 0; i < looks.across.size(); ++i) looks.across[i] = scaled.correlation(i + 1, 0);
     for (size_t i = 0; i < looks.along.size(); ++i) looks.along[i] = scaled.correlation(0, i + 1);
     Moments background, all;
+    std::vector<double> floor;
     double steps = 0;
     for (size_t row = 0; row < crop.height; ++row)
         for (size_t column = 0; column < crop.width; ++column) {
             all.add(crop.at(column, row));
-            if (scaled.isBackground(column, row)) background.add(crop.at(column, row));
+            if (scaled.isBackground(column, row)) {
+                floor.push_back(crop.at(column, row));
+                if (std::abs(scaled.above(column, row)) <= highlight_deviations) background.add(crop.at(column, row));
+            }
             if (row > 0) steps += std::abs(crop.at(column, row) - crop.at(column, row - 1));
         }
     looks.skew = background.skew();
@@ -138,7 +164,7 @@ ObjectLooks computeLooks(const ObjectCrop& crop) {
     const double pairs = static_cast<double>(crop.width * (crop.height - 1));
     looks.step = all.variance() > 0 ? steps / pairs / std::sqrt(all.variance()) : none;
     looks.fall_off = meanLevel(crop, 0, crop.height / 4) - meanLevel(crop, crop.height - crop.height / 4, crop.height);
-    looks.depth = scaled.depth();
+    looks.depth = quantile(std::move(floor), 0.5) - quantile({crop.levels.begin(), crop.levels.end()}, 0.03);
     return looks;
 }
 

@@ -20,8 +20,11 @@ struct ObjectCrop {
 constexpr size_t crop_side = 96;  ///< Of a window, as in the real pictures [px].
 constexpr size_t min_side = 24;   ///< Smaller crops have too few pixels for these statistics [px].
 
-/** Statistics of crops of objects, of which each crop has one value. Background are the pixels within two robust
- *  deviations (1.4826 times the median distance from the median) of the crop's median, highlights those above. */
+/** Statistics of crops of objects, of which each crop has one value.
+ *
+ *  The mean of 9 x 9 pixels about each pixel is its surroundings'. A deviation is 1.4826 times the median distance of
+ *  pixels from it, the level of the background the median of all these means. Background are the pixels whose mean is
+ *  within half a deviation of that level, highlights those more than two deviations above it. */
 struct ObjectLooks {
     std::array<double, 3> across{};        ///< Correlation of background levels 1, 2, 3 px apart in a row [1].
     std::array<double, 2> along{};         ///< The same 1, 2 px apart in a column, each row about its mean [1].
@@ -29,7 +32,7 @@ struct ObjectLooks {
     double run_along = 0, run_across = 0;  ///< Mean length of runs of highlights in columns, in rows [px].
     double step = 0;      ///< Mean difference of neighbours in a column over the crop's standard deviation [1].
     double fall_off = 0;  ///< Mean level of the farthest quarter of the rows minus that of the nearest [levels].
-    double depth = 0;     ///< Median minus 3rd percentile of the crop [levels].
+    double depth = 0;     ///< Median of the background minus 3rd percentile of the crop [levels].
 };
 
 /** Returns the statistics of a crop; those that it has no pixels for are NaN.
