@@ -20,7 +20,7 @@ SONARS = {"aris_3000": [], "oculus_m1200d": ["--set", "sonar.range=8"], "oculus_
 THINGS = {  # settings of each thing, all below 1.5 m
     "bottle": {}, "bottle standing": {"upright": "true"}, "plastic_bottle": {}, "can": {}, "can standing": {"upright": "true"}, "carton": {},
     "tire": {"diameter_m": 0.5}, "tire standing": {"diameter_m": 0.5, "upright": "true"}, "propeller": {"diameter_m": 0.4}, "valve": {}, "hook": {},
-    "chain": {"length_m": 0.8, "bar_m": 0.015}, "cable": {"length_m": 0.9}, "rope": {"length_m": 0.9, "meander_m": 0.2}, "anchor": {}, "bucket": {},
+    "chain": {"length_m": 0.8, "bar_m": 0.015}, "cable": {"length_m": 1.2}, "rope": {"length_m": 0.9, "meander_m": 0.2}, "anchor": {}, "bucket": {},
     "barrel": {}, "gas_cylinder": {}, "crate": {}, "pallet": {}, "bicycle": {}, "traffic_cone": {}, "shopping_trolley": {}, "lobster_pot": {},
     "amphora": {}, "concrete_block": {}, "stone": {}, "ball": {}, "artillery_shell": {}, "reef_ball": {},
 }
