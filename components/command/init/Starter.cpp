@@ -105,19 +105,18 @@ std::string lineOf(const char* key, const std::string& block, const std::string&
     return block.empty() ? "" : fmt::format("      {}: {}{}\n", key, block, comment.empty() ? "" : "  # " + comment);
 }
 
-/** Returns the lines that make the sonar the device that it is: its speckle and its errors. */
-std::string deviceLines(const SonarDevice& device) {
-    const std::string errors = blockOf({{"gain_error_db", device.gain_error_db},
-                                        {"phase_error_deg", device.phase_error_deg},
-                                        {"beam_gain_error_db", device.beam_gain_error_db}});
-    const char* const of = device.kind == "array" ? "of the elements of this device; seed: N makes another"
-                                                  : "of the channels of its beams";
-    return lineOf("speckle",
-                  device.scatterers > 0
-                      ? fmt::format("{{coherent: true, scatterers_per_cell: {:g}}}", device.scatterers)
-                      : "",
-                  "echoes interfere: the same view has the same grain") +
-           lineOf("imperfections", errors, of);
+/** Returns the errors of this device's elements and beams. */
+std::string errorBlock(const SonarDevice& device) {
+    return blockOf({{"gain_error_db", device.gain_error_db},
+                    {"phase_error_deg", device.phase_error_deg},
+                    {"beam_gain_error_db", device.beam_gain_error_db}});
+}
+
+/** Returns the speckle of a sonar whose echoes interfere. */
+std::string speckleLine(const SonarDevice& device) {
+    if (device.scatterers == 0) return "";
+    return lineOf("speckle", fmt::format("{{coherent: true, scatterers_per_cell: {:g}}}", device.scatterers),
+                  "echoes interfere: the same view has the same grain");
 }
 
 /** Returns the speckle that the noise task draws, where the sonar's echoes do not interfere, and its filter. */
@@ -200,12 +199,13 @@ std::string starterDeployment(const SonarFigures& sonar) {
         arg("frequency", mode.frequency_khz), arg("range", fmt::format("{:.10g}", starterRange(sonar))),
         arg("range_min", mode.range_min), arg("range_max", mode.range_max), arg("bins", starter.bin_count),
         arg("bin_us", starter.bin_us), arg("width", mode.beam_width_deg), arg("height", mode.beam_height_deg),
-        arg("sidelobe", device.sidelobe_db), arg("device", deviceLines(device)), arg("noise", noiseLines(device)),
-        arg("code", codeLines(device)), arg("picture", pictureKeys(sonar)), arg("tvg", device.tvg),
-        arg("source_level", device.source_level_db), arg("directivity", device.directivity_index_db),
-        arg("period", starter.period), arg("columns", starter.columns_per_beam), arg("beams", mode.beam_count),
-        arg("fov", mode.field_of_view_deg), arg("spacing", mode.field_of_view_deg / mode.beam_count),
-        arg("pitch", starter.pitch_deg), arg("step", mode.step_deg), arg("speed", mode.step_deg / starter.period),
+        arg("sidelobe", device.sidelobe_db), arg("speckle", speckleLine(device)), arg("errors", errorBlock(device)),
+        arg("noise", noiseLines(device)), arg("code", codeLines(device)), arg("picture", pictureKeys(sonar)),
+        arg("tvg", device.tvg), arg("source_level", device.source_level_db),
+        arg("directivity", device.directivity_index_db), arg("period", starter.period),
+        arg("columns", starter.columns_per_beam), arg("beams", mode.beam_count), arg("fov", mode.field_of_view_deg),
+        arg("spacing", mode.field_of_view_deg / mode.beam_count), arg("pitch", starter.pitch_deg),
+        arg("step", mode.step_deg), arg("speed", mode.step_deg / starter.period),
         arg("step_error", device.step_error_deg),
         arg("turn", mode.step_deg > 0 ? static_cast<int>(90 / mode.step_deg) : 0), arg("rows", mode.row_count),
         arg("rows_fov", mode.rows_field_of_view_deg), arg("absorption", fmt::format("{:.2f}", db_per_m)),
