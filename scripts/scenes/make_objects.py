@@ -82,7 +82,7 @@ def main():
         with tempfile.TemporaryDirectory() as text:
             folder = Path(text)
             size, far = make_scene(folder, name, THINGS.get(name, {}), options.heading_deg)
-            draw.text((left + 2, top + 1), f"{name}, {2 * max(size, 0.25):.2g} m"[:19], fill=0)
+            draw.text((left + 2, top + 1), f"{name}, {2 * max(size, 0.25):.2g} m"[:16], fill=0)
             for row, sonar in enumerate(SONARS):
                 sheet.paste(Image.fromarray(record(folder, sonar, size, far)), (left, top + LABEL + row * TILE))
     for x in range(TILE, sheet.width, TILE):
