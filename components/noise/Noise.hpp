@@ -114,8 +114,6 @@ struct NoiseConfig {
     }
     void check(types::Diagnostics& diagnostics) const {
         if (!filter) return;
-        if (isNone())
-            return diagnostics.push_back({"filter", "has nothing to filter; give speckle, ambient or additive"});
         if (speckle && speckle->law == SpeckleLaw::Gamma)
             diagnostics.push_back(
                 {"filter", "is given with speckle.law: gamma; give law: rayleigh, whose looks filter.looks averages"});

@@ -16,13 +16,13 @@ INSONIFY_EMBED(insonify_sonars, INSONIFY_SONARS)
 namespace insonify::sonars {
 namespace {
 
-/** Adds the keys of a mode whose figures are given. */
-void addGiven(const SonarMode& mode, std::set<std::string>& keys) {
-    const SonarMode none;
-    auto visit = [&](const types::Field& field, const auto& value) {
-        if (value != 0) keys.insert(field.name);
+/** Adds the keys of figures that are given. */
+template <types::Described Figures>
+void addGiven(const Figures& figures, std::set<std::string>& keys) {
+    auto visit = [&]<class T>(const types::Field& field, const T& value) {
+        if (value != T{}) keys.insert(field.name);
     };
-    SonarMode::describe(mode, visit);
+    Figures::describe(figures, visit);
 }
 
 bool isDay(const std::string& text) {
@@ -34,6 +34,17 @@ bool isDay(const std::string& text) {
 
 }  // namespace
 
+void SonarDevice::check(types::Diagnostics& diagnostics) const {
+    if (kind != "lens" && kind != "array" && kind != "head")
+        diagnostics.push_back({"kind", "is '" + kind + "'; must be lens, array or head"});
+    if (kind != "array" && (gain_error_db != 0 || phase_error_deg != 0))
+        diagnostics.push_back({"gain_error_db", "and phase_error_deg are errors of elements, which only an array has"});
+    if (kind != "head" && step_error_deg != 0)
+        diagnostics.push_back({"step_error_deg", "is given, but only a head has steps"});
+    if ((code_bits > 0) != ((gamma > 0) != (dynamic_range_db > 0)))
+        diagnostics.push_back({"code_bits", "needs one of gamma and dynamic_range_db, the law of the codes"});
+}
+
 void SonarFigures::check(types::Diagnostics& diagnostics) const {
     if (modes.empty()) diagnostics.push_back({"modes", "is empty; a sonar has at least one"});
     std::set<std::string> figures;
@@ -44,6 +55,8 @@ void SonarFigures::check(types::Diagnostics& diagnostics) const {
             diagnostics.push_back(
                 {fmt::format("modes[{}]", i), "must have frequency_khz, and range_min below range_max"});
     }
+    if (device) addGiven(*device, figures);
+    if (starter && !device) diagnostics.push_back({"device", "is absent; a sonar with a starter has one"});
     std::set<std::string> given;
     for (size_t i = 0; i < sources.size(); ++i) {
         const std::string path = fmt::format("sources[{}]", i);

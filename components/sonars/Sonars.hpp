@@ -36,11 +36,50 @@ struct SonarMode {
     }
 };
 
+/** A sonar as a device: what its beams, receiver and head do beside its data sheet. A figure that is not given is 0. */
+struct SonarDevice {
+    std::string kind;     ///< "lens": beams by an acoustic lens; "array": by its elements; "head": one beam that turns.
+    double pulse_us = 0;  ///< Of a tone at the starter's range; 0: its resolution.
+    double sidelobe_db = 0;                                ///< Highest of a beam, two-way about its own axis.
+    double gain_error_db = 0, phase_error_deg = 0;         ///< Deviations of elements.
+    double beam_gain_error_db = 0, step_error_deg = 0;     ///< Deviations of beams, of the head's steps.
+    double scatterers = 0;                                 ///< In a resolution cell, of fields; 0: energies.
+    double looks = 0;                                      ///< Averaged in a bin.
+    double correlation_beams = 0, correlation_bins = 0;    ///< Lags of 1/e of its noise.
+    double source_level_db = 0, directivity_index_db = 0;  ///< Of its noise.
+    double tvg = 0;                                        ///< Gain per decade of range [dB].
+    int code_bits = 0;                                     ///< 0: its samples are not codes.
+    double gamma = 0, dynamic_range_db = 0;                ///< Codes of amplitude to that power, or of level.
+    double full_scale_db = 0;                              ///< Level of the max code.
+
+    static void describe(auto& self, auto& visit) {
+        visit({"kind", "", "lens, array or head"}, self.kind);
+        visit({"pulse_us", "us", "duration of its tone at the range of `insonify init`", 0, 1e6}, self.pulse_us);
+        visit({"sidelobe_db", "dB", "highest sidelobe of a beam", -100, 0}, self.sidelobe_db);
+        visit({"gain_error_db", "dB", "standard deviation of the elements' gains", 0, 20}, self.gain_error_db);
+        visit({"phase_error_deg", "deg", "standard deviation of the elements' phases", 0, 180}, self.phase_error_deg);
+        visit({"beam_gain_error_db", "dB", "standard deviation of the beams' gains", 0, 20}, self.beam_gain_error_db);
+        visit({"step_error_deg", "deg", "standard deviation of the head's bearing", 0, 90}, self.step_error_deg);
+        visit({"scatterers", "1", "of fields in a resolution cell; 0: energies are summed", 0, 200}, self.scatterers);
+        visit({"looks", "1", "intensities that are averaged in a bin", 0, 256}, self.looks);
+        visit({"correlation_beams", "1", "beams over which its noise is correlated", 0, 16}, self.correlation_beams);
+        visit({"correlation_bins", "1", "bins over which its noise is correlated", 0, 16}, self.correlation_bins);
+        visit({"source_level_db", "dB re 1 uPa m", "of its pulse", 0, 300}, self.source_level_db);
+        visit({"directivity_index_db", "dB", "of its receiver", 0, 100}, self.directivity_index_db);
+        visit({"tvg", "dB", "gain per decade of range", 0, 100}, self.tvg);
+        visit({"code_bits", "1", "bits of a code; 0: its samples are no codes", 0, 16}, self.code_bits);
+        visit({"gamma", "1", "codes are amplitudes to this power", 0, 5}, self.gamma);
+        visit({"dynamic_range_db", "dB", "codes are levels over this range", 0, 300}, self.dynamic_range_db);
+        visit({"full_scale_db", "dB", "level of the max code", -1000, 1000}, self.full_scale_db);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
 /** Where figures of a sonar come from. */
 struct SonarSource {
     std::string document;            ///< "none: ..." where there is none.
     std::string read;                ///< Day on which it was read: "2026-11-22".
-    std::vector<std::string> gives;  ///< Keys of SonarMode, or "part".
+    std::vector<std::string> gives;  ///< Keys of SonarMode and SonarDevice, or "part".
 
     static void describe(auto& self, auto& visit) {
         visit({"document", "", "maker and title"}, self.document);
@@ -56,7 +95,8 @@ struct SonarStarter {
     double period = 0;              ///< Between pings [s].
     int columns_per_beam = 0;
     double pitch_deg = 0;      ///< Of the mount of a fan, down.
-    double reference_db = 0;   ///< Level of white in the pictures of a fan.
+    double reference_db = 0;   ///< Level of white in the pictures of a fan without codes.
+    int picture_height = 0;    ///< Of the pictures of its sweep [px].
     bool sends_tones = false;  ///< Else chirps.
 
     static void describe(auto& self, auto& visit) {
@@ -68,6 +108,7 @@ struct SonarStarter {
         visit({"columns_per_beam", "1", "samples across a beam", 1, 4096}, self.columns_per_beam);
         visit({"pitch_deg", "deg", "of the mount, down", -90, 90}, self.pitch_deg);
         visit({"reference_db", "dB", "level of white in pictures", -1000, 1000}, self.reference_db);
+        visit({"picture_height", "1", "height of the pictures of its data sets", 16, 8192}, self.picture_height);
         visit({"sends_tones", "", "else chirps"}, self.sends_tones);
     }
 };
@@ -79,6 +120,7 @@ struct SonarFigures {
     int part = 0;  ///< Part number in the device's messages; 0: it has none.
     std::vector<SonarMode> modes;
     std::vector<SonarSource> sources;
+    std::optional<SonarDevice> device;  ///< Given if there is a starter.
     std::optional<SonarStarter> starter;
 
     static void describe(auto& self, auto& visit) {
@@ -86,6 +128,7 @@ struct SonarFigures {
         visit({"part", "1", "part number in messages of the device", 0, 65535}, self.part);
         visit({"modes", "", "frequencies or modes, first the one of `insonify init`"}, self.modes);
         visit({"sources", "", "documents of the figures"}, self.sources);
+        visit({"device", "", "what the device does beside its data sheet"}, self.device);
         visit({"starter", "", "what `insonify init` writes in addition"}, self.starter);
     }
     void check(types::Diagnostics& diagnostics) const;

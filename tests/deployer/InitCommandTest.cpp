@@ -59,6 +59,12 @@ size_t annotatedTyres(const TestFolder& folder, const std::string& annotations) 
     return tyres;
 }
 
+/** Returns the line of a sweep that says how its pictures look. */
+std::string pictureOf(const std::string& sweep) {
+    const size_t from = sweep.find("picture:");
+    return sweep.substr(from, sweep.find('\n', from) + 1 - from);
+}
+
 /** Settings that hide almost everything in a ping: only its last hundredth, or only returns above the source's
  *  level. */
 std::string almostNothing(const SonarFigures& figures) {
@@ -165,9 +171,8 @@ TEST_P(InitPresetTest, EachPictureOfAFanShowsAnObjectOnTheFloor) {
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
     writeFile(folder / "pass.yml",
               "poses: {trajectory: {file: pass.csv, period: 1}}\n"
-              "classes: {object: [tyre_*, stone_*, container, pile_*]}\n"
-              "picture: {shape: fan, height: 400, dynamic_range_db: 45}\n"
-              "annotations: {min_level: 40, min_pixels: 100}\n");
+              "classes: {object: [tyre_*, stone_*, container, pile_*]}\n" +
+                  pictureOf(readFile(folder / "sweep.yml")) + "annotations: {min_level: 40, min_pixels: 100}\n");
     ASSERT_THAT(callInsonify(folder, {"dataset", ".", "--sweep", "pass.yml", "--out", "set", "--format", "mask",
                                       "--set", "sonar.quality.rows=128"}),
                 succeeds());

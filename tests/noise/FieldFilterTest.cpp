@@ -145,12 +145,16 @@ TEST(FieldFilterTest, NaNStaysAndNoBinBecomesNegative) {
         EXPECT_TRUE(i == 7 ? std::isnan(ping.bins[i]) : ping.bins[i] >= 0) << i;
 }
 
-TEST(FieldFilterTest, RejectsAFilterWithoutNoiseOrWithoutAField) {
+TEST(FieldFilterTest, AFilterWithoutNoiseChangesNothing) {
+    const types::Sonar clean = makePing(5, 300);
+    EXPECT_EQ(makeNoisy(filtered({4, 1.5, 2.0}, {}), clean).bins, clean.bins);
+}
+
+TEST(FieldFilterTest, RejectsAFilterWithoutAField) {
     using testing::ElementsAre, testing::IsEmpty, test::countRefusals;
     EXPECT_THAT(countRefusals(filtered({4, 1, {}})), IsEmpty());
     EXPECT_THAT(countRefusals(NoiseConfig{}), IsEmpty());
-    EXPECT_THAT(countRefusals(filtered({4, 1, {}}, {})),
-                ElementsAre("filter: has nothing to filter; give speckle, ambient or additive"));
+    EXPECT_THAT(countRefusals(filtered({4, 1, {}}, {})), IsEmpty());
     EXPECT_THAT(
         countRefusals(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gamma, .looks = 4})),
         ElementsAre("filter: is given with speckle.law: gamma; give law: rayleigh, whose looks filter.looks averages"));

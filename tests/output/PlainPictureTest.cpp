@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "components/output/pictures/PlainPicture.hpp"
@@ -49,6 +50,41 @@ TEST(PlainPictureTest, AFanHasOnlyWaterAheadIsUpAndPortIsLeft) {
         EXPECT_NEAR(at.x, nothing.width() / 2.0 - 0.5 - 80.5 * std::sin(bearing), 1) << beam;
         EXPECT_NEAR(at.y, 99.5 - 80.5 * std::cos(bearing), 1) << beam;
     }
+}
+
+/** Codes that rise evenly over beams and bins are met exactly between the cells; labels stay those of the nearest. */
+TEST(PlainPictureTest, ASmoothFanIsInterpolatedBetweenBeamsAndBins) {
+    types::Sonar ping = emptyPing(40, 17);
+    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
+        for (uint32_t bin = 0; bin < ping.bin_count; ++bin)
+            ping.bins[beam * ping.bin_count + bin] = static_cast<float>(20 + 6 * beam + bin);
+    PlainConfig config = getConfig(PlainShape::Fan, 300);
+    config.reference_db.reset();
+    config.scale = BinScale::Code;
+    const PlainPicture nearest = makePicture(ping, config);
+    config.smooth = true;
+    const PlainPicture picture = makePicture(ping, config);
+    EXPECT_EQ(picture.cells(), nearest.cells());
+    const types::Image image = picture.image();
+    const types::BeamArc& arc = picture.arc();
+    size_t seen = 0;
+    for (uint32_t y = 0; y < picture.height(); ++y)
+        for (uint32_t x = 0; x < picture.width(); ++x) {
+            const double ahead = 299.5 - y, port = picture.width() / 2.0 - 0.5 - x;
+            const double place = (std::atan2(port, ahead) - arc.bearings.front()) /
+                                 (arc.bearings.back() - arc.bearings.front()) * (ping.beam_count - 1);
+            const double bin = std::hypot(ahead, port) / 300 * ping.bin_count - 0.5;
+            if (place < 0 || place > ping.beam_count - 1 || bin < 0 || bin > ping.bin_count - 1) continue;
+            const double beam = arc.beams.front() == 0 ? place : ping.beam_count - 1 - place;
+            EXPECT_NEAR(image.image[size_t{y} * image.row_size + x], 20 + 6 * beam + bin, 0.52) << x << ", " << y;
+            ++seen;
+        }
+    EXPECT_GT(seen, 10000u);
+    config.shape = PlainShape::Polar;
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("only a fan has others"));
 }
 
 TEST(PlainPictureTest, APolarPictureHasAPixelForEachBin) {

@@ -77,5 +77,20 @@ TEST(HeadScanTest, AStepTakesTimeAtTheHeadsSpeed) {
     EXPECT_DOUBLE_EQ(stepDuration(config), 0.1);
 }
 
+TEST(HeadScanTest, AHeadStandsOffItsBearingsByTheDeviationAndAgainByTheSameAtEachVisit) {
+    HeadConfig config;
+    EXPECT_EQ(standingDeg(config, 12.6), 12.6);
+    config.error_deg = 0.4;
+    double sum = 0, squares = 0;
+    constexpr int count = 4000;
+    for (int i = 0; i < count; ++i) {
+        const double bearing = -180 + 0.09 * i, off = standingDeg(config, bearing) - bearing;
+        sum += off, squares += off * off;
+        EXPECT_NEAR(standingDeg(config, bearing + 360) - bearing - 360, off, 1e-9);
+    }
+    EXPECT_NEAR(sum / count, 0, 4 * 0.4 / std::sqrt(count));
+    EXPECT_NEAR(std::sqrt(squares / count), 0.4, 0.02);
+}
+
 }  // namespace
 }  // namespace insonify::sonar

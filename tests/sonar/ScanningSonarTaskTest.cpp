@@ -50,6 +50,18 @@ TEST_F(ScanningSonarTaskTest, EachPingLooksAtItsBearing) {
     }
 }
 
+TEST_F(ScanningSonarTaskTest, AHeadWithErrorsStatesTheBearingOfItsStepsAndLooksElsewhere) {
+    HeadConfig wrong = sector;
+    wrong.error_deg = 10;
+    start(wrong);
+    const auto ping = pingAt(1);
+    ASSERT_TRUE(ping) << task_.lastError();
+    EXPECT_NEAR(ping->bearings[0].deg(), 40, 1e-9);
+    const double there = std::abs(standingDeg(wrong, 40));
+    ASSERT_GT(std::abs(there - 40), 1) << "else this test shows nothing";
+    EXPECT_NEAR(firstEcho(*ping, 0), 5 / std::cos(types::radians(std::max(there - 1.5, 0.0))), 0.16);
+}
+
 TEST_F(ScanningSonarTaskTest, EveryPingHasItsOwnPose) {
     start(sector);
     // The vehicle turns to starboard by the angle by which the head looks to port: the beam stays on the wall.

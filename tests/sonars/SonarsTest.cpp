@@ -92,6 +92,58 @@ TEST(SonarsTest, TheDeploymentsOfInitHaveTheFigures) {
     }
 }
 
+TEST(SonarsTest, ADeviceHasTheErrorsOfItsKindAndASourceOfEachFigure) {
+    const auto refusal = [](const std::string& device, const std::string& gives) {
+        const std::string yaml =
+            "a:\n  title: A\n  modes: [{frequency_khz: 700, range_min: 1, range_max: 9}]\n"
+            "  sources: [{document: a sheet, read: 2026-01-02, gives: [frequency_khz, range_min, range_max" +
+            gives + "]}]\n  device: {" + device + "}\n";
+        return test::computeError<types::ConfigError>([&] { readSonars(yaml, "x.yml"); });
+    };
+    EXPECT_EQ(refusal("kind: lens, code_bits: 8, gamma: 0.5", ", kind, code_bits, gamma"), "");
+    EXPECT_THAT(refusal("kind: lens", ""), HasSubstr("give no source of kind"));
+    EXPECT_THAT(refusal("kind: mirror", ", kind"), HasSubstr("is 'mirror'; must be lens, array or head"));
+    EXPECT_THAT(refusal("kind: lens, phase_error_deg: 3", ", kind, phase_error_deg"),
+                HasSubstr("which only an array has"));
+    EXPECT_THAT(refusal("kind: array, step_error_deg: 3", ", kind, step_error_deg"),
+                HasSubstr("only a head has steps"));
+    EXPECT_THAT(refusal("kind: lens, code_bits: 8", ", kind, code_bits"),
+                HasSubstr("needs one of gamma and dynamic_range_db"));
+}
+
+/** A lens has no errors of elements and no cross-talk, an array errors of its elements, a head errors of its steps; all
+ *  but those whose samples are no codes output them. */
+TEST(SonarsTest, TheDeploymentsOfInitAreTheDevices) {
+    for (const SonarFigures* figures : command::starterSonars()) {
+        SCOPED_TRACE(figures->name);
+        const SonarDevice& device = *figures->device;
+        const YAML::Node tasks = starter(*figures)["tasks"], sonar = tasks["sonar"]["properties"];
+        const YAML::Node errors = sonar["imperfections"];
+        if (device.kind == "lens") {
+            EXPECT_FALSE(errors["gain_error_db"] || errors["phase_error_deg"] || errors["crosstalk_db"]);
+            EXPECT_TRUE(errors["beam_gain_error_db"]);
+        } else if (device.kind == "array") {
+            EXPECT_EQ(errors["gain_error_db"].as<double>(), device.gain_error_db);
+            EXPECT_EQ(errors["phase_error_deg"].as<double>(), device.phase_error_deg);
+        } else {
+            EXPECT_EQ(sonar["head"]["error_deg"].as<double>(), device.step_error_deg);
+            EXPECT_FALSE(errors);
+        }
+        if (figures->isGrid()) continue;
+        EXPECT_EQ(sonar["beam_pattern"]["receive"]["azimuth"]["sidelobe_db"].as<double>(), device.sidelobe_db);
+        const YAML::Node receiver = tasks["receiver"]["properties"], noise = tasks["noise"]["properties"];
+        EXPECT_NE(bool(sonar["speckle"]), bool(noise["speckle"])) << "fields have their own speckle";
+        EXPECT_EQ(receiver["tvg"]["log_coefficient"].as<double>(), device.tvg);
+        EXPECT_EQ(bool(receiver["code"]), device.code_bits > 0);
+        if (receiver["code"]) {
+            EXPECT_EQ(receiver["code"]["bits"].as<int>(), device.code_bits);
+        }
+        if (device.correlation_beams > 0) {
+            EXPECT_EQ(noise["filter"]["correlation_beams"].as<double>(), device.correlation_beams);
+        }
+    }
+}
+
 TEST(SonarsTest, TheEmulatorsAndTheirDeploymentsHaveTheFigures) {
     const SonarMode& oculus = device::figures(device::OculusModel::M750d).modes.front();
     const YAML::Node fan = deployed("hil_oculus.yml", "sonar::SonarTask");

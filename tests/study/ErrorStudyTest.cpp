@@ -124,7 +124,9 @@ TEST(ErrorStudyTest, RaysAndImagesAgreeOnFloors) {
             if (scene.name == "rippled_floor") {
                 // Means of a map are as good with few cells as with many. The ray tracer looks it up at points, without
                 // means: two levels are too coarse for ripples.
-                if (method == Method::Footprint) EXPECT_LT(points[1].metrics.rel_l2, 0.1);
+                if (method == Method::Footprint) {
+                    EXPECT_LT(points[1].metrics.rel_l2, 0.1);
+                }
                 continue;
             }
             EXPECT_LT(points[1].metrics.rel_l2, 0.15) << scene.name << " " << getName(method);

@@ -74,8 +74,9 @@ std::string shellWord(const std::string& text) {
 int init(const fs::path& folder, const std::string& sonar) {
     const sonars::SonarFigures& figures = starterSonar(sonar);
     const std::string deployment = starterDeployment(figures);
+    const std::vector<StarterFile> others = starterFiles(figures);
     std::vector<NewFile> files{{folder / (figures.name + ".yml"), deployment}};
-    for (const StarterFile& file : starterFiles(figures)) files.push_back({folder / file.name, file.bytes});
+    for (const StarterFile& file : others) files.push_back({folder / file.name, file.bytes});
     refuseOverwriting(files);
     std::error_code error;
     fs::create_directories(folder, error);

@@ -1,8 +1,11 @@
 #include "components/command/init/Starter.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <initializer_list>
 #include <sstream>
+#include <utility>
 
 #include "components/acoustics/Absorption.hpp"
 #include "components/acoustics/SoundSpeed.hpp"
@@ -36,7 +39,7 @@ INSONIFY_EMBED(insonify_starter_sweep, INSONIFY_STARTER
 
 namespace insonify::command {
 
-using framework::embedded, sonars::SonarFigures, sonars::SonarMode, sonars::SonarStarter;
+using framework::embedded, sonars::SonarDevice, sonars::SonarFigures, sonars::SonarMode, sonars::SonarStarter;
 
 namespace {
 
@@ -45,8 +48,11 @@ const acoustics::Water water{.temperature_celsius = 12, .salinity_psu = 35, .dep
 /** Returns the speed of sound as pings state it [m/s]. */
 double speedOfSound() { return static_cast<double>(static_cast<float>(acoustics::soundSpeed(water))); }
 
-/** Returns the duration of a tone with the maker's range resolution [s]. */
-double toneSeconds(const SonarFigures& sonar) { return 2 * sonar.modes.front().range_resolution / speedOfSound(); }
+/** Returns the duration of the device's tone, or of a tone with the maker's range resolution [s]. */
+double toneSeconds(const SonarFigures& sonar) {
+    if (sonar.device->pulse_us > 0) return 1e-6 * sonar.device->pulse_us;
+    return 2 * sonar.modes.front().range_resolution / speedOfSound();
+}
 
 /** Returns the template for a sonar of its kind. */
 std::string_view templateFor(const SonarFigures& sonar) {
@@ -76,20 +82,87 @@ std::string absorptionBlock(double frequency_khz, double db_per_m) {
     return "{law: francois_garrison}";
 }
 
-/** Returns a chirp or a tone with the maker's resolution: ACOUSTICS.md 5.10. */
+/** Returns a chirp or a tone with the maker's resolution or the device's duration: ACOUSTICS.md 5.10. */
 std::string pulseBlock(const SonarFigures& sonar) {
     constexpr double chirp_width = 0.886;
     const double seconds = toneSeconds(sonar);
     const std::string pulse = sonar.starter->sends_tones
                                   ? fmt::format("duration_us: {:.3g}", 1e6 * seconds)
                                   : fmt::format("bandwidth_khz: {:.3g}", 1e-3 * chirp_width / seconds);
-    return fmt::format("{{{}}}  # resolves {:.3g} mm", pulse, 1e3 * sonar.modes.front().range_resolution);
+    return fmt::format("{{{}}}  # resolves {:.3g} mm", pulse, 1e3 * seconds * speedOfSound() / 2);
+}
+
+/** Returns a block of the keys whose values are not 0: "{gain_error_db: 1, phase_error_deg: 5}"; empty if all are. */
+std::string blockOf(std::initializer_list<std::pair<const char*, double>> values) {
+    std::string block;
+    for (const auto& [key, value] : values)
+        if (value != 0) block += fmt::format("{}{}: {:g}", block.empty() ? "" : ", ", key, value);
+    return block.empty() ? block : "{" + block + "}";
+}
+
+/** Returns a line of a task's properties, or nothing where the block is empty. */
+std::string lineOf(const char* key, const std::string& block, const std::string& comment = "") {
+    return block.empty() ? "" : fmt::format("      {}: {}{}\n", key, block, comment.empty() ? "" : "  # " + comment);
+}
+
+/** Returns the errors of this device's elements and beams. */
+std::string errorBlock(const SonarDevice& device) {
+    return blockOf({{"gain_error_db", device.gain_error_db},
+                    {"phase_error_deg", device.phase_error_deg},
+                    {"beam_gain_error_db", device.beam_gain_error_db}});
+}
+
+/** Returns the speckle of a sonar whose echoes interfere. */
+std::string speckleLine(const SonarDevice& device) {
+    if (device.scatterers == 0) return "";
+    return lineOf("speckle", fmt::format("{{coherent: true, scatterers_per_cell: {:g}}}", device.scatterers),
+                  "echoes interfere: the same view has the same grain");
+}
+
+/** Returns the speckle that the noise task draws, where the sonar's echoes do not interfere, and its filter. */
+std::string noiseLines(const SonarDevice& device) {
+    return lineOf("speckle", device.scatterers > 0 ? "" : "{law: rayleigh}") +
+           lineOf("filter",
+                  blockOf({{"looks", device.looks == 1 ? 0 : device.looks},
+                           {"correlation_bins", device.correlation_bins},
+                           {"correlation_beams", device.correlation_beams}}),
+                  "noise of neighbours is correlated");
+}
+
+/** Returns the codes of the device; nothing where its samples are none. */
+std::string codeLines(const SonarDevice& device) {
+    if (device.code_bits == 0) return "";
+    const std::string law = device.gamma > 0 ? fmt::format("law: sqrt, gamma: {:g}", device.gamma)
+                                             : fmt::format("law: log, dynamic_range_db: {:g}", device.dynamic_range_db);
+    return "      output: code\n" + lineOf("code", fmt::format("{{bits: {}, {}, full_scale_db: {:g}}}",
+                                                               device.code_bits, law, device.full_scale_db));
+}
+
+/** Returns how pictures show the samples. */
+std::string pictureKeys(const SonarFigures& sonar) {
+    if (sonar.device->code_bits > 0) return fmt::format("scale: code, code_bits: {}", sonar.device->code_bits);
+    return fmt::format("dynamic_range_db: 45, reference_db: {:g}", sonar.starter->reference_db);
+}
+
+/** Returns a comment for each document, with what it gives. */
+std::string sourceLines(const SonarFigures& sonar) {
+    std::string lines = "# From where its figures are:\n";
+    for (const sonars::SonarSource& source : sonar.sources)
+        lines += fmt::format("#   {}: {} ({})\n", fmt::join(source.gives, ", "), source.document, source.read);
+    return lines;
 }
 
 /** Returns the bandwidth of the noise behind the matched filter, 1 / duration of the pulse [kHz]. */
 double noiseBandwidth(const SonarFigures& sonar) {
     constexpr double of_chirps = 30;  // no data sheet has their duration
     return sonar.starter->sends_tones ? 1e-3 / toneSeconds(sonar) : of_chirps;
+}
+
+/** Returns the sweep, whose pictures show the samples as the device gives them. */
+std::string starterSweep(const SonarFigures& sonar) {
+    const std::string keys = sonar.device->code_bits > 0 ? pictureKeys(sonar) : "dynamic_range_db: 45";
+    return fmt::format(fmt::runtime(embedded(insonify_starter_sweep_begin, insonify_starter_sweep_end)),
+                       fmt::arg("height", sonar.starter->picture_height), fmt::arg("picture", keys));
 }
 
 }  // namespace
@@ -118,32 +191,37 @@ std::string starterDeployment(const SonarFigures& sonar) {
     const SonarMode& mode = sonar.modes.front();
     const SonarStarter& starter = *sonar.starter;
     const double db_per_m = acoustics::francoisGarrison(mode.frequency_khz, water);
+    const SonarDevice& device = *sonar.device;
     using fmt::arg;
     return aligned(fmt::format(
         fmt::runtime(templateFor(sonar)), arg("name", sonar.name), arg("title", sonar.title),
-        arg("source", starter.note), arg("summary", starter.summary), arg("frequency", mode.frequency_khz),
-        arg("range", fmt::format("{:.10g}", starterRange(sonar))), arg("range_min", mode.range_min),
-        arg("range_max", mode.range_max), arg("bins", starter.bin_count), arg("bin_us", starter.bin_us),
-        arg("width", mode.beam_width_deg), arg("height", mode.beam_height_deg), arg("period", starter.period),
+        arg("source", starter.note), arg("sources", sourceLines(sonar)), arg("summary", starter.summary),
+        arg("frequency", mode.frequency_khz), arg("range", fmt::format("{:.10g}", starterRange(sonar))),
+        arg("range_min", mode.range_min), arg("range_max", mode.range_max), arg("bins", starter.bin_count),
+        arg("bin_us", starter.bin_us), arg("width", mode.beam_width_deg), arg("height", mode.beam_height_deg),
+        arg("sidelobe", device.sidelobe_db), arg("speckle", speckleLine(device)), arg("errors", errorBlock(device)),
+        arg("noise", noiseLines(device)), arg("code", codeLines(device)), arg("picture", pictureKeys(sonar)),
+        arg("tvg", device.tvg), arg("source_level", device.source_level_db),
+        arg("directivity", device.directivity_index_db), arg("period", starter.period),
         arg("columns", starter.columns_per_beam), arg("beams", mode.beam_count), arg("fov", mode.field_of_view_deg),
         arg("spacing", mode.field_of_view_deg / mode.beam_count), arg("pitch", starter.pitch_deg),
         arg("step", mode.step_deg), arg("speed", mode.step_deg / starter.period),
+        arg("step_error", device.step_error_deg),
         arg("turn", mode.step_deg > 0 ? static_cast<int>(90 / mode.step_deg) : 0), arg("rows", mode.row_count),
         arg("rows_fov", mode.rows_field_of_view_deg), arg("absorption", fmt::format("{:.2f}", db_per_m)),
         arg("absorption_block", absorptionBlock(mode.frequency_khz, db_per_m)), arg("pulse", pulseBlock(sonar)),
         arg("noise_note",
             starter.sends_tones ? "" : ", 33 us as a guess: a matched filter passes no more noise of a chirp"),
-        arg("noise_khz", fmt::format("{:.3g}", noiseBandwidth(sonar))), arg("reference", starter.reference_db)));
+        arg("noise_khz", fmt::format("{:.3g}", noiseBandwidth(sonar)))));
 }
 
 std::vector<StarterFile> starterFiles(const SonarFigures& sonar) {
-    std::vector<StarterFile> files{
-        {"scene.glb", embedded(insonify_starter_scene_begin, insonify_starter_scene_end)},
-        {"make_scene.py", embedded(insonify_starter_script_begin, insonify_starter_script_end)},
-        {"pass.csv", embedded(insonify_starter_pass_begin, insonify_starter_pass_end)},
-        {"hover.csv", embedded(insonify_starter_hover_begin, insonify_starter_hover_end)}};
-    if (sonar.isFan())
-        files.push_back({"sweep.yml", embedded(insonify_starter_sweep_begin, insonify_starter_sweep_end)});
+    const auto text = [](const auto& begin, const auto& end) { return std::string(embedded(begin, end)); };
+    std::vector<StarterFile> files{{"scene.glb", text(insonify_starter_scene_begin, insonify_starter_scene_end)},
+                                   {"make_scene.py", text(insonify_starter_script_begin, insonify_starter_script_end)},
+                                   {"pass.csv", text(insonify_starter_pass_begin, insonify_starter_pass_end)},
+                                   {"hover.csv", text(insonify_starter_hover_begin, insonify_starter_hover_end)}};
+    if (sonar.isFan()) files.push_back({"sweep.yml", starterSweep(sonar)});
     return files;
 }
 

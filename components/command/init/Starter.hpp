@@ -1,6 +1,5 @@
 #pragma once
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "components/sonars/Sonars.hpp"
@@ -17,10 +16,10 @@ double starterRange(const sonars::SonarFigures& sonar);
 /** Returns the deployment for a sonar in the starter's scene, with comments. */
 std::string starterDeployment(const sonars::SonarFigures& sonar);
 
-/** A file embedded in the command: scene.glb, make_scene.py, pass.csv, hover.csv or sweep.yml. */
+/** A file next to the deployment: scene.glb, make_scene.py, pass.csv, hover.csv or sweep.yml. */
 struct StarterFile {
     const char* name;
-    std::string_view bytes;
+    std::string bytes;
 };
 /** Returns the files next to a sonar's deployment. A sweep for data sets belongs to fans alone. */
 std::vector<StarterFile> starterFiles(const sonars::SonarFigures& sonar);

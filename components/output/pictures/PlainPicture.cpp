@@ -248,7 +248,28 @@ types::Image PlainPicture::image() const {
     picture.image.resize(cell_of_.size());
     std::ranges::transform(cell_of_, picture.image.begin(),
                            [this](int32_t cell) { return cell < 0 ? uint8_t{0} : levels_[static_cast<size_t>(cell)]; });
+    if (!config_.smooth) return picture;
+    for (size_t pixel = 0; pixel < cell_of_.size(); ++pixel)
+        if (cell_of_[pixel] >= 0)
+            picture.image[pixel] =
+                interpolate(static_cast<uint32_t>(pixel % width_), static_cast<uint32_t>(pixel / width_));
     return picture;
+}
+
+uint8_t PlainPicture::interpolate(uint32_t column, uint32_t row) const {
+    const double ahead = origin_.y - row, port = origin_.x - column;
+    const size_t count = shape_.beams.size();
+    const double last_place = static_cast<double>(shape_.isRing() ? count : count - 1), last_cell = cells_ - 1.0;
+    const double place = std::clamp(shape_.placeAt(std::atan2(port, ahead)).value_or(0), 0.0, last_place);
+    const double cell = std::clamp(std::hypot(ahead, port) / radius_ * cells_ - 0.5, 0.0, last_cell);
+    const auto beam = static_cast<size_t>(place), near = static_cast<size_t>(cell);
+    const double u = place - static_cast<double>(beam), v = cell - static_cast<double>(near);
+    const auto level = [&](size_t at, size_t of_cell) {
+        const size_t of_beam = shape_.beams[std::min(at, static_cast<size_t>(last_place)) % count];
+        return static_cast<double>(levels_[of_beam * cells_ + std::min(of_cell, size_t{cells_} - 1)]);
+    };
+    return static_cast<uint8_t>(std::lround((1 - u) * ((1 - v) * level(beam, near) + v * level(beam, near + 1)) +
+                                            u * ((1 - v) * level(beam + 1, near) + v * level(beam + 1, near + 1))));
 }
 
 namespace {

@@ -20,6 +20,7 @@ struct PlainConfig {
     std::optional<double> reference_db;
     BinScale scale = BinScale::Linear;
     int code_bits = 8;
+    bool smooth = false;
 
     DisplayConfig display() const;
 
@@ -39,8 +40,18 @@ struct PlainConfig {
               self.reference_db);
         visit({"scale", "", "content of the bins: linear intensities, decibel, or code"}, self.scale);
         visit({"code_bits", "1", "bits of a code, if scale is code", 1, 32}, self.code_bits);
+        visit(
+            {"smooth", "",
+             "true: a pixel of a fan is interpolated between the four nearest cells, as by displays of sonars; labels "
+             "are those of the nearest"},
+            self.smooth);
     }
-    void check(types::Diagnostics& diagnostics) const { display().check(diagnostics); }
+    void check(types::Diagnostics& diagnostics) const {
+        display().check(diagnostics);
+        if (smooth && shape != PlainShape::Fan)
+            diagnostics.push_back(
+                {"smooth", "is true, but a pixel of this shape shows one cell; only a fan has others"});
+    }
 };
 
 /** Draws a ping in grey levels, without rings, text or bars, for machine learning. Port is left, far ranges are on top.
@@ -88,6 +99,8 @@ private:
     void buildWaterfall(const types::Sonar& ping);
     void findLevels(const types::Sonar& ping);
     double computeMean(const types::Sonar& ping, uint32_t beam, uint32_t cell) const;
+    /** Returns the level of a pixel of a fan between the four cells about it. */
+    uint8_t interpolate(uint32_t column, uint32_t row) const;
 
     PlainConfig config_;
     FanShape shape_;

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
+
+#include "types/text/Hash.hpp"
 
 namespace insonify::sonar {
 
@@ -17,6 +20,16 @@ void HeadConfig::check(types::Diagnostics& diagnostics) const {
             {"left_deg", fmt::format("is {} deg from right_deg; may be at most 360 deg", sectorDeg())});
     if (step_deg > sectorDeg())
         diagnostics.push_back({"step_deg", fmt::format("is {} deg; the sector has {} deg", step_deg, sectorDeg())});
+}
+
+double standingDeg(const HeadConfig& config, double bearing_deg) {
+    if (config.error_deg == 0) return bearing_deg;
+    constexpr uint64_t seed = 0x68656164;
+    constexpr long long turn = 360'000;  // in thousandths of a degree
+    const auto place = static_cast<uint64_t>((std::llround(1e3 * bearing_deg) % turn + turn) % turn);
+    const double radius = std::sqrt(-2 * std::log(types::unit(types::hashed(seed, place, 0) >> 32)));
+    const double angle = 2 * std::numbers::pi * types::unit(types::hashed(seed, place, 1) >> 32);
+    return bearing_deg + config.error_deg * radius * std::cos(angle);
 }
 
 void ScanningSonarConfig::check(types::Diagnostics& diagnostics) const {

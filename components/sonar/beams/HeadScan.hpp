@@ -14,6 +14,7 @@ struct HeadConfig {
     std::optional<bool> continuous;
     std::optional<double> speed_deg_per_s;
     bool sweeps = false;
+    double error_deg = 0;
 
     double sectorDeg() const { return left_deg - right_deg; }
     /** Returns whether the head turns on and on, rather than back at its limits. */
@@ -29,10 +30,19 @@ struct HeadConfig {
         visit({"speed_deg_per_s", "deg/s", "of the head; absent: unlimited", 0.001, 1e6}, self.speed_deg_per_s);
         visit({"sweeps", "", "turns evenly during each ping, needs motion_in_ping; false: stops at each step"},
               self.sweeps);
+        visit({"error_deg", "deg",
+               "standard deviation of where the head stands about the bearing that it states, the same at each visit; "
+               "0: none",
+               0, 90},
+              self.error_deg);
     }
     void check(types::Diagnostics& diagnostics) const;
     friend bool operator==(const HeadConfig&, const HeadConfig&) = default;
 };
+
+/** Returns the bearing at which a head stands that states `bearing_deg` [deg]: an error of its motor's steps, drawn
+ * from the normal law by the stated bearing. */
+double standingDeg(const HeadConfig& config, double bearing_deg);
 
 /** A sonar of one beam on a turning head. */
 struct ScanningSonarConfig {
