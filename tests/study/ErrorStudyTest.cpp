@@ -121,15 +121,10 @@ TEST(ErrorStudyTest, RaysAndImagesAgreeOnFloors) {
         for (const Method method : {Method::Footprint, Method::Embree}) {
             const auto points = ladder(result, scene.name, method);
             ASSERT_EQ(points.size(), 2u);
-            if (scene.name == "rippled_floor") {
-                // Means of a map are as good with few cells as with many. The ray tracer looks it up at points, without
-                // means: two levels are too coarse for ripples.
-                if (method == Method::Footprint) {
-                    EXPECT_LT(points[1].metrics.rel_l2, 0.1);
-                }
-                continue;
-            }
+            // The ray tracer looks a map up at points, without means: two levels are too coarse for ripples.
+            if (scene.name == "rippled_floor" && method == Method::Embree) continue;
             EXPECT_LT(points[1].metrics.rel_l2, 0.15) << scene.name << " " << getName(method);
+            if (scene.name == "rippled_floor") continue;  // means of a map are as good with few cells as with some more
             EXPECT_LT(points[1].metrics.rel_l2, points[0].metrics.rel_l2) << scene.name << " " << getName(method);
         }
     }

@@ -32,7 +32,7 @@ public:
         const uint32_t same = sameAsNext(*tile.hits);
         for (int i = 0; i < tile_samples;) {
             const bool is_hit = tile.hits->command[i] != TileHits::nothing;
-            const int merged = is_hit && !tile.apparent ? sameFrom(same, i) : 1;
+            const int merged = is_hit && !tile.apparent ? sameFrom(same, i, getMaxMerged(*tile.hits, i)) : 1;
             if (is_hit)
                 addCell(tile, i, merged);
             else if (echoes_from_misses_)
@@ -59,10 +59,18 @@ private:
         return same;
     }
 
+    /** Returns the max number of samples of a cell at sample i [1]: a cell blurs a normal map over its samples. */
+    int getMaxMerged(const TileHits& hits, int i) const {
+        constexpr int max_mapped = 2;
+        const bool is_mapped =
+            mapped_ && scene_.normal_maps.isMapped(static_cast<int>(scene_.commands[hits.command[i]].material));
+        return is_mapped ? std::min(max_mapped, max_merged_) : max_merged_;
+    }
+
     /** Returns the number of samples from i that are a rectangle of one triangle in one beam. */
-    int sameFrom(uint32_t same, int i) const {
+    int sameFrom(uint32_t same, int i, int max_merged) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-        const int maximum = std::min(static_cast<int>(alignment), max_merged_);
+        const int maximum = std::min(static_cast<int>(alignment), max_merged);
         const int run = std::countr_one(same >> i) + 1;
         return static_cast<int>(std::bit_floor(static_cast<uint32_t>(std::min(run, maximum))));
     }
