@@ -24,7 +24,7 @@ THINGS = {  # settings of each thing, all below 1.5 m
     "barrel": {}, "gas_cylinder": {}, "crate": {}, "pallet": {}, "bicycle": {}, "traffic_cone": {}, "shopping_trolley": {}, "lobster_pot": {},
     "amphora": {}, "concrete_block": {}, "stone": {}, "ball": {}, "artillery_shell": {}, "reef_ball": {},
 }
-DEPTH, TILE, LABEL, COLUMNS = 8.0, 100, 13, 10
+DEPTH, TILE, LABEL, COLUMNS = 8.0, 100, 25, 10
 
 
 def run(*words, folder):
@@ -82,7 +82,7 @@ def main():
         with tempfile.TemporaryDirectory() as text:
             folder = Path(text)
             size, far = make_scene(folder, name, THINGS.get(name, {}), options.heading_deg)
-            draw.text((left + 2, top + 1), f"{name}, {2 * max(size, 0.25):.2g} m"[:16], fill=0)
+            draw.multiline_text((left + 2, top + 1), f"{name}\n{2 * max(size, 0.25):.2g} m", fill=0, spacing=1)
             for row, sonar in enumerate(SONARS):
                 sheet.paste(Image.fromarray(record(folder, sonar, size, far)), (left, top + LABEL + row * TILE))
     for x in range(TILE, sheet.width, TILE):
