@@ -65,7 +65,7 @@ std::vector<std::string> inCircles(const Graph& graph) {
 // raise them, and states which. Last: fixes of satellites from DDS, links of joints in Gazebo, walls of `backscatter`,
 // shadows as what an object hides, pictures for `fit`, drawn numbers in the running sonar, parts of packages and of
 // --version, trials of graphics cards, errors with and without gain.
-constexpr size_t max_units = 477, max_small_files = 71, max_folder = 25, max_lines = 138'780;
+constexpr size_t max_units = 477, max_small_files = 71, max_folder = 25, max_lines = 138'781;
 
 /** Number of lines of the product, without pages. */
 size_t productLines() {

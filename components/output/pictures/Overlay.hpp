@@ -12,7 +12,7 @@ namespace insonify::output {
 /** Lines and text on top of every picture. They are drawn once and then blended only where they cover anything. */
 class Overlay {
 public:
-    explicit Overlay(cv::Size size) : cover_(size, CV_8U, cv::Scalar(0)) {}
+    explicit Overlay(cv::Size size) : size_(size), cover_(size, CV_8U, cv::Scalar(0)) {}
 
     enum class Anchor { Left, Centre, Right };
     void line(cv::Point2d from, cv::Point2d to, int opacity);
@@ -25,13 +25,14 @@ public:
     /** Must be called after all drawing. */
     void finish();
     void blend(cv::Mat& picture) const;
-    cv::Size size() const { return cover_.size(); }
+    cv::Size size() const { return size_; }
 
 private:
     struct Touch {
         int row, column;
         uint8_t opacity;
     };
+    cv::Size size_;
     cv::Mat cover_;
     cv::Rect taken_;
     std::vector<cv::Rect> plates_;
