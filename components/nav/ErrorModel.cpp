@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "types/text/Hash.hpp"
 
@@ -20,11 +19,7 @@ double lastStep(const AxisErrors& errors) {
 
 }  // namespace
 
-double normal(uint64_t seed, uint64_t channel, types::Time time) {
-    const uint64_t bits = getBits(seed, channel, time);
-    const double radius = std::sqrt(-2 * std::log(types::unit(bits >> 32)));
-    return radius * std::cos(2 * std::numbers::pi * types::unit(bits & 0xffffffffu));
-}
+double normal(uint64_t seed, uint64_t channel, types::Time time) { return types::normal(getBits(seed, channel, time)); }
 
 double uniform(uint64_t seed, uint64_t channel, types::Time time) {
     return types::unit(getBits(seed, channel, time) >> 32);

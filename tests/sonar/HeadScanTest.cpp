@@ -79,14 +79,14 @@ TEST(HeadScanTest, AStepTakesTimeAtTheHeadsSpeed) {
 
 TEST(HeadScanTest, AHeadStandsOffItsBearingsByTheDeviationAndAgainByTheSameAtEachVisit) {
     HeadConfig config;
-    EXPECT_EQ(standingDeg(config, 12.6), 12.6);
+    EXPECT_EQ(findStandingDeg(config, 12.6), 12.6);
     config.error_deg = 0.4;
     double sum = 0, squares = 0;
     constexpr int count = 4000;
     for (int i = 0; i < count; ++i) {
-        const double bearing = -180 + 0.09 * i, off = standingDeg(config, bearing) - bearing;
+        const double bearing = -180 + 0.09 * i, off = findStandingDeg(config, bearing) - bearing;
         sum += off, squares += off * off;
-        EXPECT_NEAR(standingDeg(config, bearing + 360) - bearing - 360, off, 1e-9);
+        EXPECT_NEAR(findStandingDeg(config, bearing + 360) - bearing - 360, off, 1e-9);
     }
     EXPECT_NEAR(sum / count, 0, 4 * 0.4 / std::sqrt(count));
     EXPECT_NEAR(std::sqrt(squares / count), 0.4, 0.02);

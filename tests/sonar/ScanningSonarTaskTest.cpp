@@ -57,7 +57,7 @@ TEST_F(ScanningSonarTaskTest, AHeadWithErrorsStatesTheBearingOfItsStepsAndLooksE
     const auto ping = pingAt(1);
     ASSERT_TRUE(ping) << task_.lastError();
     EXPECT_NEAR(ping->bearings[0].deg(), 40, 1e-9);
-    const double there = std::abs(standingDeg(wrong, 40));
+    const double there = std::abs(findStandingDeg(wrong, 40));
     ASSERT_GT(std::abs(there - 40), 1) << "else this test shows nothing";
     EXPECT_NEAR(firstEcho(*ping, 0), 5 / std::cos(types::radians(std::max(there - 1.5, 0.0))), 0.16);
 }

@@ -1,5 +1,7 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string_view>
 
 namespace insonify::types {
@@ -27,5 +29,10 @@ inline uint64_t hashedName(std::string_view name, uint64_t number = 0) {
 
 /** Returns 32 random bits as a number in (0, 1), ends excluded. */
 inline double unit(uint64_t bits32) { return (static_cast<double>(bits32) + 0.5) * 0x1p-32; }
+
+/** Returns 64 random bits as a variate of N(0, 1) (Box and Muller 1958). */
+inline double normal(uint64_t bits) {
+    return std::sqrt(-2 * std::log(unit(bits >> 32))) * std::cos(2 * std::numbers::pi * unit(bits & 0xffffffff));
+}
 
 }  // namespace insonify::types

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "types/text/Hash.hpp"
 
@@ -22,14 +21,12 @@ void HeadConfig::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"step_deg", fmt::format("is {} deg; the sector has {} deg", step_deg, sectorDeg())});
 }
 
-double standingDeg(const HeadConfig& config, double bearing_deg) {
+double findStandingDeg(const HeadConfig& config, double bearing_deg) {
     if (config.error_deg == 0) return bearing_deg;
     constexpr uint64_t seed = 0x68656164;
     constexpr long long turn = 360'000;  // in thousandths of a degree
     const auto place = static_cast<uint64_t>((std::llround(1e3 * bearing_deg) % turn + turn) % turn);
-    const double radius = std::sqrt(-2 * std::log(types::unit(types::hashed(seed, place, 0) >> 32)));
-    const double angle = 2 * std::numbers::pi * types::unit(types::hashed(seed, place, 1) >> 32);
-    return bearing_deg + config.error_deg * radius * std::cos(angle);
+    return bearing_deg + config.error_deg * types::normal(types::hashed(seed, place, 0));
 }
 
 void ScanningSonarConfig::check(types::Diagnostics& diagnostics) const {

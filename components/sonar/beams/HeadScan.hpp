@@ -42,7 +42,7 @@ struct HeadConfig {
 
 /** Returns the bearing at which a head stands that states `bearing_deg` [deg]: an error of its motor's steps, drawn
  * from the normal law by the stated bearing. */
-double standingDeg(const HeadConfig& config, double bearing_deg);
+double findStandingDeg(const HeadConfig& config, double bearing_deg);
 
 /** A sonar of one beam on a turning head. */
 struct ScanningSonarConfig {

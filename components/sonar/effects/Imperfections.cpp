@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "components/sonar/plan/Effect.hpp"
 #include "types/Check.hpp"
@@ -52,10 +51,8 @@ private:
         const double bins_per_us = 1e-6 / (2 * ping.binSeconds());  // of the receiver's clock: two-way
         for (size_t k = 0; k < ping.bin_count; ++k) {
             const uint64_t word = types::hashed(own_.seed, static_cast<uint64_t>(ping.time.microseconds), k);
-            const double normal = std::sqrt(-2 * std::log(types::unit(word >> 32))) *
-                                  std::cos(2 * std::numbers::pi * types::unit(word & 0xffffffff));
-            const double at =
-                std::clamp(static_cast<double>(k) + normal * own_.clock_jitter_us * bins_per_us, 0.0, count - 1);
+            const double late = types::normal(word) * own_.clock_jitter_us * bins_per_us;
+            const double at = std::clamp(static_cast<double>(k) + late, 0.0, count - 1);
             const size_t low = std::min(static_cast<size_t>(at), size_t{ping.bin_count} - (ping.bin_count > 1 ? 2 : 1));
             const size_t high = std::min(low + 1, size_t{ping.bin_count} - 1);
             const auto part = static_cast<float>(at - static_cast<double>(low));

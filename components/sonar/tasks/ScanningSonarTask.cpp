@@ -44,7 +44,7 @@ const char* ScanningSonarTask::setLook(types::Snapshot& scene) {
     if (last_ && asked_.isUnknown()) checkStep((scene.time - *last_).seconds());
     const double seconds = last_ ? (scene.time - *last_).seconds() : 0;
     last_ = scene.time;
-    const Look look{scene.sonar.orientation, types::radians(standingDeg(config->head, bearingDeg()))};
+    const Look look{scene.sonar.orientation, types::radians(findStandingDeg(config->head, bearingDeg()))};
     scene.sonar.orientation *= glm::angleAxis(look.bearing, glm::dvec3(0, 0, 1));
     if (config->sonar.motion_in_ping) turn(scene.sonar, look, seconds);
     before_ = look;
