@@ -208,24 +208,20 @@ Indices welded(const types::Mesh& mesh) {
 
 /** Returns whether every edge occurs once in either direction. `vertices`: their number. */
 bool isWatertight(const Indices& indices, size_t vertices) {
-    const auto forEachEdge = [&indices](const auto& act) {
-        for (size_t i = 0; i < indices.size(); ++i) act(indices[i], indices[i % 3 == 2 ? i - 2 : i + 1]);
+    const auto forEachEdge = [&indices](const auto& add) {
+        for (size_t i = 0; i < indices.size(); ++i) {
+            const uint32_t from = indices[i], to = indices[i % 3 == 2 ? i - 2 : i + 1];
+            // the higher vertex, and the direction
+            add(std::min(from, to), uint64_t{std::max(from, to)} << 1 | (from < to ? 1u : 0u));
+        }
     };
-    std::vector<uint32_t> end(vertices);  // of the edges whose lower vertex it is, after they are placed
-    forEachEdge([&](uint32_t from, uint32_t to) { ++end[std::min(from, to)]; });
-    std::exclusive_scan(end.begin(), end.end(), end.begin(), 0u);
-    std::vector<uint64_t> others(indices.size());  // the higher vertex of an edge, and its direction
-    forEachEdge([&](uint32_t from, uint32_t to) {
-        others[end[std::min(from, to)]++] = uint64_t{std::max(from, to)} << 1 | (from < to ? 1u : 0u);
+    bool is_watertight = true;
+    types::sortByVertex<uint64_t>(vertices, forEachEdge, [&](std::span<const uint64_t> edges) {
+        is_watertight = is_watertight && edges.size() % 2 == 0;
+        for (size_t i = 0; is_watertight && i < edges.size(); i += 2)
+            is_watertight = edges[i] % 2 == 0 && edges[i + 1] == edges[i] + 1;
     });
-    for (size_t vertex = 0, begin = 0; vertex < vertices; begin = end[vertex++]) {
-        const std::span edges = std::span(others).subspan(begin, end[vertex] - begin);
-        std::ranges::sort(edges);
-        if (edges.size() % 2 != 0) return false;
-        for (size_t i = 0; i < edges.size(); i += 2)
-            if (edges[i] % 2 != 0 || edges[i + 1] != edges[i] + 1) return false;
-    }
-    return true;
+    return is_watertight;
 }
 
 /** Returns the volume of each connected piece, positive if it is wound outward; 0 for vertices that represent no piece

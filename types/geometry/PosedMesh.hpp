@@ -1,6 +1,8 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -16,6 +18,24 @@ namespace insonify::types {
  *  reaches this far from its first vertex, so chains of close vertices do not collapse.
  *  @param positions  finite [m] */
 std::vector<uint32_t> weldedPlaces(const std::vector<glm::vec3>& positions, const std::vector<uint32_t>& indices);
+
+/** Sorts items first by a vertex of a mesh, then by themselves, and calls act(items) for those of each vertex. Takes
+ *  linear time where few items have one vertex. `forEach(add)` calls add(vertex, item) for each item; it is called
+ * twice. */
+template <class Item, class ForEach, class Act>
+std::vector<Item> sortByVertex(size_t vertices, const ForEach& forEach, const Act& act) {
+    std::vector<uint32_t> end(vertices);  // of the items of a vertex, once all are placed
+    forEach([&](uint32_t vertex, const Item&) { ++end[vertex]; });
+    std::vector<Item> items(std::accumulate(end.begin(), end.end(), size_t{0}));
+    std::exclusive_scan(end.begin(), end.end(), end.begin(), 0u);
+    forEach([&](uint32_t vertex, const Item& item) { items[end[vertex]++] = item; });
+    for (size_t vertex = 0, begin = 0; vertex < vertices; begin = end[vertex++]) {
+        const std::span own = std::span(items).subspan(begin, end[vertex] - begin);
+        std::ranges::sort(own);
+        act(own);
+    }
+    return items;
+}
 
 /** The pose of one mesh: a pose per joint of its skin, a weight per morph target. */
 struct MeshPose {

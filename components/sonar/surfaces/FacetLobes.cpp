@@ -426,29 +426,24 @@ CurveRecord curve(const FacetRecord& facet, const glm::dvec3& normal, const glm:
 
 /** Returns for each facet the first facet with the same corners in any order; empty: all differ. `first`: of weld(). */
 std::vector<uint32_t> findFirsts(const types::Mesh& mesh, const std::vector<uint32_t>& first) {
-    std::vector<uint32_t> firsts(mesh.indices.size() / 3), end(first.size());
-    const auto forEachFacet = [&](const auto& act) {
+    using Facet = std::array<uint32_t, 3>;  // the two higher corners, and its number
+    std::vector<uint32_t> firsts(mesh.indices.size() / 3);
+    const auto forEachFacet = [&](const auto& add) {
         for (uint32_t t = 0; t < firsts.size(); ++t) {
             const uint32_t* const index = &mesh.indices[3 * size_t{t}];
             std::array corners{first[index[0]], first[index[1]], first[index[2]]};
             std::ranges::sort(corners);
-            act(corners[0], std::array{corners[1], corners[2], t});
+            add(corners[0], Facet{corners[1], corners[2], t});
         }
     };
-    forEachFacet([&](uint32_t lowest, const auto&) { ++end[lowest]; });
-    std::exclusive_scan(end.begin(), end.end(), end.begin(), 0u);
-    std::vector<std::array<uint32_t, 3>> facets(firsts.size());  // the other corners, and the facet
-    forEachFacet([&](uint32_t lowest, const auto& rest) { facets[end[lowest]++] = rest; });
     bool all_differ = true;
-    for (size_t vertex = 0, begin = 0; vertex < end.size(); begin = end[vertex++]) {
-        const std::span own = std::span(facets).subspan(begin, end[vertex] - begin);
-        std::ranges::sort(own);
+    types::sortByVertex<Facet>(first.size(), forEachFacet, [&](std::span<const Facet> own) {
         for (size_t k = 0; k < own.size(); ++k) {
             const bool same = k > 0 && own[k][0] == own[k - 1][0] && own[k][1] == own[k - 1][1];
             firsts[own[k][2]] = same ? firsts[own[k - 1][2]] : own[k][2];
             all_differ = all_differ && !same;
         }
-    }
+    });
     if (all_differ) firsts.clear();
     return firsts;
 }

@@ -297,25 +297,17 @@ std::vector<uint32_t> weld(const types::Mesh& mesh) { return types::weldedPlaces
 std::vector<Edge> findEdges(const types::Mesh& mesh) { return findEdges(mesh, weld(mesh)); }
 
 std::vector<Edge> findEdges(const types::Mesh& mesh, const std::vector<uint32_t>& first) {
-    const auto forEachEdge = [&](const auto& act) {
+    const auto forEachEdge = [&](const auto& add) {
         for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
             const std::array corners{first[mesh.indices[i]], first[mesh.indices[i + 1]], first[mesh.indices[i + 2]]};
             if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
             for (size_t k = 0; k < 3; ++k) {
                 const uint32_t a = corners[k], b = corners[(k + 1) % 3];
-                act(Edge{std::min(a, b), std::max(a, b), static_cast<uint32_t>(i / 3)});
+                add(std::min(a, b), Edge{std::min(a, b), std::max(a, b), static_cast<uint32_t>(i / 3)});
             }
         }
     };
-    std::vector<uint32_t> end(first.size());  // of the edges whose lower vertex it is, after they are placed
-    forEachEdge([&](const Edge& edge) { ++end[edge.low]; });
-    const size_t count = std::accumulate(end.begin(), end.end(), size_t{0});
-    std::exclusive_scan(end.begin(), end.end(), end.begin(), 0u);
-    std::vector<Edge> edges(count);
-    forEachEdge([&](const Edge& edge) { edges[end[edge.low]++] = edge; });
-    for (size_t vertex = 0, begin = 0; vertex < end.size(); begin = end[vertex++])
-        std::ranges::sort(std::span(edges).subspan(begin, end[vertex] - begin));
-    return edges;
+    return types::sortByVertex<Edge>(first.size(), forEachEdge, [](const auto&) {});
 }
 
 StraightEdges straightEdges(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double min_turn) {
