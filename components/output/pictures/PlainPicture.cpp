@@ -131,14 +131,17 @@ void PlainPicture::buildFan() {
     height_ = static_cast<uint32_t>(std::ceil(radius_ * (1 + depth)));
     origin_ = {width_ / 2.0 - 0.5, radius_ - 0.5};
     cell_of_.assign(size_t{width_} * height_, -1);
+    places_.resize(config_.smooth ? cell_of_.size() : 0);
     for (uint32_t y = 0; y < height_; ++y)
         for (uint32_t x = 0; x < width_; ++x) {
             const double ahead = origin_.y - y, port = origin_.x - x;
             const double bearing = std::atan2(port, ahead);
-            const auto cell = static_cast<uint32_t>(std::hypot(ahead, port) / radius_ * cells_);
+            const double place = std::hypot(ahead, port) / radius_ * cells_;
+            const auto cell = static_cast<uint32_t>(place);
+            const size_t pixel = size_t{y} * width_ + x;
             if (cell >= cells_) continue;
-            if (const auto beam = shape_.beamAt(bearing))
-                cell_of_[size_t{y} * width_ + x] = static_cast<int32_t>(*beam * cells_ + cell);
+            if (const auto beam = shape_.beamAt(bearing)) cell_of_[pixel] = static_cast<int32_t>(*beam * cells_ + cell);
+            if (config_.smooth) places_[pixel] = {shape_.placeAt(bearing).value_or(0), place};
         }
 }
 
@@ -250,22 +253,18 @@ types::Image PlainPicture::image() const {
                            [this](int32_t cell) { return cell < 0 ? uint8_t{0} : levels_[static_cast<size_t>(cell)]; });
     if (!config_.smooth) return picture;
     for (size_t pixel = 0; pixel < cell_of_.size(); ++pixel)
-        if (cell_of_[pixel] >= 0)
-            picture.image[pixel] =
-                interpolate(static_cast<uint32_t>(pixel % width_), static_cast<uint32_t>(pixel / width_));
+        if (cell_of_[pixel] >= 0) picture.image[pixel] = interpolate(places_[pixel]);
     return picture;
 }
 
-uint8_t PlainPicture::interpolate(uint32_t column, uint32_t row) const {
-    const double ahead = origin_.y - row, port = origin_.x - column;
+uint8_t PlainPicture::interpolate(const cv::Point2d& at) const {
     const size_t count = shape_.beams.size();
     const double last_place = static_cast<double>(shape_.isRing() ? count : count - 1), last_cell = cells_ - 1.0;
-    const double place = std::clamp(shape_.placeAt(std::atan2(port, ahead)).value_or(0), 0.0, last_place);
-    const double cell = std::clamp(std::hypot(ahead, port) / radius_ * cells_ - 0.5, 0.0, last_cell);
+    const double place = std::clamp(at.x, 0.0, last_place), cell = std::clamp(at.y - 0.5, 0.0, last_cell);
     const auto beam = static_cast<size_t>(place), near = static_cast<size_t>(cell);
     const double u = place - static_cast<double>(beam), v = cell - static_cast<double>(near);
-    const auto level = [&](size_t at, size_t of_cell) {
-        const size_t of_beam = shape_.beams[std::min(at, static_cast<size_t>(last_place)) % count];
+    const auto level = [&](size_t number, size_t of_cell) {
+        const size_t of_beam = shape_.beams[std::min(number, static_cast<size_t>(last_place)) % count];
         return static_cast<double>(levels_[of_beam * cells_ + std::min(of_cell, size_t{cells_} - 1)]);
     };
     return static_cast<uint8_t>(std::lround((1 - u) * ((1 - v) * level(beam, near) + v * level(beam, near + 1)) +

@@ -99,8 +99,8 @@ private:
     void buildWaterfall(const types::Sonar& ping);
     void findLevels(const types::Sonar& ping);
     double computeMean(const types::Sonar& ping, uint32_t beam, uint32_t cell) const;
-    /** Returns the level of a pixel of a fan between the four cells about it. */
-    uint8_t interpolate(uint32_t column, uint32_t row) const;
+    /** Returns the level between the four cells about a place: x by BeamArc::placeAt(), y in cells from range 0. */
+    uint8_t interpolate(const cv::Point2d& at) const;
 
     PlainConfig config_;
     FanShape shape_;
@@ -114,6 +114,7 @@ private:
     double reference_db_ = 0;
     types::Time time_;
     std::vector<int32_t> cell_of_;
+    std::vector<cv::Point2d> places_;  ///< For interpolate(), of each pixel; empty unless pictures are smooth.
     std::vector<uint8_t> levels_;
 };
 
