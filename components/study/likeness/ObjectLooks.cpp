@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 namespace insonify::study {
@@ -15,7 +16,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double to_deviation = 1.4826;     // of a normal law, from the median distance
 constexpr double background_share = 0.5;    // of a deviation, between the mean of a window and the background
 constexpr double highlight_deviations = 2;  // also beyond which a level counts for no skew
-constexpr size_t reach_px = 4;              // of a window, 9 x 9 pixels
+constexpr int window_px = 9;
 constexpr size_t enough_crops = 10, enough_pixels = 100;
 
 double quantile(std::vector<double> values, double share) {
@@ -40,17 +41,14 @@ struct Moments {
 
 /** Returns the mean of the window about each pixel, as far as it is within the crop. */
 std::vector<double> computeMeans(const ObjectCrop& crop) {
-    std::vector<double> means;
-    for (size_t row = 0; row < crop.height; ++row)
-        for (size_t column = 0; column < crop.width; ++column) {
-            Moments moments;
-            for (size_t y = row - std::min(row, reach_px); y <= std::min(row + reach_px, crop.height - 1); ++y)
-                for (size_t x = column - std::min(column, reach_px); x <= std::min(column + reach_px, crop.width - 1);
-                     ++x)
-                    moments.add(crop.at(x, y));
-            means.push_back(moments.mean());
-        }
-    return means;
+    const cv::Mat levels = cv::Mat(crop.levels).reshape(1, static_cast<int>(crop.height));
+    const auto sum = [](const cv::Mat& of) {
+        cv::Mat result;
+        cv::boxFilter(of, result, CV_64F, {window_px, window_px}, {-1, -1}, false, cv::BORDER_CONSTANT);
+        return result;
+    };
+    const cv::Mat means = sum(levels) / sum(cv::Mat::ones(levels.size(), CV_8U));
+    return {means.begin<double>(), means.end<double>()};
 }
 
 /** A crop with its background. */
@@ -95,7 +93,8 @@ public:
         return spread > 0 ? (products / one.count - one.mean() * other.mean()) / spread : none;
     }
 
-    /** Returns the mean length of runs of highlights in the lines of `count` pixels that `at(line, place)` names. */
+    /** Returns the mean length of runs of highlights in the lines of `count` pixels for which `isHigh(line, place)`
+     * holds. */
     template <class At>
     static double meanRun(size_t lines, size_t count, const At& isHigh) {
         double pixels = 0, runs = 0;

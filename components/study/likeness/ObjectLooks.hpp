@@ -26,8 +26,9 @@ constexpr size_t min_side = 24;   ///< Smaller crops have too few pixels for the
  *  pixels from it, the level of the background the median of all these means. Background are the pixels whose mean is
  *  within half a deviation of that level, highlights those more than two deviations above it. */
 struct ObjectLooks {
-    std::array<double, 3> across{};        ///< Correlation of background levels 1, 2, 3 px apart in a row [1].
-    std::array<double, 2> along{};         ///< The same 1, 2 px apart in a column, each row about its mean [1].
+    std::array<double, 3>
+        across{};  ///< Of background levels 1, 2, 3 px apart in a row, about their linear trend over rows [1].
+    std::array<double, 2> along{};         ///< The same 1, 2 px apart in a column [1].
     double skew = 0;                       ///< Third standardised moment of the background's levels [1].
     double run_along = 0, run_across = 0;  ///< Mean length of runs of highlights in columns, in rows [px].
     double step = 0;      ///< Mean difference of neighbours in a column over the crop's standard deviation [1].
