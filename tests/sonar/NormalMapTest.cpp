@@ -44,16 +44,18 @@ types::GeometryPtr bumpyWall(const glm::dvec3& size, bool by_object) {
     return geometry;
 }
 
-/** Relief that is much finer than the samples of a beam on a wall: angles of normals to the side [rad]. */
+/** Relief that is much finer than the samples of a beam on a wall: normals lean by angles [rad], in one direction of
+ * the map, counted from its columns' to its rows'. */
 struct FineRelief {
     static constexpr int size = 512;
     std::vector<glm::dvec3> normals;  ///< As the map's bytes have them.
     types::NormalMap map{size, size, {}, true, true};
 
-    explicit FineRelief(const std::function<double()>& lean) {
+    FineRelief(double direction, const std::function<double()>& lean) {
         for (int i = 0; i < size * size; ++i) {
             const double angle = lean();
-            for (const double axis : {std::sin(angle), 0.0, std::cos(angle)}) {
+            for (const double axis :
+                 {std::sin(angle) * std::cos(direction), std::sin(angle) * std::sin(direction), std::cos(angle)}) {
                 const auto byte = static_cast<uint8_t>(std::lround((axis + 1) / 2 * 255));
                 map.rgb.push_back(byte);
             }
@@ -61,21 +63,32 @@ struct FineRelief {
             normals.push_back(glm::normalize(glm::dvec3(bytes[0], bytes[1], bytes[2]) / 127.5 - 1.0));
         }
     }
-    /** Returns the mean of the cosines of incidence, of which those of normals that face away are 0. */
-    double computeMeanFacing(double incidence) const {
+    /** Returns the mean of the cosines of incidence, of which those of normals that face away are 0. `ahead`: what the
+     *  map's columns and rows are along the direction to the sonar, projected on the wall. */
+    double computeMeanFacing(double incidence, const glm::dvec2& ahead) const {
         double sum = 0;
-        for (const glm::dvec3& n : normals) sum += std::max(std::cos(incidence) * n.z + std::sin(incidence) * n.x, 0.0);
+        for (const glm::dvec3& n : normals)
+            sum += std::max(std::cos(incidence) * n.z + std::sin(incidence) * glm::dot(ahead, glm::dvec2(n)), 0.0);
         return sum / static_cast<double>(normals.size());
     }
 };
 
+/** How a map lies on a wall: its columns' direction from port [rad], and whether its rows are to the left of it. */
+struct Laid {
+    double turned;
+    bool is_left;
+};
+
 /** Returns the echo of a wall 20 m ahead, turned by an angle, over that of the wall without relief; and the same by the
  *  means of its normals. */
-std::pair<double, double> compareRelief(const FineRelief& relief, double turned) {
+std::pair<double, double> compareRelief(const FineRelief& relief, double turned, const Laid& laid) {
     SonarConfig config = test::getSonar({.width_deg = 2, .height_deg = 1, .bins = 300, .rows = 8, .columns = 1});
     config.visibility = Visibility::Cpu;
     const auto ping = [&](const types::NormalMap& map) {
-        auto geometry = std::make_shared<types::Geometry>(*test::makeScene({test::mappedWall()}));
+        types::Mesh wall = test::mappedWall();
+        const glm::vec2 columns(std::cos(laid.turned), std::sin(laid.turned));
+        wall.tangents.assign(4, {0, columns, laid.is_left ? 1 : -1});
+        auto geometry = std::make_shared<types::Geometry>(*test::makeScene({wall}));
         geometry->objects[0].world_from_object = glm::scale(
             glm::rotate(glm::translate(glm::dmat4(1), {20, 0, 0}), turned, glm::dvec3(0, 0, 1)), glm::dvec3(1, 5, 5));
         geometry->normal_maps = {map};
@@ -83,12 +96,13 @@ std::pair<double, double> compareRelief(const FineRelief& relief, double turned)
         return test::makePing(config, test::makeSnapshot(geometry)).bins;
     };
     const std::vector<float> bent = ping(relief.map), plain = ping(test::flatMap());
+    const glm::dvec2 ahead(std::cos(laid.turned), std::sin(laid.turned) * (laid.is_left ? 1 : -1));
     double echo = 0, expected = 0, all = 0;
     for (size_t k = 0; k < plain.size(); ++k) {
         if (plain[k] == 0) continue;
         const double cosine = std::min(20 * std::cos(turned) / (0.1 * (static_cast<double>(k) + 0.5)), 1.0);
         echo += double{bent[k]}, all += double{plain[k]};
-        expected += double{plain[k]} * relief.computeMeanFacing(std::acos(cosine)) / cosine;
+        expected += double{plain[k]} * relief.computeMeanFacing(std::acos(cosine), ahead) / cosine;
     }
     return {echo / all, expected / all};
 }
@@ -105,12 +119,12 @@ TEST(NormalMapTest, ReliefFinerThanASampleEchoesByTheMeanOfTheNormalsThatFaceThe
         const double steepest = between(0.05, 0.8), turned = types::radians(between(0, 83));
         std::normal_distribution<double> bell(0, steepest / 2);
         int texel = 0;
-        const FineRelief relief([&] {
+        const FineRelief relief(between(0, 2 * std::numbers::pi), [&] {
             if (trial % 3 == 0) return std::clamp(bell(random), -1.4, 1.4);
             if (trial % 3 == 1) return between(-steepest, steepest);
             return steepest * std::sin(texel++ * (2 * std::numbers::pi / 16));  // ripples of 16 texels
         });
-        const auto [echo, expected] = compareRelief(relief, turned);
+        const auto [echo, expected] = compareRelief(relief, turned, {between(0, 2 * std::numbers::pi), trial % 2 == 0});
         EXPECT_NEAR(echo, expected, 0.06 * expected) << trial << ": " << steepest << " rad at " << turned;
         most = std::max(most, expected);
     }

@@ -97,8 +97,7 @@ NormalMapping::Map NormalMapping::makeMap(std::shared_ptr<const types::NormalMap
     Map result{std::move(source), map.repeat_u, map.repeat_v, {}};
     Level level{map.width, map.height, {}, {}};
     for (size_t i = 0; i + 2 < map.rgb.size(); i += 3) appendScaled(&map.rgb[i], scale, level.texels);
-    std::vector<glm::vec3>
-        squares;  // means of x^2, y^2 and xy in the texels of a level; the finest has those of its texels
+    std::vector<glm::vec3> squares;  // means of x^2, y^2 and xy in the texels of the last level; empty: the finest
     while (level.width > 1 || level.height > 1) {
         const Level& finer = result.levels.emplace_back(std::move(level));
         level = {std::max(1, finer.width / 2), std::max(1, finer.height / 2), {}, {}};
@@ -130,7 +129,7 @@ NormalMapping::Map NormalMapping::makeMap(std::shared_ptr<const types::NormalMap
 }
 
 struct NormalMapping::Frames {
-    alignas(64) float normal_x[max_samples], normal_y[max_samples], normal_z[max_samples];      // mesh axes, then unit
+    alignas(64) float normal_x[max_samples], normal_y[max_samples], normal_z[max_samples];      // mesh axes
     float along_x[max_samples], along_y[max_samples], along_z[max_samples], hand[max_samples];  // tangents
     float u[max_samples], v[max_samples], density[max_samples];
     float ray_along[max_samples], ray_across[max_samples], ray_up[max_samples];  // the ray, seen from the side it hits
@@ -191,7 +190,7 @@ void NormalMapping::place(const ObjectRecord& placed, float texels, const Sample
 
 void NormalMapping::lookUp(const Map& map, int count, const Frames& frames, double* cosine) {
     const uint8_t *texels[max_samples], *squares[max_samples];
-    alignas(64) float spreads[max_samples];  // 1; 0: no spread
+    alignas(64) float spreads[max_samples];  // 0 in the finest level, whose texels do not vary; else 1
     alignas(64) float width[max_samples], height[max_samples], share_u[max_samples], share_v[max_samples];
     alignas(64) int at[4][max_samples];
     alignas(64) uint32_t rgb[4][max_samples], roots[4][max_samples];
