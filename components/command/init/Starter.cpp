@@ -93,7 +93,7 @@ std::string pulseBlock(const SonarFigures& sonar) {
 }
 
 /** Returns a block of the keys whose values are not 0: "{gain_error_db: 1, phase_error_deg: 5}"; empty if all are. */
-std::string blockOf(std::initializer_list<std::pair<const char*, double>> values) {
+std::string writeBlock(std::initializer_list<std::pair<const char*, double>> values) {
     std::string block;
     for (const auto& [key, value] : values)
         if (value != 0) block += fmt::format("{}{}: {:g}", block.empty() ? "" : ", ", key, value);
@@ -101,32 +101,32 @@ std::string blockOf(std::initializer_list<std::pair<const char*, double>> values
 }
 
 /** Returns a line of a task's properties, or nothing where the block is empty. */
-std::string lineOf(const char* key, const std::string& block, const std::string& comment = "") {
+std::string writeLine(const char* key, const std::string& block, const std::string& comment = "") {
     return block.empty() ? "" : fmt::format("      {}: {}{}\n", key, block, comment.empty() ? "" : "  # " + comment);
 }
 
 /** Returns the errors of this device's elements and beams. */
 std::string errorBlock(const SonarDevice& device) {
-    return blockOf({{"gain_error_db", device.gain_error_db},
-                    {"phase_error_deg", device.phase_error_deg},
-                    {"beam_gain_error_db", device.beam_gain_error_db}});
+    return writeBlock({{"gain_error_db", device.gain_error_db},
+                       {"phase_error_deg", device.phase_error_deg},
+                       {"beam_gain_error_db", device.beam_gain_error_db}});
 }
 
 /** Returns the speckle of a sonar whose echoes interfere. */
 std::string speckleLine(const SonarDevice& device) {
     if (device.scatterers == 0) return "";
-    return lineOf("speckle", fmt::format("{{coherent: true, scatterers_per_cell: {:g}}}", device.scatterers),
-                  "echoes interfere: the same view has the same grain");
+    return writeLine("speckle", fmt::format("{{coherent: true, scatterers_per_cell: {:g}}}", device.scatterers),
+                     "echoes interfere: the same view has the same grain");
 }
 
 /** Returns the speckle that the noise task draws, where the sonar's echoes do not interfere, and its filter. */
 std::string noiseLines(const SonarDevice& device) {
-    return lineOf("speckle", device.scatterers > 0 ? "" : "{law: rayleigh}") +
-           lineOf("filter",
-                  blockOf({{"looks", device.looks == 1 ? 0 : device.looks},
-                           {"correlation_bins", device.correlation_bins},
-                           {"correlation_beams", device.correlation_beams}}),
-                  "noise of neighbours is correlated");
+    return writeLine("speckle", device.scatterers > 0 ? "" : "{law: rayleigh}") +
+           writeLine("filter",
+                     writeBlock({{"looks", device.looks == 1 ? 0 : device.looks},
+                                 {"correlation_bins", device.correlation_bins},
+                                 {"correlation_beams", device.correlation_beams}}),
+                     "noise of neighbours is correlated");
 }
 
 /** Returns the codes of the device; nothing where its samples are none. */
@@ -134,8 +134,8 @@ std::string codeLines(const SonarDevice& device) {
     if (device.code_bits == 0) return "";
     const std::string law = device.gamma > 0 ? fmt::format("law: sqrt, gamma: {:g}", device.gamma)
                                              : fmt::format("law: log, dynamic_range_db: {:g}", device.dynamic_range_db);
-    return "      output: code\n" + lineOf("code", fmt::format("{{bits: {}, {}, full_scale_db: {:g}}}",
-                                                               device.code_bits, law, device.full_scale_db));
+    return "      output: code\n" + writeLine("code", fmt::format("{{bits: {}, {}, full_scale_db: {:g}}}",
+                                                                  device.code_bits, law, device.full_scale_db));
 }
 
 /** Returns how pictures show the samples. */
