@@ -136,14 +136,14 @@ int listMaterials(bool json) {
     return 0;
 }
 
-struct Options {
+struct Described {
     std::string type, deployment;
     std::vector<std::string> libraries;
     bool json = false;
 };
 
 /** Adds the tasks of the libraries that are named, and of those that a deployment names. */
-void loadLibraries(const Options& options, framework::Registry& registry) {
+void loadLibraries(const Described& options, framework::Registry& registry) {
     for (const std::string& library : options.libraries) registry.loadLibrary(library);
     if (options.deployment.empty()) return;
     const std::string file = deploymentIn(options.deployment);
@@ -151,7 +151,7 @@ void loadLibraries(const Options& options, framework::Registry& registry) {
         registry.loadLibrary(std::filesystem::path(file).parent_path() / library);
 }
 
-int describe(const Options& options) {
+int describe(const Described& options) {
     const std::string& type = options.type;
     const bool json = options.json;
     if (scene::findSceneFormat(type)) return showScene(type, json);
@@ -178,7 +178,7 @@ int describe(const Options& options) {
 }  // namespace
 
 void addDescribeCommand(CLI::App& app, Action& action) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<Described>();
     CLI::App* command = app.add_subcommand("describe", "Lists the tasks; or a task's ports, properties and operations");
     command->add_option("TYPE", options->type, "a task type, `materials` for the names of materials, or a scene file");
     command->add_option("--library", options->libraries, "a shared object with tasks of your own; may be given again")

@@ -133,7 +133,7 @@ void printMetadata(const log::Reader& log) {
     }
 }
 
-struct Options {
+struct LogOptions {
     std::string file, deployment, stream, poses, to, samples;
     std::vector<std::string> files, streams;
     std::string from, until;
@@ -158,7 +158,7 @@ Json printInfo(log::Reader& log, bool json, bool metadata) {
 }
 
 /** Several logs are a list in JSON. */
-int logInfo(const Options& options) {
+int logInfo(const LogOptions& options) {
     Json all = Json::array();
     for (const std::string& file : options.files)
         all.push_back(printInfo(*opened(file), options.json, options.metadata));
@@ -167,10 +167,10 @@ int logInfo(const Options& options) {
 }
 
 void makeFolder(const fs::path& folder) {
-    std::error_code failed;
-    fs::create_directories(folder, failed);
+    std::error_code refused;
+    fs::create_directories(folder, refused);
     if (!fs::is_directory(folder))
-        throw types::ConfigError(folder, "--to", "is no folder and cannot be made: " + failed.message());
+        throw types::ConfigError(folder, "--to", "is no folder and cannot be made: " + refused.message());
 }
 
 /** Makes the folder of an output file. */
@@ -197,17 +197,17 @@ using Paths = std::vector<fs::path>;  ///< Written files.
 /** A format that a stream is exported to, by the ending of the file, in lower case. */
 struct ExportFormat {
     std::string_view ending;
-    const char* limit = "";                                  ///< For the help.
-    Paths (*write)(log::Reader&, const Options&) = nullptr;  ///< Null: of whole logs, exportMessages().
+    const char* limit = "";                                     ///< For the help.
+    Paths (*write)(log::Reader&, const LogOptions&) = nullptr;  ///< Null: of whole logs, exportMessages().
 };
 
-Paths writeNpz(log::Reader& log, const Options& options) {
+Paths writeNpz(log::Reader& log, const LogOptions& options) {
     const log::Stream& stream = log.streams()[log.findIndex(options.stream)];
     return log::exportNpz(log, stream.name, options.to, text(readMeaning(log, stream)));
 }
 
 /** Writes text; soundings with their places on the earth where the log knows the datum. */
-Paths writeCsv(log::Reader& log, const Options& options) {
+Paths writeCsv(log::Reader& log, const LogOptions& options) {
     noteSize(log, options.stream, options.to);
     std::optional<log::EarthColumns> earth;
     if (const auto datum = replay::recordedDatum(log)) earth = {*datum, options.utm};
@@ -221,14 +221,15 @@ Paths writeCsv(log::Reader& log, const Options& options) {
 constexpr ExportFormat export_formats[] = {
     {".npz", "", writeNpz},
     {".csv", "", writeCsv},
-    {".png", "", [](log::Reader& log, const Options& o) { return exportPictures(log, o.stream, o.to, o.ground); }},
+    {".png", "", [](log::Reader& log, const LogOptions& o) { return exportPictures(log, o.stream, o.to, o.ground); }},
     {".mcap"},
     {".xtf", " (side-scan)",
-     [](log::Reader& log, const Options& o) { return exportXtf(log, o.stream, o.poses, o.to), Paths{o.to}; }},
-    {".oculus", "", [](log::Reader& log, const Options& o) { return exportOculus(log, o.stream, o.to), Paths{o.to}; }},
+     [](log::Reader& log, const LogOptions& o) { return exportXtf(log, o.stream, o.poses, o.to), Paths{o.to}; }},
+    {".oculus", "",
+     [](log::Reader& log, const LogOptions& o) { return exportOculus(log, o.stream, o.to), Paths{o.to}; }},
 };
 
-Paths exportTo(log::Reader& log, Options options) {
+Paths exportTo(log::Reader& log, LogOptions options) {
     const fs::path to = options.to;
     const log::Stream& stream = log.streams()[log.findIndex(options.stream)];
     options.stream = stream.name;
@@ -252,7 +253,7 @@ void reportLost(const log::Copied& copied) {
     for (const std::string& lost : copied.lost) console::printDiagnostic("lost: {}\n", lost);
 }
 
-int exportMessages(const Options& options) {
+int exportMessages(const LogOptions& options) {
     makeParentFolder(options.to);
     log::Selection selection;
     if (!options.stream.empty()) selection.streams.insert(options.stream);
@@ -271,7 +272,7 @@ int exportMessages(const Options& options) {
     return 0;
 }
 
-int logExport(const Options& options) {
+int logExport(const LogOptions& options) {
     if (log::isMcap(options.to)) return exportMessages(options);
     if (!options.for_mcap.empty())
         throw types::ConfigError("", options.for_mcap, "is for FILE.mcap; --to is " + options.to);
@@ -311,7 +312,7 @@ std::optional<std::pair<types::Time, types::Time>> getSpan(const std::vector<std
     return span;
 }
 
-log::Selection makeSelection(const Options& options) {
+log::Selection makeSelection(const LogOptions& options) {
     log::Selection selection;
     selection.streams = {options.streams.begin(), options.streams.end()};
     if (!options.from.empty() || !options.until.empty()) {
@@ -332,7 +333,7 @@ void refuseOtherNames(const std::string& to) {
 }
 
 /** Throws for a copy without a sample, which is not made. */
-[[noreturn]] void refuseNothing(const Options& options) {
+[[noreturn]] void refuseNothing(const LogOptions& options) {
     const auto span = getSpan(options.files);
     throw types::ConfigError(options.files.front(), "",
                              span ? fmt::format("none of its samples is in the requested part; they are from {} to {}",
@@ -378,7 +379,7 @@ void reportOverlaps(const std::vector<std::string>& files) {
     }
 }
 
-int logCut(Options options) {
+int logCut(LogOptions options) {
     options.files = getFiles(options.files);
     if (options.files.size() > 1) reportOverlaps(options.files);
     const log::Copied copied = copyTo(options.to, {options.files.begin(), options.files.end()},
@@ -387,12 +388,12 @@ int logCut(Options options) {
     return finish(options.to, options.files.front(), copied);
 }
 
-int logRepair(const Options& options) {
+int logRepair(const LogOptions& options) {
     return finish(options.to, options.file,
                   copyTo(options.to, {fs::path(options.file)}, {.at_damage = log::AtDamage::Skip}));
 }
 
-int logImport(const Options& options) {
+int logImport(const LogOptions& options) {
     refuseOtherNames(options.to);
     makeParentFolder(options.to);
     std::optional<framework::DeploymentSpec> spec;
@@ -420,7 +421,7 @@ Json verdictJson(const log::Verdict& verdict) {
             {"wrong", diagnostic}};
 }
 
-int logCheck(const Options& options) {
+int logCheck(const LogOptions& options) {
     const log::Verdict verdict = log::check(options.file);
     if (options.json) print(verdictJson(verdict));
     if (const auto& found = verdict.diagnostic)
@@ -436,7 +437,7 @@ int logCheck(const Options& options) {
 
 /** Adds an option for the messages of an MCAP file, named as the logger's properties. */
 template <class E>
-void addMcapOption(CLI::App& command, const std::string& name, const char* help, Options& options, E& value) {
+void addMcapOption(CLI::App& command, const std::string& name, const char* help, LogOptions& options, E& value) {
     const auto& names = types::EnumNames<E>::names;
     const auto take = [&options, &value, &names, name](const std::string& given) {
         const auto* found = std::ranges::find(names, given);
@@ -451,7 +452,7 @@ void addMcapOption(CLI::App& command, const std::string& name, const char* help,
     command.add_option_function<std::string>(name, take, help)->type_name(fmt::format("{{{}}}", fmt::join(names, ",")));
 }
 
-void addMcapOptions(CLI::App& command, Options& options) {
+void addMcapOptions(CLI::App& command, LogOptions& options) {
     addMcapOption(command, "--dtype", "of echoes in an MCAP file (default: float32)", options, options.mcap.dtype);
     addMcapOption(command, "--world-frame", "of poses in an MCAP file (default: enu)", options,
                   options.mcap.world_frame);
@@ -459,7 +460,7 @@ void addMcapOptions(CLI::App& command, Options& options) {
 
 /** Adds a subcommand of `log` that does `work`. */
 template <class Work>
-CLI::App* add(CLI::App& log, Action& action, const std::shared_ptr<Options>& options, const char* name,
+CLI::App* add(CLI::App& log, Action& action, const std::shared_ptr<LogOptions>& options, const char* name,
               const char* help, Work work) {
     CLI::App* command = log.add_subcommand(name, help);
     command->callback([options, &action, work] { action = [options, work] { return work(*options); }; });
@@ -469,7 +470,7 @@ CLI::App* add(CLI::App& log, Action& action, const std::shared_ptr<Options>& opt
 }  // namespace
 
 void addLogCommand(CLI::App& app, Action& action) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<LogOptions>();
     CLI::App* log = app.add_subcommand("log", "Inspects, cuts and repairs logs")->require_subcommand(1);
 
     CLI::App* info = add(*log, action, options, "info", "Streams, types, counts, time span and rate", logInfo);

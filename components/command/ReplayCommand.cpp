@@ -30,7 +30,7 @@ namespace {
 
 constexpr const char* rerendered_file = "rerendered.0.log";
 
-struct Asked : RunOptions {
+struct ReplayAsked : RunOptions {
     ReplayOptions replay;
     std::string from, orientation;
     std::vector<std::string> poses;  ///< "SOURCE" or "SOURCE=TASK.PORT"
@@ -39,12 +39,12 @@ struct Asked : RunOptions {
     size_t worst = 10;
 };
 
-void notice(const Asked& options, const std::string& text) {
+void notice(const ReplayAsked& options, const std::string& text) {
     if (!options.quiet && !text.empty()) console::printDiagnostic("notice: {}\n", text);
 }
 
 /** Applies the log's own settings of tasks that run, below the user's; returns the changes during the recording. */
-std::vector<RecordedProperty> readSettings(const log::Reader& log, Asked& options) {
+std::vector<RecordedProperty> readSettings(const log::Reader& log, ReplayAsked& options) {
     RecordedSettings recorded =
         recordedSettings(log, loadSpec(options), options.set, options.seed, options.replay.from);
     const framework::DeploymentSpec kept = replaying(loadSpec(options), log, options.replay);
@@ -64,14 +64,14 @@ std::vector<RecordedProperty> readSettings(const log::Reader& log, Asked& option
 }
 
 /** Reports the tasks that do not run because they communicate outside. */
-void reportOmitted(const framework::DeploymentSpec& spec, const Asked& options) {
+void reportOmitted(const framework::DeploymentSpec& spec, const ReplayAsked& options) {
     if (options.replay.outside) return;
     for (const std::string& task : outsideTasks(spec))
         notice(options, task + " is omitted, because it communicates outside the deployment; --outside runs it");
 }
 
 /** Reports the tasks whose settings by `--set` change nothing, because the log replaces their pings. */
-void reportReplaced(const framework::DeploymentSpec& spec, const log::Reader& log, const Asked& options) {
+void reportReplaced(const framework::DeploymentSpec& spec, const log::Reader& log, const ReplayAsked& options) {
     std::set<std::string> writers;
     for (const std::string& stream : pingStreams(log, spec)) writers.insert(findWriter(spec, stream));
     for (const std::string& task : writers)
@@ -122,7 +122,7 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
 }
 
 /** Work between two instants: properties follow the log, and `--step` prints the time in the log and waits. */
-void followLog(Asked& options, std::vector<RecordedProperty> changed, types::Time start) {
+void followLog(ReplayAsked& options, std::vector<RecordedProperty> changed, types::Time start) {
     const auto live = std::make_shared<LiveSettings>(std::move(changed));
     std::function<void(framework::Deployment&)> step;
     if (options.step)
@@ -140,7 +140,7 @@ void followLog(Asked& options, std::vector<RecordedProperty> changed, types::Tim
 }
 
 /** Runs the deployment with the log in the place of tasks; `changed` are properties that follow the log. */
-int replayWith(std::vector<RecordedProperty> changed, log::Reader& log, Asked& options) {
+int replayWith(std::vector<RecordedProperty> changed, log::Reader& log, ReplayAsked& options) {
     framework::DeploymentSpec spec = loadSpec(options);
     reportOmitted(spec, options);
     if (!options.replay.rerender) reportReplaced(spec, log, options);
@@ -200,7 +200,7 @@ int listPoses(log::Reader& log) {
 }
 
 /** Returns the source of poses of one `--pose`, for a body of the deployment. */
-log::PoseSource poseSource(const Asked& options, const std::string& given, const std::vector<std::string>& ports,
+log::PoseSource poseSource(const ReplayAsked& options, const std::string& given, const std::vector<std::string>& ports,
                            const std::string& deployment) {
     const size_t equals = given.rfind('=');
     log::PoseSource source{given.substr(0, equals), equals == given.npos ? "" : given.substr(equals + 1)};
@@ -226,7 +226,7 @@ log::PoseSource poseSource(const Asked& options, const std::string& given, const
 
 /** Returns the only source of poses in a log of another program that has no stream of a task of the deployment; empty:
  *  it has one, or no source. Throws ConfigError where there are several. */
-std::string onlySource(const framework::DeploymentSpec& spec, log::Reader& log, const Asked& options) {
+std::string onlySource(const framework::DeploymentSpec& spec, log::Reader& log, const ReplayAsked& options) {
     const bool is_own =
         !log.metadatum("insonify_deployment").empty();  // of another deployment, which has pings as well
     if (is_own || hasStream(spec, log)) return {};
@@ -246,7 +246,7 @@ std::string onlySource(const framework::DeploymentSpec& spec, log::Reader& log, 
 }
 
 /** Adds the streams of poses that are asked for, or the only one that there is. */
-void choosePoses(log::Reader& log, Asked& options) {
+void choosePoses(log::Reader& log, ReplayAsked& options) {
     const framework::DeploymentSpec spec = loadSpec(options);
     std::vector<std::string> given = options.poses;
     if (given.empty())
@@ -258,7 +258,7 @@ void choosePoses(log::Reader& log, Asked& options) {
     }
 }
 
-int replay(Asked options) {
+int replay(ReplayAsked options) {
     recordings::refuseRecording(options.replay.log);
     const log::WholeLog opened = log::openWholeLog(options.replay.log, log::AtDamage::Stop, options.replay.world_frame);
     log::Reader& log = *opened.log;
@@ -276,7 +276,7 @@ int replay(Asked options) {
 }
 
 /** Adds the options that choose poses. */
-void addPoseOptions(CLI::App& command, Asked& options) {
+void addPoseOptions(CLI::App& command, ReplayAsked& options) {
     auto* pose = command.add_option("--pose", options.poses,
                                     "poses of the deployment's body: a topic or stream, or frames of tf as "
                                     "map->base_link; =TASK.PORT behind it chooses one of several bodies");
@@ -302,7 +302,7 @@ void addPoseOptions(CLI::App& command, Asked& options) {
 }  // namespace
 
 void addReplayCommand(CLI::App& app, Action& action) {
-    const auto options = std::make_shared<Asked>();
+    const auto options = std::make_shared<ReplayAsked>();
     CLI::App* command =
         app.add_subcommand("replay", "Runs a deployment on a log's time, with its streams in the place of tasks");
     command->add_option("LOG", options->replay.log, "a pocolog, MCAP or .db3 file, or the folder of a bag")->required();

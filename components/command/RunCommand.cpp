@@ -144,13 +144,13 @@ public:
         if (pings_ == 0 && seconds_ == 0 && std::isfinite(end)) seconds_ = end;
     }
     void operator()(const framework::Progress& progress) {
-        const double done = static_cast<double>(progress.samples);
-        const double share = pings_ > 0     ? done / static_cast<double>(pings_)
+        const double made = static_cast<double>(progress.samples);
+        const double share = pings_ > 0     ? made / static_cast<double>(pings_)
                              : seconds_ > 0 ? progress.elapsed_s / seconds_
                                             : 0;
         line_.show(progress.wall_s,
                    fmt::format("{}{} pings, {:.1f} per second, {:.1f}{} s simulated{}", progress.samples,
-                               pings_ > 0 ? fmt::format(" of {}", pings_) : "", done / progress.wall_s,
+                               pings_ > 0 ? fmt::format(" of {}", pings_) : "", made / progress.wall_s,
                                progress.elapsed_s, seconds_ > 0 ? fmt::format(" of {:.1f}", seconds_) : "",
                                console::timeLeft(share, progress.wall_s)));
     }
@@ -287,7 +287,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     if (!options.quiet) printNew(deployment, reported);
     for (std::string& failure : deployment.cleanup()) result.failures.push_back(std::move(failure));
     // All files are closed: from here on, the console may keep the process waiting.
-    if (!options.summary.empty()) write(summary.json(), options.summary);
+    if (!options.summary.empty()) console::write(summary.json(), options.summary);
     if (!options.quiet) report(deployment, options, summary, folder.path(), before);
     for (const std::string& failure : result.failures) console::printDiagnostic("insonify: {}\n", failure);
     return result.failed() ? 1 : 0;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/Simulation.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Port.hpp"
@@ -18,7 +19,7 @@ namespace {
 using framework::Deployment;
 using framework::DeploymentSpec;
 
-bool carriesPings(const auto& ports) {
+bool anyCarriesPings(const auto& ports) {
     for (const auto* port : ports)
         if (port->typeName() == types::Sonar::type_name) return true;
     return false;
@@ -27,15 +28,9 @@ bool carriesPings(const auto& ports) {
 std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
     std::set<std::string> names;
     for (const auto& task : deployment.tasks())
-        if (carriesPings(task->outputs()) && !carriesPings(task->inputs())) names.insert(task->name());
+        if (anyCarriesPings(task->outputs()) && !anyCarriesPings(task->inputs())) names.insert(task->name());
     return upstream(std::move(names), deployment);
 }
-
-/** Reads the samples of a port from outside of the deployment. */
-struct PingReader : framework::TaskContext {
-    using TaskContext::TaskContext;
-    framework::InputPort<types::SonarPtr> ping{this, "ping", "the newest"};
-};
 
 receiver::ReceiverTask* codingReceiver(const Deployment& deployment) {
     for (const auto& task : deployment.tasks()) {
@@ -100,7 +95,7 @@ std::set<std::string> pingTasks(const DeploymentSpec& spec, framework::Registry&
     std::set<std::string> names;
     const Deployment deployment(spec, registry);
     for (const auto& task : deployment.tasks())
-        if (carriesPings(task->outputs()) || carriesPings(task->inputs())) names.insert(task->name());
+        if (anyCarriesPings(task->outputs()) || anyCarriesPings(task->inputs())) names.insert(task->name());
     return names;
 }
 

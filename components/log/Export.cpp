@@ -413,7 +413,7 @@ void writeParts(Reader& log, const std::string& stream, const std::filesystem::p
 }
 
 /** Returns a text in quotes, with its quotes doubled. */
-std::string quoted(const std::string& text) {
+std::string quoteCsv(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) result += c == '"' ? std::string(2, c) : std::string(1, c);
     return result + '"';
@@ -424,7 +424,7 @@ void writeValues(Reader& log, const std::string& stream, const std::filesystem::
     CsvFile csv(path, "time,value");
     log.forEach<T>(stream, [&](const T& value, const SampleRef& at) {
         if constexpr (Text<T>)
-            csv.line(at.time, quoted(value));
+            csv.line(at.time, quoteCsv(value));
         else
             csv.line(at.time, types::getNumber(value));
     });

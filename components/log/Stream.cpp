@@ -18,7 +18,7 @@ namespace insonify::log {
 namespace {
 
 /** Returns a text in quotes, as in JSON. */
-std::string quoted(const std::string& text) {
+std::string quoteJson(const std::string& text) {
     std::string result = "\"";
     for (const char c : text)
         if (c == '"' || c == '\\')
@@ -76,7 +76,7 @@ void addSampleMetadata(types::SampleView first, Metadata& metadata) {
     const auto add = [&]<class T>(const T* sample) {
         if constexpr (types::NamesObjects<T>) {
             std::string names;
-            for (const std::string& name : sample->objects) names += (names.empty() ? "" : ", ") + quoted(name);
+            for (const std::string& name : sample->objects) names += (names.empty() ? "" : ", ") + quoteJson(name);
             metadata[objects_key] = "[" + names + "]";
         }
         if constexpr (has_bins<T>)

@@ -25,7 +25,7 @@ types::Time getTime(uint64_t ns) { return {static_cast<int64_t>(ns / 1000)}; }
 namespace fs = std::filesystem;
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string quoteYaml(const std::string& text) {
     std::string line = "\"";
     for (const char c : text) line += c == '\n' ? "\\n" : c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
     return line + "\"";
@@ -69,8 +69,8 @@ Bag::Bag(const fs::path& first_file, bool is_written)
     const bool is_sequel = sequenceNumber(other) && sequenceNumber(own) && getName(other) == getName(own);
     if (other != own && !is_sequel)
         throw types::ConfigError(path_, "",
-                                 "describes another bag, of " + (other.empty() ? "no file" : quoted(other)) +
-                                     "; give " + quoted(own) + " a folder of its own, as in bag/" +
+                                 "describes another bag, of " + (other.empty() ? "no file" : quoteYaml(other)) +
+                                     "; give " + quoteYaml(own) + " a folder of its own, as in bag/" +
                                      first_file.filename().string());
 }
 
@@ -89,7 +89,7 @@ std::string Bag::text(const ChunkWriter& present) const {
     if (messages == 0) first = last = 0;
     std::ostringstream out;
     out << "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n  relative_file_paths:\n";
-    for (const FileSummary& file : files) out << "    - " << quoted(file.path.filename().string()) << '\n';
+    for (const FileSummary& file : files) out << "    - " << quoteYaml(file.path.filename().string()) << '\n';
     out << "  duration:\n    nanoseconds: " << last - first
         << "\n  starting_time:\n    nanoseconds_since_epoch: " << first << "\n  message_count: " << messages
         << "\n  topics_with_message_count:" << (counts.empty() ? " []\n" : "\n");
@@ -97,15 +97,15 @@ std::string Bag::text(const ChunkWriter& present) const {
         const Channel& channel = present.channels()[i];
         const Texts& texts = channel.metadata;
         const auto profile = texts.find("offered_qos_profiles");
-        out << "    - topic_metadata:\n        name: " << quoted(channel.topic)
+        out << "    - topic_metadata:\n        name: " << quoteYaml(channel.topic)
             << "\n        type: " << (channel.schema == 0 ? "\"\"" : present.schemas()[channel.schema - 1u].name)
             << "\n        serialization_format: " << channel.encoding
-            << "\n        offered_qos_profiles: " << quoted(profile == texts.end() ? qos_profile : profile->second)
+            << "\n        offered_qos_profiles: " << quoteYaml(profile == texts.end() ? qos_profile : profile->second)
             << "\n      message_count: " << counts[i] << '\n';
     }
     out << "  compression_format: \"\"\n  compression_mode: \"\"\n  files:\n";
     for (const FileSummary& file : files)
-        out << "    - path: " << quoted(file.path.filename().string())
+        out << "    - path: " << quoteYaml(file.path.filename().string())
             << "\n      starting_time:\n        nanoseconds_since_epoch: " << getSpan(file).first
             << "\n      duration:\n        nanoseconds: " << getSpan(file).length
             << "\n      message_count: " << file.messages << '\n';

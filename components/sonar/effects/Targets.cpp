@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* name = "point targets";
 
-std::string means(const Omitted& /*what*/, const BinGrid& /*grid*/) {
+std::string meansTargets(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "cerqueira2017: bins are means of S(n.d)";
 }
 std::string silent(const Omitted& /*what*/, const BinGrid& /*grid*/) {
@@ -53,7 +53,7 @@ class Targets final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         if (plan.config.model == Model::Physical) return true;
-        return leaveOut(plan, {.effect = name, .reason = Reason::Other, .words = means});
+        return leaveOut(plan, {.effect = name, .reason = Reason::Other, .words = meansTargets});
     }
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& geometry) const override {
         return std::make_unique<TargetsInPings>(plan, geometry);
