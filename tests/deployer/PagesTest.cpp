@@ -10,6 +10,7 @@
 using namespace insonify::deployer;
 using insonify::test::allPages;
 using insonify::test::CodeBlock;
+using insonify::test::findUnprinted;
 using insonify::test::getCode;
 using insonify::test::Page;
 using insonify::test::readPage;
@@ -20,6 +21,11 @@ namespace {
 const fs::path sources = insonify::test::source_dir;
 
 bool holdsCommands(const CodeBlock& block) { return block.language == "sh"; }
+
+/** Whether a block is what the commands of the block above it print. */
+bool showsOutput(const CodeBlock& commands, const CodeBlock& block) {
+    return holdsCommands(commands) && block.language == "text" && commands.isFollowedBy(block);
+}
 
 /** The pages with commands to run. */
 std::vector<std::string> pagesWithCommands() {
@@ -127,10 +133,15 @@ TEST_P(PagesTest, ItsCommandsWorkOneAfterTheOther) {
     makeCheckout(folder);
     const Page page = readPage(GetParam());
     size_t run = 0;
-    for (const CodeBlock& block : page.blocks()) {
+    Outcome outcome;
+    for (size_t i = 0; i < page.blocks().size(); ++i) {
+        const CodeBlock& block = page.blocks()[i];
+        if (i > 0 && showsOutput(page.blocks()[i - 1], block))
+            EXPECT_EQ(findUnprinted(block.text, outcome.out), "") << page.path() << ":" << block.line << "\n"
+                                                                  << outcome.out;
         if (!holdsCommands(block)) continue;
-        ASSERT_THAT(runInBash(folder, block.text), succeeds()) << page.path() << ":" << block.line << "\n"
-                                                               << block.text;
+        outcome = runInBash(folder, "exec 2>&1\n" + block.text);
+        ASSERT_THAT(outcome, succeeds()) << page.path() << ":" << block.line << "\n" << block.text;
         ++run;
     }
     const auto fences = std::ranges::count_if(
@@ -144,6 +155,33 @@ INSTANTIATE_TEST_SUITE_P(All, PagesTest, testing::ValuesIn(pagesWithCommands()),
         name, [](unsigned char c) { return !std::isalnum(c); }, '_');
     return name;
 });
+
+TEST(PagesTest, TheFirstCommandsShowWhatTheyPrint) {
+    for (const char* path : {"README.md", "components/dataset/README.md", "components/dds/README.md",
+                             "components/device/README.md", "deploy/TUTORIAL.md"}) {
+        const std::vector<CodeBlock> blocks = readPage(path).blocks();
+        const auto first = std::ranges::adjacent_find(blocks, showsOutput);
+        EXPECT_NE(first, blocks.end()) << path;
+    }
+}
+
+TEST(PagesTest, ShownLinesAreLinesOfTheOutputWithDotsForWhatVaries) {
+    const std::string output = "a\n3 pings in 1.5 s: 2 per second\nb\nc\n";
+    for (const char* shown : {"", "a\n", "b\nc\n", "a\n3 pings in ...\nb\n", "a\n...\nc\n",
+                              "3 ... in ... s: ... per second\n", "  ...\nb\n", "...\n"})
+        EXPECT_EQ(findUnprinted(shown, output), "") << shown;
+    EXPECT_EQ(findUnprinted("a\nb\n", output), "a\nb\n");
+    EXPECT_EQ(findUnprinted("c\n...\nb\n", output), "b\n");
+    EXPECT_EQ(findUnprinted("a\n4 pings ...\n", output), "a\n4 pings ...\n");
+    EXPECT_EQ(findUnprinted("3 pings in ... per minute\n", output), "3 pings in ... per minute\n");
+    EXPECT_EQ(findUnprinted("pings in ...\n", output), "pings in ...\n");
+    EXPECT_EQ(findUnprinted("3 pings in 1.5 s...: 2 per secondsecond\n", output),
+              "3 pings in 1.5 s...: 2 per secondsecond\n");
+    EXPECT_EQ(findUnprinted("\n", output), "\n");
+    EXPECT_TRUE(showsOutput({"sh", 3, "a\nb\n"}, {"text", 8, ""}));
+    EXPECT_FALSE(showsOutput({"sh", 3, "a\nb\n"}, {"text", 9, ""}));
+    EXPECT_FALSE(showsOutput({"console", 3, "a\nb\n"}, {"text", 7, ""}));
+}
 
 TEST(PagesTest, EveryCommandAndOptionOnAPageExists) {
     const Commands commands;

@@ -1,4 +1,4 @@
-"""The Python code of the README and of the module's page runs as it is, and so does the example."""
+"""The Python code of the README and of the module's page runs as it is, prints what they show, and so does the example."""
 
 import re
 import subprocess
@@ -9,10 +9,15 @@ from conftest import INSONIFY, ROOT
 
 pytestmark = pytest.mark.slow
 
-BLOCKS = {
-    page: re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+BLOCKS = {  # code, and the text right below it, which is what it prints
+    page: re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", (ROOT / page).read_text(), re.DOTALL)
     for page in ("README.md", "components/python/README.md")
 }
+
+
+def is_like(printed, shown):
+    """Whether all lines that are shown are printed, with any text in place of dots."""
+    return re.fullmatch(re.escape(shown).replace(r"\.\.\.", "[^\n]*"), printed) is not None
 
 
 @pytest.fixture
@@ -25,11 +30,19 @@ def folder(tmp_path):
 
 def test_every_block_runs(folder):
     assert [len(blocks) for blocks in BLOCKS.values()] == [1, 5]
-    for block in sum(BLOCKS.values(), []):
+    for block, shown in sum(BLOCKS.values(), []):
         if "gym" in block:
             pytest.importorskip("gymnasium")
         done = subprocess.run([sys.executable, "-c", block], cwd=folder, capture_output=True, text=True, timeout=600)
         assert done.returncode == 0, block + done.stderr
+        assert not shown or is_like(done.stdout, shown), block + done.stdout
+
+
+def test_what_a_page_shows_is_compared():
+    assert [sum(bool(shown) for _, shown in blocks) for blocks in BLOCKS.values()] == [1, 1]
+    assert is_like("(2, 3) 1.25\nb\n", "(2, 3) 1...\nb\n")
+    assert not is_like("(2, 3) 1.25\nb\n", "(2, 4) 1...\nb\n")
+    assert not is_like("(2, 3) 1.25\nb\n", "(2, 3) 1...\n")
 
 
 def test_the_example_plots(tmp_path):

@@ -19,6 +19,12 @@ struct CodeBlock {
     std::string language;  ///< "" if the fence names none.
     size_t line = 0;       ///< Line of the opening fence, from 1.
     std::string text;
+
+    /** Returns whether another block begins below this one, with at most an empty line between them. */
+    bool isFollowedBy(const CodeBlock& next) const {
+        const auto end = line + 1 + static_cast<size_t>(std::ranges::count(text, '\n'));
+        return next.line > end && next.line <= end + 2;
+    }
 };
 
 /** A page of Markdown. Paths are from the root of the project, with '/' between the parts. */
@@ -142,6 +148,41 @@ inline std::string getCode(const Page& page, const std::string& language, const 
     const size_t from = heading.empty() ? 0 : static_cast<size_t>(at - page.lines().begin());
     for (const CodeBlock& block : page.blocks())
         if (block.language == language && block.line > from) return block.text;
+    return "";
+}
+
+/** Returns whether a line is another, in which "..." represents any text. */
+inline bool isLike(const std::string& line, const std::string& shown) {
+    size_t from = 0, at = 0;
+    for (size_t dots; (dots = shown.find("...", at)) != std::string::npos; at = dots + 3) {
+        const size_t found = line.find(shown.substr(at, dots - at), from);
+        if (found == std::string::npos || (at == 0 && found != 0)) return false;
+        from = found + dots - at;
+    }
+    return at == 0 ? line == shown : line.size() >= from + shown.size() - at && line.ends_with(shown.substr(at));
+}
+
+/** Returns the first lines that a page shows, up to the next line of dots alone, and that are not in a row in the
+ *  output behind those before them; "" if all are there. */
+inline std::string findUnprinted(const std::string& shown, const std::string& output) {
+    std::vector<std::string> printed, rows;
+    std::istringstream in(output), page(shown + "...\n");
+    for (std::string line; std::getline(in, line);) printed.push_back(line);
+    auto from = printed.begin();
+    for (std::string line; std::getline(page, line);) {
+        if (line.find_first_not_of(" .") != std::string::npos || line.find("...") == std::string::npos) {
+            rows.push_back(line);
+            continue;
+        }
+        const auto found = std::search(from, printed.end(), rows.begin(), rows.end(), isLike);
+        if (found == printed.end() && !rows.empty()) {
+            std::string missing;
+            for (const std::string& row : rows) missing += row + "\n";
+            return missing;
+        }
+        from = found + static_cast<std::ptrdiff_t>(rows.size());
+        rows.clear();
+    }
     return "";
 }
 
