@@ -136,9 +136,10 @@ TEST_P(PagesTest, ItsCommandsWorkOneAfterTheOther) {
     Outcome outcome;
     for (size_t i = 0; i < page.blocks().size(); ++i) {
         const CodeBlock& block = page.blocks()[i];
-        if (i > 0 && showsOutput(page.blocks()[i - 1], block))
+        if (i > 0 && showsOutput(page.blocks()[i - 1], block)) {
             EXPECT_EQ(findUnprinted(block.text, outcome.out), "") << page.path() << ":" << block.line << "\n"
                                                                   << outcome.out;
+        }
         if (!holdsCommands(block)) continue;
         outcome = runInBash(folder, "exec 2>&1\n" + block.text);
         ASSERT_THAT(outcome, succeeds()) << page.path() << ":" << block.line << "\n" << block.text;

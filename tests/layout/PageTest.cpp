@@ -1,6 +1,8 @@
 // The project's pages are consistent: links and anchors, names of files, tests and messages, the way in and back.
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "tests/layout/Sources.hpp"
 #include "tests/support/Pages.hpp"
 #include "tests/support/Paths.hpp"
@@ -119,7 +121,8 @@ std::string printingCode() {
 /** Parts of a quoted message, between the dots that represent variable text, that the code does not print. */
 Texts unprintedParts(const std::string& message, const std::string& code) {
     Texts unprinted;
-    for (size_t at = 0; at < message.size();) {
+    const bool has_kind = message.starts_with("warning: ") || message.starts_with("notice: ");
+    for (size_t at = has_kind ? message.find(' ') : 0; at < message.size();) {
         const size_t end = std::min(message.find("...", at), message.size());
         std::string part = message.substr(at, end - at);
         part.erase(0, part.find_first_not_of(" :;,.("));
@@ -128,6 +131,78 @@ Texts unprintedParts(const std::string& message, const std::string& code) {
         at = end + 3;
     }
     return unprinted;
+}
+
+/** A row of the index of messages: a part of the message, what is printed before it, anchors of sections. */
+struct IndexRow {
+    std::string text, beginning;
+    Texts sections;
+};
+
+std::vector<IndexRow> readIndex(const Page& page) {
+    static const std::regex row(R"(\| `([^|]+)` \| ([^|]+) \| (.+) \|)"), anchor(R"(\(#([\w-]+)\))");
+    std::vector<IndexRow> rows;
+    for (const std::string& line : page.lines()) {
+        std::smatch cells;
+        if (!std::regex_match(line, cells, row)) continue;
+        const std::string links = cells[3];
+        rows.push_back({cells[1], cells[2], {}});
+        for (std::sregex_iterator it(links.begin(), links.end(), anchor); it != std::sregex_iterator(); ++it)
+            rows.back().sections.push_back((*it)[1]);
+    }
+    std::erase_if(rows, [](const IndexRow& each) { return each.sections.empty(); });
+    return rows;
+}
+
+/** The messages that a page quotes, by the anchor of their section. */
+std::map<std::string, Texts> quotedMessages(const Page& page) {
+    std::map<std::string, Texts> messages;
+    std::string section;
+    for (size_t i = 0, block = 0; i < page.lines().size(); ++i) {
+        if (page.lines()[i].starts_with("## ")) section = *Page("", page.lines()[i]).anchors().begin();
+        if (block == page.blocks().size() || page.blocks()[block].line != i + 1) continue;
+        std::istringstream lines(page.blocks()[block].language == "text" ? page.blocks()[block].text : "");
+        for (std::string line; std::getline(lines, line);) messages[section].push_back(line);
+        ++block;
+    }
+    return messages;
+}
+
+std::string lowered(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+/** Whether a message begins as its row says: with the word of its kind, or with its place or its own text. */
+bool beginsAs(const std::string& message, const std::string& beginning) {
+    for (const char* kind : {"warning:", "notice:", "insonify:", "scripts/setup:", "scripts/build:"})
+        if (message.starts_with(kind)) return beginning.starts_with(std::string("`") + kind);
+    return !beginning.starts_with("`warning:") && !beginning.starts_with("`notice:");
+}
+
+/** What is wrong in an index: its order, rows whose section does not quote the message, messages that it lacks. */
+Texts wrongRows(const std::vector<IndexRow>& rows, const Page& page) {
+    Texts wrong;
+    std::map<std::string, Texts> messages = quotedMessages(page);
+    std::map<std::string, size_t> count;
+    for (const auto& [section, lines] : messages)
+        for (const std::string& line : lines) count[line];
+    for (size_t i = 0; i < rows.size(); ++i) {
+        const IndexRow& row = rows[i];
+        if (i > 0 && lowered(row.text) < lowered(rows[i - 1].text))
+            wrong.push_back(row.text + ": after " + rows[i - 1].text);
+        for (const std::string& section : row.sections) {
+            Texts found = messages[section];
+            std::erase_if(found, [&](const std::string& line) { return line.find(row.text) == std::string::npos; });
+            if (found.empty()) wrong.push_back(row.text + ": not under " + section);
+            for (const std::string& line : found) ++count[line];
+            if (!std::ranges::all_of(found, [&](const std::string& line) { return beginsAs(line, row.beginning); }))
+                wrong.push_back(row.text + ": begins otherwise under " + section);
+        }
+    }
+    for (const auto& [line, times] : count)
+        if (times != 1) wrong.push_back(line + ": in " + std::to_string(times) + " rows");
+    return wrong;
 }
 
 }  // namespace
@@ -208,6 +283,28 @@ TEST(PageTest, EveryMessageOfTheTroubleshootingPageIsOneThatTheCodePrints) {
             EXPECT_THAT(unprintedParts(message, code), IsEmpty()) << message;
     }
     EXPECT_GT(messages, 30u);
+}
+
+TEST(PageTest, TheIndexOfMessagesHasEachOnceByTheAlphabet) {
+    const Page page = readPage("components/TROUBLESHOOTING.md");
+    const std::vector<IndexRow> rows = readIndex(page);
+    EXPECT_THAT(wrongRows(rows, page), IsEmpty());
+    EXPECT_GT(rows.size(), 70u);
+    const std::string section = "## B c\n```text\nwarning: ...: the x is low\nnotice: no y\n```\n";
+    const auto wrong = [&](const std::string& table) {
+        const Page made("", "| text | begins with | read |\n| --- | --- | --- |\n" + table + section);
+        return wrongRows(readIndex(made), made);
+    };
+    const std::string no_y = "| `no y` | `notice:` | [b](#b-c) |\n",
+                      low = "| `the x is` | `warning: TASK:` | [b](#b-c) |\n";
+    EXPECT_THAT(wrong(no_y + low), IsEmpty());
+    EXPECT_THAT(wrong(low + no_y), ElementsAre("no y: after the x is"));
+    EXPECT_THAT(wrong(no_y), ElementsAre("warning: ...: the x is low: in 0 rows"));
+    EXPECT_THAT(wrong(no_y + low + "| `x is low` | `warning: TASK:` | [b](#b-c) |\n"),
+                ElementsAre("warning: ...: the x is low: in 2 rows"));
+    EXPECT_THAT(wrong(no_y + "| `the x is` | `notice: TASK:` | [b](#b-c) |\n"),
+                ElementsAre("the x is: begins otherwise under b-c"));
+    EXPECT_THAT(wrong(no_y + low + "| `z` | `warning: TASK:` | [b](#b) |\n"), ElementsAre("z: not under b"));
 }
 
 TEST(PageTest, EveryEnvironmentVariableIsOnThePageOfTheCommand) {

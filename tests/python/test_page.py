@@ -1,5 +1,7 @@
 """The Python code of the README and of the module's page runs as it is, prints what they show, and so does the example."""
 
+import importlib.util
+import os
 import re
 import subprocess
 import sys
@@ -9,9 +11,10 @@ from conftest import INSONIFY, ROOT
 
 pytestmark = pytest.mark.slow
 
+DATA_SETS = "components/dataset/README.md"
 BLOCKS = {  # code, and the text right below it, which is what it prints
     page: re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", (ROOT / page).read_text(), re.DOTALL)
-    for page in ("README.md", "components/python/README.md")
+    for page in ("README.md", "components/python/README.md", DATA_SETS)
 }
 
 
@@ -29,8 +32,8 @@ def folder(tmp_path):
 
 
 def test_every_block_runs(folder):
-    assert [len(blocks) for blocks in BLOCKS.values()] == [1, 5]
-    for block, shown in sum(BLOCKS.values(), []):
+    assert [len(blocks) for blocks in BLOCKS.values()] == [1, 5, 2]
+    for block, shown in sum((blocks for page, blocks in BLOCKS.items() if page != DATA_SETS), []):
         if "gym" in block:
             pytest.importorskip("gymnasium")
         done = subprocess.run([sys.executable, "-c", block], cwd=folder, capture_output=True, text=True, timeout=600)
@@ -38,8 +41,22 @@ def test_every_block_runs(folder):
         assert not shown or is_like(done.stdout, shown), block + done.stdout
 
 
+def test_the_loader_of_data_sets_reads_one(tmp_path):
+    pytest.importorskip("PIL")
+    (reading, shown), (training, _) = BLOCKS[DATA_SETS]
+    made = "insonify init views\n" + re.search(r"```sh\n(insonify dataset \S+ [^\n]*--out masks[^\n]*)", (ROOT / DATA_SETS).read_text())[1]
+    path = {"PATH": f"{INSONIFY.parent}:{os.environ['PATH']}"}
+    subprocess.run(["bash", "-euc", made], cwd=tmp_path, check=True, capture_output=True, timeout=600, env=os.environ | path)
+    has_torch = importlib.util.find_spec("torch") is not None
+    compile(training, DATA_SETS, "exec")
+    code = reading + (training if has_torch else "")
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    assert is_like("".join(done.stdout.splitlines(keepends=True)[:1]), shown), done.stdout
+
+
 def test_what_a_page_shows_is_compared():
-    assert [sum(bool(shown) for _, shown in blocks) for blocks in BLOCKS.values()] == [1, 1]
+    assert [sum(bool(shown) for _, shown in blocks) for blocks in BLOCKS.values()] == [1, 1, 1]
     assert is_like("(2, 3) 1.25\nb\n", "(2, 3) 1...\nb\n")
     assert not is_like("(2, 3) 1.25\nb\n", "(2, 4) 1...\nb\n")
     assert not is_like("(2, 3) 1.25\nb\n", "(2, 3) 1...\n")
