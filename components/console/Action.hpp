@@ -1,6 +1,5 @@
 #pragma once
-// CLI11 needs all three headers.
-#include <CLI/App.hpp>
+#include <CLI/App.hpp>  // CLI11 needs all three headers
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <functional>
