@@ -1,6 +1,7 @@
 // The project's pages are consistent: links and anchors, names of files, tests and messages, the way in and back.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <map>
 
 #include "tests/layout/Sources.hpp"
@@ -205,6 +206,90 @@ Texts wrongRows(const std::vector<IndexRow>& rows, const Page& page) {
     return wrong;
 }
 
+/** A figure that a page quotes: a row of the table of components/SPEED.md. */
+struct Quote {
+    std::string page, text, words,
+        source;  ///< Pages from the root; the words of the source, with dots for what is left out.
+};
+
+std::vector<Quote> readQuotes(const Page& page) {
+    static const std::regex row(R"(\| \[[^\]]+\]\((\S+)\) \| `([^`]+)` \| `([^`]+)` \| \[[^\]]+\]\((\S+)\) \|)");
+    std::vector<Quote> quotes;
+    for (const std::string& line : page.lines()) {
+        std::smatch cells;
+        if (!std::regex_match(line, cells, row)) continue;
+        const std::string link = cells[4], file = getTarget(page, link);
+        quotes.push_back({getTarget(page, cells[1]), cells[2], cells[3],
+                          (file.empty() ? page.path() : file) + link.substr(link.find('#'))});
+    }
+    return quotes;
+}
+
+std::string joinLines(const Page& page) {
+    std::string text;
+    for (const std::string& line : page.lines()) text += line + " ";
+    return text;
+}
+
+/** The lines below a heading up to the next one, joined by spaces. */
+std::string getSection(const Page& page, const std::string& anchor) {
+    std::string text;
+    bool inside = false;
+    for (const std::string& line : page.lines()) {
+        if (line.starts_with("#")) inside = Page("", line).anchors().contains(anchor);
+        if (inside) text += line + " ";
+    }
+    return text;
+}
+
+/** Whether a text has the words in their order, with anything in place of their dots. */
+bool hasWords(const std::string& text, const std::string& words) {
+    size_t from = 0;
+    for (size_t at = 0, dots = 0; dots != std::string::npos; at = dots + 4) {
+        dots = words.find(" ...", at);
+        const std::string part = words.substr(at, dots == std::string::npos ? dots : dots - at);
+        from = text.find(part, from);
+        if (from == std::string::npos) return false;
+        from += part.size();
+    }
+    return true;
+}
+
+std::vector<double> numbersIn(const std::string& text) {
+    static const std::regex number(R"(\d[\d,]*(\.\d+)?)");
+    std::vector<double> numbers;
+    for (std::sregex_iterator it(text.begin(), text.end(), number); it != std::sregex_iterator(); ++it) {
+        std::string digits = it->str();
+        std::erase(digits, ',');
+        numbers.push_back(std::stod(digits));
+    }
+    return numbers;
+}
+
+/** The first number of a quote that no number of its source gives, exactly, rounded or cut off; none: NaN. */
+double unknownNumber(const Quote& quote) {
+    const std::vector<double> known = numbersIn(quote.words);
+    for (const double number : numbersIn(quote.text))
+        if (!std::ranges::any_of(known, [&](double each) {
+                return each == number || std::floor(each) == number || std::round(each) == number;
+            }))
+            return number;
+    return std::nan("");
+}
+
+/** Times, rates and memory of runs on a page that no quote from it contains. */
+Texts unquotedFigures(const Page& page, const std::vector<Quote>& quotes) {
+    static const std::regex figure(R"(\d[\d.]*\)? (ms|MB|times as fast))");
+    std::string text = joinLines(page);
+    for (const Quote& quote : quotes)
+        if (const size_t at = text.find(quote.text); quote.page == page.path() && at != std::string::npos)
+            text.erase(at, quote.text.size());
+    Texts figures;
+    for (std::sregex_iterator it(text.begin(), text.end(), figure); it != std::sregex_iterator(); ++it)
+        figures.push_back(it->str());
+    return figures;
+}
+
 }  // namespace
 
 TEST(PageTest, LinksOfEveryPageLeadSomewhere) {
@@ -305,6 +390,41 @@ TEST(PageTest, TheIndexOfMessagesHasEachOnceByTheAlphabet) {
     EXPECT_THAT(wrong(no_y + "| `the x is` | `notice: TASK:` | [b](#b-c) |\n"),
                 ElementsAre("the x is: begins otherwise under b-c"));
     EXPECT_THAT(wrong(no_y + low + "| `z` | `warning: TASK:` | [b](#b) |\n"), ElementsAre("z: not under b"));
+}
+
+TEST(PageTest, FiguresOfOtherPagesAreQuotes) {
+    const std::vector<Quote> quotes = readQuotes(readPage("components/SPEED.md"));
+    EXPECT_GT(quotes.size(), 10u);
+    for (const Quote& quote : quotes) {
+        const size_t hash = quote.source.find('#');
+        const std::string section = getSection(readPage(quote.source.substr(0, hash)), quote.source.substr(hash + 1));
+        EXPECT_NE(joinLines(readPage(quote.page)).find(quote.text), std::string::npos)
+            << quote.page << ": " << quote.text;
+        EXPECT_TRUE(hasWords(section, quote.words)) << quote.source << ": " << quote.words;
+        EXPECT_TRUE(std::isnan(unknownNumber(quote))) << quote.text << ": " << unknownNumber(quote);
+    }
+    for (const char* path : {"README.md", "components/COMPARISON.md"})
+        EXPECT_THAT(unquotedFigures(readPage(path), quotes), IsEmpty()) << path;
+}
+
+TEST(PageTest, OtherFiguresAreFound) {
+    const Page source(
+        "components/SPEED.md",
+        "# S\n| [P](../README.md) | `takes 12 ms` | `x ... 11.9 ms` | [b](#b) |\n## B\nx | 11.9 ms\ny\n## C\nz\n");
+    ASSERT_EQ(readQuotes(source).size(), 1u);
+    const Quote quote = readQuotes(source)[0];
+    EXPECT_THAT((Texts{quote.page, quote.text, quote.words, quote.source}),
+                ElementsAre("README.md", "takes 12 ms", "x ... 11.9 ms", "components/SPEED.md#b"));
+    EXPECT_EQ(getSection(source, "b"), "## B x | 11.9 ms y ");
+    EXPECT_TRUE(hasWords(getSection(source, "b"), quote.words));
+    EXPECT_FALSE(hasWords(getSection(source, "c"), quote.words));
+    EXPECT_FALSE(hasWords("11.9 ms x", quote.words));
+    EXPECT_TRUE(std::isnan(unknownNumber(quote)));
+    EXPECT_EQ(unknownNumber({"", "takes 13 ms", "x ... 11.9 ms", ""}), 13);
+    EXPECT_EQ(unknownNumber({"", "1,500 of 7", "1500 of 8", ""}), 7);
+    EXPECT_THAT(
+        unquotedFigures(Page("README.md", "It takes 12 ms, or 3 ms (5) and (6) ms,\n23 times as fast.\n"), {quote}),
+        ElementsAre("3 ms", "6) ms", "23 times as fast"));
 }
 
 TEST(PageTest, EveryEnvironmentVariableIsOnThePageOfTheCommand) {
