@@ -322,6 +322,16 @@ TEST(PageTest, EveryPageNextToCodeLinksBackToTheReadme) {
     }
 }
 
+TEST(PageTest, TheBeginningOfEveryPageSaysForWhomItIs) {
+    static const std::regex reader(
+        "(This page|It) is for |This page helps |\\b[Ff]or (those|users|everybody|authors) ");
+    for (const Page& page : allPages()) {
+        std::string begin;
+        for (size_t i = 0; i < std::min<size_t>(page.lines().size(), 14); ++i) begin += page.lines()[i] + "\n";
+        EXPECT_TRUE(std::regex_search(begin, reader)) << page.path() << ": " << begin;
+    }
+}
+
 TEST(PageTest, EveryComponentHasAPage) {
     for (const auto& entry : fs::directory_iterator(root / "components"))
         EXPECT_TRUE(!entry.is_directory() || fs::exists(entry.path() / "README.md")) << entry.path();
