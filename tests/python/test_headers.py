@@ -26,12 +26,13 @@ def test_the_page_is_current():
     ("#pragma once\n// What is here. More.\n#include <a>\n/** A thing. */\nclass One {};\n", "What is here"),
     ("#pragma once\n/** Another. */\nstruct Two {};\n/** A thing\n *  of two lines. Then more. */\nclass One {};\n", "A thing of two lines"),
     ("#pragma once\n/** Returns it, e.g. x. */\nint make();\n", "Returns it, e.g. x"),
+    ("#pragma once\n/** First. */\nint make();\n/** B. */\nstruct Two final : Base {};\n/** C. */\nstd::vector<int> list(int x);\n", "First; also `Two`, `list`"),
     ("#pragma once\n/** A | b < c. */\ntemplate <class T>\nstruct One {};\n", "A \\| b &lt; c"),
 ])
 def test_a_header_is_described_by_its_comment(headers, tmp_path, text, found):
     header = tmp_path / "One.hpp"
     header.write_text(text)
-    assert headers.sentence(headers.comment(header)) == found
+    assert headers.sentence(*headers.comment(header)) == found
 
 
 @pytest.mark.parametrize("page, fault", [("# A\n\n## a\n", "has no section types, a_folder"), ("# A\n\n## types\n\n## a_folder\n", "is not up to date")])
