@@ -2,8 +2,11 @@
 """Makes scenes of objects that hang in open water, and sweeps to train on them: scripts/scenes/make_hanging_objects.py FOLDER
 Five classes of random shape and material: big and small propellers, cylinders, fishing nets, soft pipelines. Each hangs on a line.
 FOLDER gets scenes of several objects of each class, deployment.yml, sweeps of each scene and set.yml, which scripts/research/sim_to_real
-reads. Needs numpy."""
+reads. With --device the deployment is one of `insonify init`, as it is: sweeps set its range and level the sonar, and a picture has up to
+five objects. Needs numpy, and PyYAML for --device."""
 import argparse
+import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -193,6 +196,39 @@ effects:
   physics: {sonar.model: cerqueira2017, sonar.beam_pattern: null, sonar.pulse: null, sonar.speckle: null}
 """
 
+DEVICE_SWEEP = """\
+# Objects at %(nearest)g to %(farthest)g m ahead, seen by a device as `insonify init` makes it; the line on which they hang is tilted.
+seed: %(seed)d
+scenes: [%(scene)s]
+poses: {random: {count: %(count)d, z: -8}}  # 8 m deep
+settings:
+  sonar.range: [%(range)g]
+  scene.mount: [{position: [0, 0, 0], pitch_deg: 0}]
+objects:
+  - {names: [%(names)s], count: [1, %(most)d], x: [%(nearest)g, %(farthest)g], y: [-%(side)g, %(side)g], z: [-8.1, -7.9], frame: vehicle, gap: 0,
+     roll_deg: [-15, 15], pitch_deg: [-50, 50]}
+classes: {%(classes)s}
+picture: {shape: fan, height: %(height)d, scale: code, code_bits: %(bits)d, smooth: true}
+annotations: {min_level: 8, min_pixels: 5}
+"""
+
+DEVICE_SET = """\
+# The set of a device as `insonify init` makes it, and what --ablate switches off: each effect that the deployment has.
+deployment: %(deployment)s
+sweeps: ["near_*.yml", "far_*.yml"]
+ablated: ["near_[0-4].yml", "far_[0-4].yml"]
+range_down: true            # far ranges are at the bottom of real pictures and at the top of simulated pictures
+margin: [0.0, 0.25]         # of a box, random, on each side
+sizes: true                 # pictures have the scale of real pictures: the size of a crop in pixels is an input
+visible_db: 4               # of codes; those of an Oculus are roots of amplitudes, so this is 8 dB
+effects:
+%(effects)s
+"""
+
+EFFECTS = {  # of a device: its name, and the properties without which it is absent
+    "errors_of_elements": ["sonar.imperfections"], "beam_pattern": ["sonar.beam_pattern", "sonar.imperfections"], "pulse": ["sonar.pulse"],
+    "absorption": ["sonar.absorption"], "scatterers": ["sonar.speckle"], "speckle": ["noise.speckle"], "shared_noise": ["noise.filter"],
+    "sea": ["noise.ambient"], "tvg": ["receiver.tvg"]}
 
 RANGES = {"near": (3, 6), "far": (6, 12)}  # of a sweep, drawn [m]
 FREQUENCIES = {750: 20, 1200: 12}  # [kHz], with the vertical opening [deg]
@@ -225,6 +261,31 @@ def sweep(rng, options, i, band):
                     "classes": ", ".join(f"{name}: {name}_*" for name in CLASSES)}
 
 
+def device_set(deployment, folder):
+    """Returns set.yml of a deployment that `insonify init` has written, the bits of its codes and its bins of a beam."""
+    import yaml
+    try:
+        tasks = {name: task.get("properties") or {} for name, task in yaml.safe_load(deployment.read_text())["tasks"].items()}
+        bits, bins = tasks["receiver"]["code"]["bits"], tasks["sonar"]["bin_count"]
+    except (OSError, yaml.YAMLError, KeyError, TypeError, AttributeError) as error:
+        raise SystemExit(f"make_hanging_objects: --device {deployment}: is no deployment of a fan with codes by `insonify init` ({error!r})") from None
+    has = lambda name: name.split(".")[1] in tasks.get(name.split(".")[0], {})  # noqa: E731
+    effects = {name: {each: None for each in properties if has(each)} for name, properties in EFFECTS.items() if has(properties[0])}
+    if "gamma" in tasks["receiver"]["code"]:
+        effects["gamma"] = {"receiver.code.gamma": 1}
+    lines = "\n".join(f"  {name}: {json.dumps(values)}" for name, values in effects.items())
+    return DEVICE_SET % {"deployment": os.path.relpath(deployment, folder), "effects": lines}, bits, bins
+
+
+def device_sweep(rng, options, i, band, bits, bins):
+    bin_metre = 1500e-6  # or a little less: a bin is of whole microseconds
+    farthest = 0.99 * bins * bin_metre * max(1, round(rng.uniform(*RANGES[band]) / bins / bin_metre))
+    return DEVICE_SWEEP % {"nearest": max(1.2, 0.3 * farthest), "farthest": 0.8 * farthest, "side": 0.6 * farthest, "range": farthest, "bits": bits,
+                           "most": {"near": 2, "far": 5}[band], "height": int(rng.integers(700, 1200)), "seed": int(rng.integers(1 << 30)),
+                           "count": options.samples, "scene": f"objects_{i}.glb", "names": ", ".join(f"{name}_*" for name in CLASSES),
+                           "classes": ", ".join(f"{name}: {name}_*" for name in CLASSES)}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
@@ -232,17 +293,21 @@ def main():
     parser.add_argument("--objects", type=int, default=5, help="of each class in a scene (5)")
     parser.add_argument("--samples", type=int, default=40, help="of each sweep, of which there are two for each scene (40)")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--device", type=Path, metavar="FILE", help="a deployment of `insonify init`, used as it is; absent: one of this script")
     options = parser.parse_args()
     if min(options.scenes, options.objects, options.samples) < 1:
         parser.error("--scenes, --objects and --samples are at least 1")
     options.folder.mkdir(parents=True, exist_ok=True)
+    written, *device = device_set(options.device, options.folder) if options.device else (SET,)
     rng = np.random.default_rng(options.seed)
     for i in range(options.scenes):
         scene(rng, options.folder / f"objects_{i}.glb", options.objects)
         for band in RANGES:
-            (options.folder / f"{band}_{i}.yml").write_text(sweep(rng, options, i, band))
-    (options.folder / "deployment.yml").write_text(DEPLOYMENT)
-    (options.folder / "set.yml").write_text(SET)
+            made = device_sweep(rng, options, i, band, *device) if options.device else sweep(rng, options, i, band)
+            (options.folder / f"{band}_{i}.yml").write_text(made)
+    if not options.device:
+        (options.folder / "deployment.yml").write_text(DEPLOYMENT)
+    (options.folder / "set.yml").write_text(written)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
+import yaml
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -35,6 +36,44 @@ for i in range(4 * len(classes)):
     "categories": [{{"id": i, "name": name}} for i, name in enumerate(classes)]}}))
 (folder / "manifest.json").write_text("{{}}")
 """
+
+
+DEVICE = """
+tasks:
+  sonar: {type: sonar::SonarTask, properties: {range: 30, bin_count: 750, pulse: {bandwidth_khz: 166}, beam_pattern: {receive: {}}}}
+  noise: {type: noise::NoiseTask, properties: {speckle: {law: rayleigh}}}
+  receiver: {type: receiver::ReceiverTask, properties: {output: code, code: {bits: 16, law: sqrt, gamma: 0.5}}}
+"""
+
+
+class DeviceSet(unittest.TestCase):
+    def made(self, folder, text):
+        (folder / "device.yml").write_text(text)
+        return subprocess.run([sys.executable, ROOT / "scripts/scenes/make_hanging_objects.py", folder / "set", "--scenes", "1", "--objects", "1",
+                               "--device", folder / "device.yml"], capture_output=True, text=True)
+
+    def test_a_device_is_used_as_it_is_and_each_of_its_effects_can_be_omitted(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            self.assertEqual(self.made(folder, DEVICE).returncode, 0)
+            plan = sets.read_set(folder / "set")
+            self.assertEqual(plan["deployment"].resolve(), (folder / "device.yml").resolve())
+            self.assertEqual(plan["effects"], {"beam_pattern": {"sonar.beam_pattern": None}, "pulse": {"sonar.pulse": None},
+                                               "speckle": {"noise.speckle": None}, "gamma": {"receiver.code.gamma": 1}})
+            self.assertEqual([each.name for each in plan["sweeps"]], ["near_0.yml", "far_0.yml"])
+            for file in plan["sweeps"]:
+                sweep = yaml.safe_load(file.read_text())
+                self.assertEqual(set(sweep["settings"]), {"sonar.range", "scene.mount"})
+                self.assertEqual((sweep["picture"]["scale"], sweep["picture"]["code_bits"]), ("code", 16))
+                bins = sweep["settings"]["sonar.range"][0] / 750 / 1497e-6  # of a microsecond; rounded up to a whole one
+                self.assertLess(np.ceil(bins) - bins, 0.1)
+
+    def test_a_file_that_is_no_deployment_of_a_device_is_one_error(self):
+        with tempfile.TemporaryDirectory() as name:
+            for text in ("tasks: {}", "- 1", "tasks: [", DEVICE.replace("code: {bits", "codes: {bits")):
+                done = self.made(Path(name), text)
+                self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+                self.assertIn("device.yml: is no deployment", done.stderr)
 
 
 class Halves(unittest.TestCase):
