@@ -109,6 +109,19 @@ def test_insonify_is_measured_and_the_sheet_is_written(tmp_path):
     assert float(peer.cells["motion"][0]) == pytest.approx(0.5, abs=0.15)
 
 
+def test_a_python_without_numpy_uses_that_of_the_build_from_the_first_scene_to_the_sheet(tmp_path):
+    """The run of a venv that has no packages; the Python of its build is this one."""
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "bare"], check=True)
+    (tmp_path / "venv/bin").mkdir(parents=True)
+    python = tmp_path / "venv/bin/python"
+    python.write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
+    python.chmod(0o755)
+    command = [tmp_path / "bare/bin/python", PEERS / "run", "--short", "--out", tmp_path / "out", "insonify"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env={**os.environ, "INSONIFY_BUILD": str(tmp_path)})
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out/sheet.md").read_text().startswith("| figure | closed form | Insonify ")
+
+
 def test_an_unknown_simulator_is_refused():
     done = subprocess.run([sys.executable, PEERS / "run", "nobody"], capture_output=True, text=True)
     assert done.returncode == 2 and "nobody: is none of insonify, openstb" in done.stderr

@@ -1,5 +1,7 @@
-"""The sheet of scripts/research/peers: the figures of each simulator next to the closed form, as a table in Markdown."""
+"""The sheet of scripts/research/peers: the figures of each simulator next to the closed form, as a table in Markdown.
+sheet.py OUT FOLDER... writes OUT/sheet.md of the folders of adapters."""
 import json
+import sys
 from pathlib import Path
 
 import case
@@ -98,3 +100,7 @@ def write(folders, out):
     file.write_text(text)
     ran = [f"{peer.title}, Python {peer.about['python']}, {peer.cores} cores" for peer in peers]
     print(f"{file}: {'; '.join(ran)}")
+
+
+if __name__ == "__main__":
+    write(sys.argv[2:], sys.argv[1])
