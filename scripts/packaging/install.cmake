@@ -26,8 +26,8 @@ set(files "runtime $<TARGET_FILE:insonify>\nruntime $<TARGET_FILE:insonify_core>
 foreach(target IN LISTS installed)
   string(APPEND files "development $<TARGET_FILE:${target}>\n")
 endforeach()
-foreach(package target IN ZIP_LISTS packages components)
-  string(APPEND files "${package} $<TARGET_FILE:${target}>\n")
+foreach(package IN LISTS packages)
+  string(APPEND files "${package} $<TARGET_FILE:insonify_component_${package}>\n")
 endforeach()
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/installed-$<CONFIG> CONTENT "${files}")
 
@@ -44,7 +44,7 @@ foreach(page ${pages})
 endforeach()
 install(FILES LICENSE DESTINATION ${documents} RENAME copyright COMPONENT runtime)
 
-# insonify, the command with its examples; insonify-NAME for each component library; and insonify-dev.
+# insonify, the command with its examples; insonify-NAME for each component library; python3-insonify; and insonify-dev.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME insonify)
 set(CPACK_PACKAGE_CONTACT "The Insonify developers")
@@ -70,14 +70,27 @@ endforeach()
 set(CPACK_DEBIAN_SDF_PACKAGE_RECOMMENDS insonify-meshes)
 set(CPACK_DEBIAN_GAZEBO_PACKAGE_RECOMMENDS insonify-meshes)
 set(CPACK_DEBIAN_WORLDS_PACKAGE_RECOMMENDS "python3-numpy, python3-venv, python3-yaml")
+if(TARGET insonify_python)
+  set(python insonify_python)
+  list(APPEND CPACK_COMPONENTS_ALL python3)
+  set(CPACK_DEBIAN_PYTHON3_PACKAGE_NAME python3-insonify)
+  set(CPACK_DEBIAN_PYTHON3_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON3_DESCRIPTION "Imaging sonar from a 3-D scene: the Python module")
+  set(CPACK_DEBIAN_PYTHON3_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON3_PACKAGE_DEPENDS "insonify (= ${PROJECT_VERSION}), python3 (>= 3.9), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON3_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/prerm)
+endif()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME insonify-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries of Insonify, to write components with
  find_package(Insonify) gives the framework and the library of each component.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "insonify (= ${PROJECT_VERSION}), libfmt-dev, libglm-dev, libyaml-cpp-dev")
+  "insonify (= ${PROJECT_VERSION}), libfmt-dev, libglm-dev, libyaml-cpp-dev, pkg-config")
+if(GEOGRAPHICLIB_FOUND)
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libgeographiclib-dev")  # of Insonify::types
+endif()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
-  "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, libgeographiclib-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libprotobuf-dev, libsdformat-dev, libsnappy-dev, libsqlite3-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzmq3-dev, libzstd-dev, zlib1g-dev")
+  "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libprotobuf-dev, libsdformat-dev, libsnappy-dev, libsqlite3-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzmq3-dev, libzstd-dev, zlib1g-dev")
 # Contents of the packages.
-add_custom_target(insonify_packages DEPENDS insonify insonify_man ${installed} ${components})
+add_custom_target(insonify_packages DEPENDS insonify insonify_man ${python} ${installed} ${components})
 include(CPack)

@@ -18,12 +18,28 @@ def run(*command: str | pathlib.Path) -> str:
     return subprocess.run(command, check=True, text=True, stdout=subprocess.PIPE).stdout
 
 
+def licences(package: str) -> list[dict]:
+    """Those that the package's copyright file names, also of single files; the text of one that names none."""
+    text = pathlib.Path(f"/usr/share/doc/{package}/copyright").read_text(errors="replace")
+    names = dict.fromkeys(re.findall(r"^License:[ \t]*(\S.*?)[ \t]*$", text, re.MULTILINE))
+    if names:
+        return [{"license": {"name": name}} for name in names]
+    return [{"license": {"name": f"copyright of {package}", "text": {"contentType": "text/plain", "content": text}}}]
+
+
 def installed(names: set[str]) -> list[dict]:
     """Those of these Debian packages that are installed, as components."""
     known = run("dpkg-query", "--show", "--showformat", "${Package} ${Version} ${Architecture} ${db:Status-Status}\n").splitlines()
     rows = sorted(line.split() for line in known)
     return [
-        {"type": "library", "name": name, "version": version, "bom-ref": f"{name}:{arch}", "purl": f"pkg:deb/{SYSTEM}/{name}@{version}?arch={arch}"}
+        {
+            "type": "library",
+            "name": name,
+            "version": version,
+            "bom-ref": f"{name}:{arch}",
+            "purl": f"pkg:deb/{SYSTEM}/{name}@{version}?arch={arch}",
+            "licenses": licences(name),
+        }
         for name, version, arch, status in rows
         if name in names and status == "installed"
     ]
@@ -31,13 +47,26 @@ def installed(names: set[str]) -> list[dict]:
 
 def compiled_in() -> list[dict]:
     """Libraries of headers, and those of the pages, which need no file of their package at run time."""
-    listed = {name for file in pathlib.Path("components").glob("*/packages") for name in re.findall(r"^[a-z][\w.+-]*", file.read_text(), re.MULTILINE)}
-    found = installed({name for name in listed if name.endswith("-dev") or name.startswith("libjs-")})
-    return [each for each in found if not re.search(r"\.so(\n|$)", run("dpkg-query", "--listfiles", each["name"]))]
+    lists = [*pathlib.Path("components").glob("*/packages"), pathlib.Path("types/packages")]
+    listed = {name for file in lists for name in re.findall(r"^[a-z][\w.+-]*", file.read_text(), re.MULTILINE)}
+    found = []
+    wanted = {name for name in listed if name.endswith("-dev") or name.startswith("libjs-")}
+    while wanted:
+        others: set[str] = set()
+        for each in installed(wanted):
+            files = run("dpkg-query", "--listfiles", each["name"])
+            if re.search(r"\.so(\n|$)", files):
+                continue
+            if re.search(r"\.(h|hpp|js)(\n|$)", files):
+                found.append(each)
+            else:  # libboost-dev only names another package
+                others |= set(re.findall(r"[\w.+-]+-dev", run("dpkg-query", "--show", "--showformat", "${Depends}", each["name"])))
+        wanted = others
+    return found
 
 
 def write(file: pathlib.Path, name: str, version: str, libraries: list[dict]) -> None:
-    about = {"type": "application", "name": name, "version": version, "bom-ref": "insonify"}
+    about = {"type": "application", "name": name, "version": version, "bom-ref": "insonify", "licenses": [{"license": {"id": "Apache-2.0"}}]}
     commit = run("git", "log", "-1", "--format=%H").strip() if pathlib.Path(".git").exists() else ""
     if commit:
         about["properties"] = [{"name": "commit", "value": commit}]
@@ -68,10 +97,11 @@ def describe_wheel() -> None:
     write(PACKAGES / f"insonify-{about['version']}-{platform.machine()}.sbom.json", "insonify", about["version"], libraries + compiled_in())
 
 
-for old in PACKAGES.glob("*.sbom.json"):
-    if ("-deb" in old.name) == ("deb" in sys.argv):
-        old.unlink()
-if "deb" in sys.argv:
-    describe_debs()
-if "wheel" in sys.argv:
-    describe_wheel()
+if __name__ == "__main__":
+    for old in PACKAGES.glob("*.sbom.json"):
+        if ("-deb" in old.name) == ("deb" in sys.argv):
+            old.unlink()
+    if "deb" in sys.argv:
+        describe_debs()
+    if "wheel" in sys.argv:
+        describe_wheel()

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tarfile
 
+import sbom
 import zstandard
 from scikit_build_core import build as backend
 
@@ -40,14 +41,16 @@ def stage() -> pathlib.Path:
 
 
 def licences(bundled: pathlib.Path, to: pathlib.Path) -> None:
-    """Copies the licence of each copied library from its Debian package."""
+    """Copies the licences of the copied libraries, and of those that are compiled in, from their Debian packages."""
     to.mkdir()
+    packages = {each["name"] for each in sbom.compiled_in()}
     for library in sorted(bundled.glob("*.so*")):
         name = re.sub(r"-[0-9a-f]{8}(?=\.)", "", library.name)
         if name == "libGLX.so.0":
             continue
         owners = run("dpkg-query", "--search", f"*/{name}")
-        package = owners.split(":")[0]
+        packages.add(owners.split(":")[0])
+    for package in packages:
         shutil.copy(f"/usr/share/doc/{package}/copyright", to / f"{package}.txt")
 
 

@@ -6,7 +6,7 @@
 #include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
-using testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr;
 
 namespace {
 
@@ -26,7 +26,7 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
     ASSERT_THAT(call(folder, {INSONIFY_CPACK, "-G", "DEB", "--config",
                               std::string(insonify::test::build_dir) + "/CPackConfig.cmake", "-B", "packages"}),
                 succeeds());
-    for (const char* name : {"insonify", "insonify-dev", "insonify-nav"})
+    for (const char* name : {"insonify", "insonify-dev", "insonify-nav", "python3-insonify"})
         ASSERT_EQ(call(folder, {"dpkg-deb", "-x", package(folder, name), "root"}).code, 0);
 
     EXPECT_TRUE(fs::exists(folder / "root/usr/lib/systemd/system/insonify.service"));
@@ -35,16 +35,25 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
     for (const char* needed : {"libc6 (>=", "libyaml-cpp", "libepoxy0", "libopencv-core", "libegl1", "libgl1-mesa-dri"})
         EXPECT_THAT(depends, HasSubstr(needed));
     EXPECT_THAT(call(folder, {"dpkg-deb", "-f", package(folder, "insonify-dev"), "Depends"}).out,
-                HasSubstr("insonify (="));
+                AllOf(HasSubstr("insonify (="), HasSubstr("pkg-config"), HasSubstr("libgeographiclib-dev")))
+        << "what find_package(Insonify) asks for";
 
     EXPECT_THAT(call(folder, {"dpkg-deb", "-f", package(folder, "insonify-dds"), "Depends"}).out,
-                testing::AllOf(HasSubstr("insonify (="), HasSubstr("libddsc")));
+                AllOf(HasSubstr("insonify (="), HasSubstr("libddsc")));
     EXPECT_THAT(depends, testing::Not(HasSubstr("libddsc"))) << "of a component library alone";
     const Outcome listed = call(folder, {folder / "root/usr/bin/insonify", "libraries"});
-    EXPECT_THAT(listed.out, testing::AllOf(HasSubstr("nav        here"), HasSubstr("dds        absent")));
+    EXPECT_THAT(listed.out, AllOf(HasSubstr("nav        here"), HasSubstr("dds        absent")));
 
     EXPECT_THAT(call(folder, {folder / "root/usr/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"}),
                 succeeds());
+    const Outcome stepped = call(
+        folder, {"env", "PYTHONPATH=" + (folder / "root/usr/lib/python3/dist-packages").string(),
+                 "LD_LIBRARY_PATH=" + (folder / "root/usr/lib").string(), "/usr/bin/python3", "-c",
+                 "import insonify; print(insonify.Simulation('wall.yml').step(insonify.Pose([0, 0, 0])).bins.max() > 0)"});
+    EXPECT_EQ(stepped.out, "True\n") << stepped.err;
+    EXPECT_THAT(call(folder, {"dpkg-deb", "-f", package(folder, "python3-insonify"), "Depends"}).out,
+                AllOf(HasSubstr("insonify (="), HasSubstr("python3-numpy")));
+
     const insonify::test::Page page = insonify::test::readPage("components/framework/README.md");
     writeFile(folder / "CMakeLists.txt", getCode(page, "cmake", "Use it from a project of your own"));
     writeFile(folder / "mean_echo.cpp", getCode(page, "cpp", "A component of your own"));

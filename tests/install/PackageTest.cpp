@@ -46,7 +46,10 @@ void runArchive(const WallFolder& folder) {
         for (const std::string& library : fromSystem(folder, each))
             EXPECT_THAT(library, testing::MatchesRegex("lib(c|m|dl|rt|pthread|resolv|gcc_s|stdc\\+\\+|z|expat)"))
                 << each;
-    EXPECT_GT(std::distance(fs::directory_iterator(package / "../insonify.libs/licences"), {}), 20);
+    const fs::path licences = package / "../insonify.libs/licences";
+    EXPECT_GT(std::distance(fs::directory_iterator(licences), {}), 20);
+    for (const char* compiled_in : {"libcli11-dev.txt", "libglm-dev.txt", "libjs-three.txt", "nlohmann-json3-dev.txt"})
+        EXPECT_TRUE(fs::exists(licences / compiled_in)) << compiled_in;
     EXPECT_THAT(
         call(folder, {program, "check", std::string(insonify::test::source_dir) + "/deploy/survey_mission.yml"}).err,
         HasSubstr("the component library survey, which is not in wheels and archives"));
@@ -67,7 +70,7 @@ void runWheel(const WallFolder& folder) {
     EXPECT_THAT(stepped.out, testing::AllOf(HasSubstr("/env/lib/"), HasSubstr("True True"))) << stepped.err;
 }
 
-/** Returns the names of the libraries in a list of what a package consists of; each has a version. */
+/** Returns the names of the libraries in a list of what a package consists of; each has a version and licences. */
 std::set<std::string> readLibraries(const std::string& end) {
     const json list = json::parse(readFile(packed(end)));
     EXPECT_EQ(list["bomFormat"], "CycloneDX");
@@ -76,6 +79,7 @@ std::set<std::string> readLibraries(const std::string& end) {
     for (const json& each : list["components"]) {
         EXPECT_NE(each["version"], "") << each;
         EXPECT_THAT(each["purl"].get<std::string>(), testing::StartsWith("pkg:")) << each;
+        EXPECT_FALSE(each.value("licenses", json::array()).empty()) << each;
         names.insert(each["name"]);
     }
     EXPECT_EQ(list["dependencies"].size(), list["components"].size() + 1);
@@ -97,7 +101,7 @@ TEST(PackageTest, TheArchiveRunsFromItsFolderAndTheWheelInAnyPython) {
     using testing::Contains, testing::StartsWith;
     for (const char* end : {"-deb.sbom.json", "64.sbom.json"}) {
         const std::set<std::string> libraries = readLibraries(end);
-        for (const char* library : {"libyaml-cpp", "libembree", "libcli11-dev", "nlohmann-json3-dev"})
+        for (const char* library : {"libyaml-cpp", "libembree", "libboost1.", "libcli11-dev", "libglm-dev", "libjs-three", "nlohmann-json3-dev"})
             EXPECT_THAT(libraries, Contains(StartsWith(library))) << end;
         EXPECT_FALSE(libraries.contains("libgtest-dev")) << end;
     }
