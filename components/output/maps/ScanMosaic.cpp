@@ -7,7 +7,6 @@ namespace insonify::output {
 namespace {
 
 const std::string disc_caption = "as the head receives it, ahead up";
-const cv::Point colour_bar{14, FanLayout::title_height + 18};
 
 DisplayConfig halved(DisplayConfig config) {
     config.width /= 2;
@@ -49,11 +48,9 @@ void ScanMosaic::build(const types::Sonar& ping) {
     layout_.emplace(static_cast<int>(half_.width), -std::numbers::pi, std::numbers::pi, range);
     map_.emplace(static_cast<int>(layout_->radius()), range);
     ground_.create(layout_->size(), CV_8UC3);
-    const cv::Point bar = placeOfBar(*layout_, colour_bar);
+    const cv::Point bar = placeOfBar(*layout_, half_);
     paintBackground(ground_, palette_, bar);
-    overlay_.emplace(fanOverlay(*layout_, {bar, labelled_bar_size}));
-    addColourBar(*overlay_, bar, half_);
-    overlay_->finish();
+    overlay_.emplace(fanOverlay(*layout_, bar, half_));
 }
 
 cv::Point2d ScanMosaic::pixel(const glm::dvec2& place) const {

@@ -75,17 +75,19 @@ void SoundingMap::drawPoints(cv::Mat& canvas, const Bounds& bounds) const {
 void SoundingMap::drawLabels(cv::Mat& canvas, const Bounds& bounds) const {
     Overlay overlay(canvas.size());
     using Anchor = Overlay::Anchor;
-    Chart::labelBar(overlay, bounds.high.z, bounds.low.z);
+    chart_.labelBar(overlay, bounds.high.z, bounds.low.z);
     const double step = roundStep(90 / pixels_per_m_);
     for (double y = step * std::ceil(bounds.low.y / step); y <= bounds.high.y; y += step)
         overlay.text(fmt::format("y {:.12g}", y + 0.0),
                      {static_cast<double>(pixel(0, y).x), chart_.area().br().y + 16.0}, Anchor::Centre);
     for (double x = step * std::ceil(bounds.low.x / step); x <= bounds.high.x; x += step)
-        if (const double row = pixel(x, 0).y; row > Chart::colour_bar.y + colour_bar_size.height + 20)
-            overlay.text(fmt::format("x {:.12g}", x + 0.0), {Chart::left_margin - 8.0, row}, Anchor::Right);
-    const std::string origin =
-        datum_ ? fmt::format(" of {:.7f} N {:.7f} E", datum_->latitude_deg, datum_->longitude_deg) : "";
-    Chart::addTitle(overlay, fmt::format("{} soundings, x north, y west{} [m], colour: height", bounds.points, origin));
+        overlay.text(fmt::format("x {:.12g}", x + 0.0), {Chart::left_margin - 8.0, static_cast<double>(pixel(x, 0).y)},
+                     Anchor::Right);
+    std::vector<std::string> title{"x north, y west [m]", "colour: height", fmt::format("{} soundings", bounds.points)};
+    if (datum_)
+        title.insert(title.begin() + 1,
+                     fmt::format("from {:.7f} N {:.7f} E", datum_->latitude_deg, datum_->longitude_deg));
+    Chart::addTitle(overlay, title);
     overlay.finish();
     overlay.blend(canvas);
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <opencv2/imgproc.hpp>
 
@@ -61,7 +62,7 @@ Palette getPalette(ColourMap map) {
 namespace {
 
 constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
-constexpr double font_scale = 0.45;
+constexpr double font_scale = 0.45, caption_scale = 0.42;  ///< Captions are as large as labels.
 
 }  // namespace
 
@@ -80,34 +81,35 @@ cv::Mat openCanvas(types::Image& picture, cv::Size size, types::Time time) {
 
 void Title::draw(cv::Mat& canvas, const types::Sonar& ping, const LevelScale& scale) {
     constexpr double year_2001 = 978307200;
+    constexpr int first = 12, gap = 28;
     const double seconds = ping.time.seconds();
-    column_ = 12;
-    const auto out = [this] { return text_.clear(), std::back_inserter(text_); };
+    const auto out = [this](size_t i) { return texts_[i].clear(), std::back_inserter(texts_[i]); };
     if (seconds < year_2001)
-        fmt::format_to(out(), "{:.3f} s", seconds);
+        fmt::format_to(out(0), "{:.3f} s", seconds);
     else
-        fmt::format_to(out(), "{:%F %T} UTC", fmt::gmtime(static_cast<std::time_t>(seconds)));
-    add(canvas);
-    fmt::format_to(out(), "range {:.4g} m", ping.binStart(ping.bin_count));
-    add(canvas);
-    fmt::format_to(out(), "{} x {} bins", ping.beam_count, ping.bin_count);
-    add(canvas);
-    fmt::format_to(out(), "c {:.0f} m/s", ping.speed_of_sound);
-    add(canvas);
+        fmt::format_to(out(0), "{:%F %T} UTC", fmt::gmtime(static_cast<std::time_t>(seconds)));
+    fmt::format_to(out(1), "range {:.4g} m", ping.binStart(ping.bin_count));
+    fmt::format_to(out(2), "{} x {} bins", ping.beam_count, ping.bin_count);
+    fmt::format_to(out(3), "c {:.0f} m/s", ping.speed_of_sound);
     if (scale.config().scale == BinScale::Code)
-        fmt::format_to(out(), "codes of {} bits", scale.config().code_bits);
+        fmt::format_to(out(4), "codes of {} bits", scale.config().code_bits);
     else
-        fmt::format_to(out(), "white = {:.1f} dB", scale.referenceDb());
-    add(canvas);
-}
-
-void Title::add(cv::Mat& canvas) {
-    int baseline = 0;
-    const int width = cv::getTextSize(text_, font, font_scale, 1, &baseline).width;
-    if (column_ + width > canvas.cols) return;
-    cv::putText(canvas, text_, {column_, FanLayout::title_height / 2 + 5}, font, font_scale, cv::Scalar(ink), 1,
-                cv::LINE_AA);
-    column_ += width + 28;
+        fmt::format_to(out(4), "white = {:.1f} dB", scale.referenceDb());
+    int room = canvas.cols - first, baseline = 0;
+    std::array<int, 5> widths{};
+    for (const size_t i : {0, 4, 1, 2, 3}) {  // the most important ones first
+        const int width = cv::getTextSize(texts_[i], font, font_scale, 1, &baseline).width;
+        if (width > room) break;
+        widths[i] = width;
+        room -= width + gap;
+    }
+    int column = first;
+    for (size_t i = 0; i < texts_.size(); ++i) {
+        if (widths[i] == 0) continue;
+        cv::putText(canvas, texts_[i], {column, FanLayout::title_height / 2 + 5}, font, font_scale, cv::Scalar(ink), 1,
+                    cv::LINE_AA);
+        column += widths[i] + gap;
+    }
 }
 
 void paintBackground(cv::Mat& canvas, const Palette& palette, cv::Point bar) {
@@ -123,21 +125,25 @@ void paintBackground(cv::Mat& canvas, const Palette& palette, cv::Point bar) {
 
 void sideBySide(const Captioned& left, const Captioned& right, types::Image& picture) {
     const types::ImageSize size = left.picture.size, other = right.picture.size;
-    cv::Mat canvas =
-        openCanvas(picture, {size.width + other.width, std::max(size.height, other.height)}, left.picture.time);
-    if (size.height != other.height) canvas.setTo(background);
+    constexpr int strip = 24;
+    const int height =
+        std::max(size.height, other.height) + (left.caption.empty() && right.caption.empty() ? 0 : strip);
+    cv::Mat canvas = openCanvas(picture, {size.width + other.width, height}, left.picture.time);
+    canvas.setTo(background);
     int column = 0;
     for (const Captioned& half : {left, right}) {
         const cv::Mat pixels(half.picture.size.height, half.picture.size.width, CV_8UC3,
                              const_cast<uint8_t*>(half.picture.image.data()), half.picture.row_size);
         pixels.copyTo(canvas(cv::Rect(cv::Point(column, 0), pixels.size())));
-        cv::putText(canvas, half.caption, {column + 12, canvas.rows - 8}, font, font_scale, cv::Scalar(ink), 1,
-                    cv::LINE_AA);
+        const int room = pixels.cols - 24;
+        const auto addCaption = [&](const std::string& text) {
+            cv::putText(canvas, text, {column + 12, canvas.rows - 8}, font, caption_scale, cv::Scalar(ink), 1,
+                        cv::LINE_AA);
+        };
+        measureWidth(half.caption) > room ? addCaption(shorten(half.caption, room)) : addCaption(half.caption);
         column += pixels.cols;
     }
 }
-
-const cv::Point Chart::colour_bar{10, FanLayout::title_height + 24};
 
 Chart::Chart(uint32_t width, ColourMap colour_map)
     : width_(static_cast<int>(width + width % 2)), palette_(getPalette(colour_map)) {}
@@ -149,7 +155,7 @@ int Chart::rowsFor(double rows, double tallest) const {
 cv::Mat Chart::open(types::Image& picture, types::Time time, int rows) {
     area_ = {left_margin, FanLayout::title_height + top_margin, columns(), rows};
     cv::Mat canvas = openCanvas(picture, {width_, area_.br().y + bottom_margin}, time);
-    paintBackground(canvas, palette_, colour_bar);
+    paintBackground(canvas, palette_, bar());
     canvas(area_).setTo(cv::Scalar(0, 0, 0));
     return canvas;
 }
@@ -158,16 +164,27 @@ const cv::Vec3b& Chart::colour(double level) const {
     return palette_[static_cast<size_t>(std::clamp(level, 0.0, 255.0))];
 }
 
-void Chart::labelBar(Overlay& overlay, double top, double bottom) {
-    for (int i = 0; i <= 4; ++i) {
-        const double y = colour_bar.y + i / 4.0 * (colour_bar_size.height - 1);
-        overlay.text(fmt::format("{:.2f} m", top + i / 4.0 * (bottom - top)),
-                     {colour_bar.x + colour_bar_size.width + 5.0, y}, Overlay::Anchor::Left);
+void Chart::labelBar(Overlay& overlay, double top, double bottom) const {
+    const double low = std::min(top, bottom), span = std::abs(bottom - top), x = bar().x + colour_bar_size.width;
+    const double step = roundStep(std::max({span / 4.5, 1e-9 * std::abs(low), 1e-6}));
+    const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+    overlay.take(cv::Rect(bar(), colour_bar_size));
+    for (double value = step * std::ceil(low / step - 1e-9); value <= low + span + 1e-9 * step; value += step) {
+        const double share = span > 0 ? (value - top) / (bottom - top) : 0;
+        const double y = bar().y + share * (colour_bar_size.height - 1);
+        overlay.line({x + 1, y}, {x + 4, y}, 235);
+        overlay.text(fmt::format("{:.{}f} m", value + 0.0, decimals), {x + 8, y}, Overlay::Anchor::Left);
     }
 }
 
-void Chart::addTitle(Overlay& overlay, const std::string& text) {
-    overlay.text(text, {12, FanLayout::title_height / 2.0}, Overlay::Anchor::Left);
+void Chart::addTitle(Overlay& overlay, const std::vector<std::string>& parts) {
+    std::string title, longer;
+    for (const std::string& part : parts) {
+        longer += (longer.empty() ? "" : "   ") + part;
+        if (measureWidth(longer) > overlay.size().width - 24) break;
+        title = longer;
+    }
+    overlay.text(title, {12, FanLayout::title_height / 2.0}, Overlay::Anchor::Left);
 }
 
 }  // namespace insonify::output

@@ -10,8 +10,6 @@
 namespace insonify::output {
 namespace {
 
-const cv::Point colour_bar{14, FanLayout::title_height + 18};
-
 bool sameAngle(types::Angle a, types::Angle b) { return a.rad == b.rad || (a.isUnknown() && b.isUnknown()); }
 
 }  // namespace
@@ -89,10 +87,8 @@ void FanImage::buildTables() {
 }
 
 void FanImage::buildOverlay() {
-    bar_ = placeOfBar(*layout_, colour_bar);
-    overlay_.emplace(fanOverlay(*layout_, {bar_, labelled_bar_size}));
-    addColourBar(*overlay_, bar_, config_);
-    overlay_->finish();
+    bar_ = placeOfBar(*layout_, config_);
+    overlay_.emplace(fanOverlay(*layout_, bar_, config_));
 }
 
 /** Gathers the ping's beams in order of bearing, in a full circle with the first one again at the end, with at most one

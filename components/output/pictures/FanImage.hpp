@@ -28,6 +28,9 @@ public:
     /** Returns the layout of the last picture, which must exist. */
     const FanLayout& layout() const { return *layout_; }
     const LevelScale& scale() const { return scale_; }
+    /** Returns the area of the colour bar and its labels in the last picture, if it has one [px]. */
+    cv::Rect bar() const { return labelledBar(bar_, config_) & cv::Rect({}, layout_->size()); }
+    const Overlay& overlay() const { return *overlay_; }
     int tablesBuilt() const { return tables_built_; }
 
 private:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
@@ -19,6 +20,27 @@ constexpr int label_bits = 4;
 
 cv::Point subPixel(cv::Point2d at) { return {cvRound(at.x * (1 << label_bits)), cvRound(at.y * (1 << label_bits))}; }
 
+constexpr int above_bar = 8, below_bar = 13, bar_to_label = 8;  ///< From the bar to its labels or their edge [px].
+
+/** A label beside the colour bar, at a share of its height below the top. */
+struct BarLabel {
+    double share_below;
+    std::string text;
+};
+
+std::vector<BarLabel> makeBarLabels(const DisplayConfig& display) {
+    const bool codes = display.scale == BinScale::Code;
+    const double span = codes ? display.maxCode() : display.dynamic_range_db, step = roundStep(span / 4.5);
+    std::vector<BarLabel> labels{{0, codes ? fmt::format("{:.0f}", span) : "0 dB"}};
+    if (codes)
+        for (double code = 0; code <= span - step / 2; code += step)
+            labels.push_back({1 - code / span, fmt::format("{:.0f}", code)});
+    else
+        for (double below = step; below < span * (1 + 1e-9); below += step)
+            labels.push_back({below / span, fmt::format("{:g}", -below)});
+    return labels;
+}
+
 /** Returns the degrees between spokes, so that their labels fit on the outer arc. */
 double spokeStep(double radius) {
     for (const double step : {1, 2, 5, 10, 15, 30, 45})
@@ -28,7 +50,7 @@ double spokeStep(double radius) {
 
 void addRings(Overlay& overlay, const FanLayout& layout) {
     const double metres_per_pixel = layout.range() / layout.radius();
-    const double step = roundStep(64 * metres_per_pixel);
+    const double step = roundStep(64 * metres_per_pixel, layout.range());
     const bool half_plane = layout.left() < std::numbers::pi / 2 && layout.right() > -std::numbers::pi / 2;
     for (double range = step; range < layout.range() * (1 + 1e-9); range += step) {
         const double radius = range / metres_per_pixel;
@@ -57,8 +79,9 @@ void addSpokes(Overlay& overlay, const FanLayout& layout) {
         const cv::Point2d end = layout.pixel(layout.range(), bearing);
         overlay.line(end, end + 5 * outward, full);
         const double turn = degrees > 180 + 1e-6 ? -360 : degrees < -180 + 1e-6 ? 360 : 0, shown = degrees + turn;
-        overlay.text(fmt::format("{:g}", shown + 0.0), end + cv::Point2d(22 * outward.x, 15 * outward.y),
-                     Overlay::Anchor::Centre, true);
+        const std::string text = fmt::format("{:g}", shown + 0.0);
+        const double away = std::abs(outward.x) * (measureWidth(text) / 2.0 + 6) + std::abs(outward.y) * 10 + 4;
+        overlay.text(text, end + away * outward, Overlay::Anchor::Centre, true);
     }
 }
 
@@ -90,11 +113,17 @@ void Overlay::text(const std::string& text, cv::Point2d at, Anchor anchor, bool 
     int baseline = 0;
     const cv::Size size = cv::getTextSize(text, label_font, label_scale, 1, &baseline);
     const double back = anchor == Anchor::Left ? 0 : anchor == Anchor::Centre ? size.width / 2.0 : size.width;
-    const cv::Point start(cvRound(at.x - back), cvRound(at.y + size.height / 2.0));
-    const cv::Rect box(start.x - margin, start.y - size.height - margin,
-                       size.width + 2 * margin + (degrees ? ring_width : 0), size.height + baseline + 2 * margin);
-    if ((box & taken_).area() > 0) return;
-    if (on_echoes) plates_.push_back(box & cv::Rect({}, cover_.size()));
+    cv::Point start(cvRound(at.x - back), cvRound(at.y + size.height / 2.0));
+    cv::Rect box(start.x - margin, start.y - size.height - margin, size.width + 2 * margin + (degrees ? ring_width : 0),
+                 size.height + baseline + 2 * margin);
+    const cv::Point within(std::max(0, std::min(box.x, size_.width - box.width)),
+                           std::max(0, std::min(box.y, size_.height - box.height)));
+    const cv::Point moved = within - box.tl();
+    box += moved, start += moved;
+    const auto touches = [&box](const cv::Rect& area) { return (box & area).area() > 0; };
+    if (std::ranges::any_of(taken_, touches) || box.width > size_.width) return;
+    take(box);
+    if (on_echoes || moved != cv::Point()) plates_.push_back(box);
     cv::putText(cover_, text, start, label_font, label_scale, full, 1, cv::LINE_AA);
     if (degrees)
         cv::circle(cover_, subPixel({start.x + size.width + 2.0, start.y - size.height + 1.0}), 2 << label_bits, full,
@@ -120,19 +149,32 @@ void Overlay::blend(cv::Mat& picture) const {
     }
 }
 
-Overlay fanOverlay(const FanLayout& layout, const cv::Rect& taken) {
+Overlay fanOverlay(const FanLayout& layout, cv::Point bar, const DisplayConfig& display) {
     Overlay overlay(layout.size());
-    overlay.take(taken);
+    overlay.take({0, 0, layout.size().width, FanLayout::title_height});
+    addColourBar(overlay, bar, display);
     addRings(overlay, layout);
     addSpokes(overlay, layout);
     addOutline(overlay, layout);
-    overlay.take({});
+    overlay.finish();
     return overlay;
 }
 
-cv::Point placeOfBar(const FanLayout& layout, cv::Point at) {
-    const bool fits = fitsColourBar(layout.size(), at) && !layout.reaches(cv::Rect(at, colour_bar_size));
-    return fits ? at : cv::Point(-labelled_bar_size.width, -labelled_bar_size.height);
+cv::Rect labelledBar(cv::Point at, const DisplayConfig& display) {
+    int widest = 0;
+    for (const BarLabel& label : makeBarLabels(display)) widest = std::max(widest, measureWidth(label.text));
+    return {at.x, at.y - above_bar, colour_bar_size.width + bar_to_label + widest + 2,
+            colour_bar_size.height + above_bar + below_bar};
+}
+
+cv::Point placeOfBar(const FanLayout& layout, const DisplayConfig& display) {
+    const cv::Size size = layout.size(), bar = labelledBar({}, display).size();
+    const int left = 14, right = size.width - bar.width - 6, top = FanLayout::title_height + 18;
+    const int bottom = size.height - bar.height + above_bar - 6;
+    for (const cv::Point at : {cv::Point(left, top), {left, bottom}, {right, top}, {right, bottom}})
+        if (at.y >= top && at.x >= left && fitsColourBar(size, at) && !layout.reaches(labelledBar(at, display)))
+            return at;
+    return {-1000, -1000};
 }
 
 bool fitsColourBar(cv::Size picture, cv::Point at) {
@@ -142,20 +184,12 @@ bool fitsColourBar(cv::Size picture, cv::Point at) {
 
 void addColourBar(Overlay& overlay, cv::Point at, const DisplayConfig& display) {
     if (!fitsColourBar(overlay.size(), at)) return;
-    const auto label = [&](double share_below, const std::string& text) {
-        const double x = at.x + colour_bar_size.width, y = at.y + share_below * (colour_bar_size.height - 1);
+    overlay.take(cv::Rect(at, colour_bar_size));
+    for (const BarLabel& label : makeBarLabels(display)) {
+        const double x = at.x + colour_bar_size.width, y = at.y + label.share_below * (colour_bar_size.height - 1);
         overlay.line({x + 1, y}, {x + 4, y}, full);
-        overlay.text(text, {x + 8, y}, Overlay::Anchor::Left);
-    };
-    const bool codes = display.scale == BinScale::Code;
-    const double span = codes ? display.maxCode() : display.dynamic_range_db, step = roundStep(span / 4.5);
-    label(0, codes ? fmt::format("{:.0f}", span) : "0 dB");
-    if (codes)
-        for (double code = 0; code <= span - step / 2; code += step)
-            label(1 - code / span, fmt::format("{:.0f}", code));
-    else
-        for (double below = step; below < span * (1 + 1e-9); below += step)
-            label(below / span, fmt::format("{:g}", -below));
+        overlay.text(label.text, {x + bar_to_label, y}, Overlay::Anchor::Left);
+    }
 }
 
 double roundStep(double minimum) {
@@ -163,6 +197,20 @@ double roundStep(double minimum) {
     for (const double factor : {1, 2, 5})
         if (factor * power >= minimum * (1 - 1e-9)) return factor * power;
     return 10 * power;
+}
+
+double roundStep(double minimum, double end) { return std::min(roundStep(minimum), roundStep(0.4 * end)); }
+
+int measureWidth(const std::string& text) {
+    int baseline = 0;
+    return cv::getTextSize(text, label_font, label_scale, 1, &baseline).width;
+}
+
+std::string shorten(std::string text, int width) {
+    if (measureWidth(text) <= width) return text;
+    text += "..";
+    while (text.size() > 2 && measureWidth(text) > width) text.erase(text.size() - 3, 1);
+    return text;
 }
 
 }  // namespace insonify::output

@@ -18,10 +18,12 @@ public:
     void line(cv::Point2d from, cv::Point2d to, int opacity);
     void arc(cv::Point2d centre, double radius, double right, double left, int opacity);
     /** Draws text whose middle line runs through `at`, which is its left end, centre or right end; the picture below
-     *  text on echoes is darkened. */
+     *  text on echoes is darkened. Text that would leave the picture is moved inside, on echoes; text that would touch
+     *  earlier text is omitted. */
     void text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees = false, bool on_echoes = false);
     /** From here on, text that would touch this area is omitted. */
-    void take(const cv::Rect& area) { taken_ = area; }
+    void take(const cv::Rect& area) { taken_.push_back(area); }
+    const std::vector<cv::Rect>& taken() const { return taken_; }  ///< Texts and other areas, in order [px].
     /** Must be called after all drawing. */
     void finish();
     void blend(cv::Mat& picture) const;
@@ -34,20 +36,22 @@ private:
     };
     cv::Size size_;
     cv::Mat cover_;
-    cv::Rect taken_;
-    std::vector<cv::Rect> plates_;
+    std::vector<cv::Rect> taken_, plates_;
     std::vector<Touch> touched_;
 };
 
-/** Draws range rings labelled in metres and spokes labelled in degrees, positive to port.
- *  @param taken where no label is drawn [px] */
-Overlay fanOverlay(const FanLayout& layout, const cv::Rect& taken = {});
+/** Makes the lines and labels of a fan: range rings in metres, spokes in degrees, positive to port, and the labels of a
+ *  colour bar with its upper left corner at `bar`, unless that is outside of the picture. */
+Overlay fanOverlay(const FanLayout& layout, cv::Point bar, const DisplayConfig& display);
 
 inline const cv::Size colour_bar_size{12, 128};
-inline const cv::Size labelled_bar_size{54, 136};  ///< With the labels.
 
-/** Returns `at` if the colour bar fits there, next to the fan; else a place outside of the picture. */
-cv::Point placeOfBar(const FanLayout& layout, cv::Point at);
+/** Returns the area of the colour bar at `at` with its labels [px]. */
+cv::Rect labelledBar(cv::Point at, const DisplayConfig& display);
+
+/** Returns the upper left corner of a colour bar in the first corner of the picture where bar and labels are next to
+ * the fan; a place outside of the picture if there is none. */
+cv::Point placeOfBar(const FanLayout& layout, const DisplayConfig& display);
 
 /** Returns whether the colour bar with its upper left corner at `at` fits in a picture of this size. */
 bool fitsColourBar(cv::Size picture, cv::Point at);
@@ -55,7 +59,14 @@ bool fitsColourBar(cv::Size picture, cv::Point at);
 /** Labels the colour bar at `at` with levels relative to the brightest; draws nothing if the bar does not fit. */
 void addColourBar(Overlay& overlay, cv::Point at, const DisplayConfig& display);
 
-/** Returns a round step (1, 2 or 5 times a power of ten) not below `least`. */
+/** Returns a round step (1, 2 or 5 times a power of ten) not below `minimum`. */
 double roundStep(double minimum);
+/** Returns the round step not below `minimum` of an axis from 0 to `end`; at most `end`. */
+double roundStep(double minimum, double end);
+
+/** Returns the width of text in the font of labels [px]. */
+int measureWidth(const std::string& text);
+/** Returns text, without its last letters where it is wider than `width` in the font of labels [px]. */
+std::string shorten(std::string text, int width);
 
 }  // namespace insonify::output

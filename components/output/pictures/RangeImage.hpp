@@ -8,7 +8,7 @@
 namespace insonify::output {
 
 /** Draws a distance map as seen from the sonar: port is left, up is up, the nearest return is brightest; black without
- *  a return. Cells are square and as large as possible; labels give the outermost angles. */
+ *  a return. Cells are square and as large as possible; labels give round angles, positive to port and up. */
 class RangeImage {
 public:
     using Sample = types::DepthMapPtr;
@@ -32,6 +32,7 @@ private:
     };
     Span getSpan(const types::DepthMap& map) const;
     void drawCells(cv::Mat& canvas, const types::DepthMap& map, const Span& span) const;
+    void addAngles(Overlay& overlay, const types::DepthMap& map) const;
     void drawLabels(cv::Mat& canvas, const types::DepthMap& map, const Span& span) const;
 
     Chart chart_;

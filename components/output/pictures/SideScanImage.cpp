@@ -64,7 +64,7 @@ void SideScanImage::fillRow(const types::Sonar& ping, cv::Mat& row) {
 }
 
 void SideScanImage::addRanges(Overlay& overlay, double range) const {
-    const double per_pixel = 2 * range / water().width, step = roundStep(80 * per_pixel), y = water().br().y;
+    const double per_pixel = 2 * range / water().width, step = roundStep(80 * per_pixel, range), y = water().br().y;
     const double middle = water().x + water().width / 2.0;
     for (double at = 0; at <= 0.97 * range; at += step)
         for (const int side : {-1, 1}) {
@@ -74,6 +74,7 @@ void SideScanImage::addRanges(Overlay& overlay, double range) const {
                 overlay.text(fmt::format("{:g} m{}", at, at > 0 ? (side < 0 ? " P" : " S") : ""), {x, y + 16},
                              Overlay::Anchor::Centre);
         }
+    nameAxis(overlay, ground_range_ ? "ground range" : "slant range");
 }
 
 }  // namespace insonify::output

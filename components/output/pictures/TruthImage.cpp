@@ -14,8 +14,7 @@ namespace {
 const std::string fan_caption = "echoes", truth_caption = "objects; dark blue: in shadow";
 constexpr double font_scale = 0.42;
 constexpr int line_height = 15, swatch = 10, margin = 12, legend_width = 118;
-constexpr int bar_width = 84, bar_height = 160;  ///< Size of the fan's colour bar; the names are shown in its place.
-constexpr double dimmest = 0.35;                 ///< Brightness of an object whose echo is below the dynamic range.
+constexpr double dimmest = 0.35;  ///< Brightness of an object whose echo is below the dynamic range.
 
 DisplayConfig halved(DisplayConfig config) {
     config.width /= 2;
@@ -110,8 +109,13 @@ void TruthImage::count() {
 int TruthImage::legendEnd(const cv::Mat& canvas) const {
     const double aside = layout().origin().x - legend_width, radius = layout().radius();
     const double widest = radius * std::sin(std::min(layout().left(), std::numbers::pi / 2));
-    if (aside > widest) return canvas.rows - 2 * line_height;
-    return static_cast<int>(layout().origin().y - std::sqrt(radius * radius - aside * aside)) - line_height / 2;
+    int end = canvas.rows - line_height;
+    if (aside <= widest)
+        end = static_cast<int>(layout().origin().y - std::sqrt(radius * radius - aside * aside)) - line_height / 2;
+    for (const cv::Rect& label : fan_.overlay().taken())
+        if (label.x < legend_width && label.y >= FanLayout::title_height && (label & fan_.bar()) != label)
+            end = std::min(end, label.y);
+    return end;
 }
 
 void TruthImage::addLegend(cv::Mat& canvas) const {
@@ -120,10 +124,12 @@ void TruthImage::addLegend(cv::Mat& canvas) const {
     const auto room = static_cast<size_t>(std::max(0, (end - top) / line_height));
     const bool all = shown_.size() <= room;
     const size_t count = all ? shown_.size() : room - std::min<size_t>(room, 1);
-    canvas(cv::Rect(0, FanLayout::title_height, bar_width, bar_height) & cv::Rect({}, canvas.size())).setTo(background);
+    canvas(fan_.bar()).setTo(background);
     int row = top;
     for (size_t i = 0; i < count; ++i, row += line_height)
-        addLine(canvas, row, truth_->objects[static_cast<size_t>(shown_[i].object)], getColour(shown_[i].object));
+        addLine(canvas, row,
+                shorten(truth_->objects[static_cast<size_t>(shown_[i].object)], legend_width - margin - swatch - 8),
+                getColour(shown_[i].object));
     if (!all && room > 0) addLine(canvas, row, fmt::format("and {} more", shown_.size() - count), {90, 90, 90});
 }
 

@@ -13,19 +13,19 @@
 namespace insonify::output {
 namespace {
 
-constexpr int left_margin = 78, right_margin = 20, top_margin = 10, bottom_margin = 34;
-const cv::Point colour_bar{10, FanLayout::title_height + WaterfallImage::history - 120};
+constexpr int left_margin = 78, top_margin = 10, bottom_margin = 34, beside_bar = 10;
 
 }  // namespace
 
 WaterfallImage::WaterfallImage(const DisplayConfig& config)
     : config_(config),
       width_(static_cast<int>(config.width + config.width % 2)),
+      bar_(width_ - labelledBar({}, config).width - 4, FanLayout::title_height + top_margin + 6),
       palette_(getPalette(config.colour_map)),
       scale_(config) {}
 
 cv::Rect WaterfallImage::water() const {
-    return {left_margin, FanLayout::title_height + top_margin, width_ - left_margin - right_margin, history};
+    return {left_margin, FanLayout::title_height + top_margin, bar_.x - beside_bar - left_margin, history};
 }
 
 void WaterfallImage::paint(const types::Sonar& ping, types::Image& picture) {
@@ -54,21 +54,26 @@ void WaterfallImage::clear(const types::Sonar& ping) {
     rows_.create(history, water().width, CV_32F);
     rows_ = std::numeric_limits<float>::quiet_NaN();
     ground_.create(water().br().y + bottom_margin, width_, CV_8UC3);
-    paintBackground(ground_, palette_, colour_bar);
+    paintBackground(ground_, palette_, bar_);
     overlay_.emplace(ground_.size());
-    addColourBar(*overlay_, colour_bar, config_);
+    addColourBar(*overlay_, bar_, config_);
     addRanges(*overlay_, range_ > 0 ? range_ : 1);
     overlay_->finish();
 }
 
 void WaterfallImage::addRanges(Overlay& overlay, double range) const {
     const double metres_per_pixel = range / water().width;
-    const double step = roundStep(80 * metres_per_pixel);
+    const double step = roundStep(80 * metres_per_pixel, range);
     for (double at = 0; at <= range * (1 + 1e-9); at += step) {
         const double x = water().x + at / metres_per_pixel, y = water().br().y;
         overlay.line({x, y}, {x, y + 5}, 235);
         overlay.text(fmt::format("{:g} m", at), {x, y + 16}, Overlay::Anchor::Centre);
     }
+    nameAxis(overlay, "range");
+}
+
+void WaterfallImage::nameAxis(Overlay& overlay, const std::string& name) const {
+    overlay.text(name, {8, water().br().y + 16.0}, Overlay::Anchor::Left);
 }
 
 void WaterfallImage::fillRow(const types::Sonar& ping, cv::Mat& row) {
@@ -89,9 +94,16 @@ void WaterfallImage::addRow(const types::Sonar& ping) {
 }
 
 void WaterfallImage::labelAges(cv::Mat& canvas) {
-    for (int row = 0; row < filled_ && water().y + row < colour_bar.y - 20; row += 60) {
+    for (int row = 0; row < filled_; row += 60) {
         text_.clear();
-        fmt::format_to(std::back_inserter(text_), "{:.1f} s", (times_[static_cast<size_t>(row)] - times_[0]).seconds());
+        const double age = (times_[static_cast<size_t>(row)] - times_[0]).seconds();
+        const auto out = std::back_inserter(text_);
+        if (age > -900)
+            fmt::format_to(out, "{:.1f} s", age);
+        else if (age > -360000)
+            fmt::format_to(out, "{:.2f} h", age / 3600);
+        else
+            fmt::format_to(out, "{:.1f} d", age / 86400);
         cv::putText(canvas, text_, {8, water().y + row + 6}, cv::FONT_HERSHEY_SIMPLEX, 0.42, cv::Scalar(ink), 1,
                     cv::LINE_AA);
     }

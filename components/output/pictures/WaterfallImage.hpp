@@ -11,8 +11,8 @@
 namespace insonify::output {
 
 /** Draws range against time: every ping is a row, the newest on top, range from left to right. A row is the mean
- *  intensity over the ping's beams. Labels give range in metres and each row's age in seconds. A ping with other bins
- *  or range restarts the picture. */
+ *  intensity over the ping's beams. Labels give range in metres and the age of rows. A ping with other bins or range
+ *  restarts the picture. */
 class WaterfallImage : public Painter {
 public:
     explicit WaterfallImage(const DisplayConfig& config);
@@ -30,6 +30,8 @@ protected:
     virtual void fillRow(const types::Sonar& ping, cv::Mat& row);
     /** Labels the lower edge of water() for pings of this range [m]. */
     virtual void addRanges(Overlay& overlay, double range) const;
+    /** Names the axis below water(), where there is room to its left. */
+    void nameAxis(Overlay& overlay, const std::string& name) const;
 
 private:
     void clear(const types::Sonar& ping);
@@ -38,6 +40,7 @@ private:
 
     DisplayConfig config_;
     int width_;
+    cv::Point bar_;  ///< Of colours.
     Palette palette_;
     LevelScale scale_;
     Title title_;
