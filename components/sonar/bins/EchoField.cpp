@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
@@ -205,8 +206,9 @@ FieldBeams::FieldBeams(const RenderPlan& plan, size_t numbers)
 void FieldBeams::form(ThreadPool& threads) {
     if (!beamformer_) return;
     const auto visitEach = [&](size_t count, const auto& work) {
-        threads.run([&](int part, int parts) {
-            for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts)) work(i);
+        std::atomic<size_t> next = 0;
+        threads.share([&](int, int) {
+            for (size_t i = next++; i < count; i = next++) work(i);
         });
     };
     visitEach(beamformer_->groupCount(), [&](size_t group) { beamformer_->sumGroup(group, cells_); });

@@ -1,6 +1,7 @@
 #include "components/sonar/bins/EchoGrid.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -82,9 +83,9 @@ void EchoGrid::finish(ThreadPool& threads) {
     INSONIFY_CHECK(!response_ || padded_.size() >= static_cast<size_t>(threads.size()), padded_.size());
     if (passes()) return;
     const auto visitEach = [&](size_t count, const auto& work) {
-        threads.run([&](int part, int parts) {
-            for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts))
-                work(i, static_cast<size_t>(part));
+        std::atomic<size_t> next = 0;
+        threads.share([&](int part, int) {
+            for (size_t i = next++; i < count; i = next++) work(i, static_cast<size_t>(part));
         });
     };
     if (beamformer_)

@@ -221,8 +221,9 @@ void TruthGrid::take(size_t cell, const TruthTable& echoes, size_t of, types::So
 
 void TruthGrid::finish(types::SonarTruth& truth, ThreadPool& threads) const {
     if (!gathered_) return;
-    threads.run([&](int part, int parts) {
-        for (auto beam = static_cast<size_t>(part); beam < beam_count_; beam += static_cast<size_t>(parts))
+    std::atomic<size_t> next = 0;
+    threads.share([&](int, int) {
+        for (size_t beam = next++; beam < beam_count_; beam = next++)
             gathered_->report(beam, beam, truth, getWater(beam));
     });
 }
