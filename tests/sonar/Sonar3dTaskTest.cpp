@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numeric>
 
 #include "components/sonar/tasks/Sonar3dTask.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"
 
@@ -411,6 +414,66 @@ TEST_F(Sonar3dTaskTest, TheRingDownOfThePingIsThatOfTheSonarForAnyNumberOfRows) 
             task_.cleanup();
         }
     }
+}
+
+/** All numbers that a 3-D sonar writes of eight pings. Meanwhile it moves and turns past a ball, which begins to move
+ * and rests again; its range changes, and then its scene. */
+std::vector<float> getNumbers(const Sonar3dConfig& config, int threads) {
+    Sonar3dTask task{"task"};
+    test::Writer<types::SnapshotPtr> in;
+    test::Reader<types::SonarPtr> pings{"pings"};
+    test::Reader<types::DepthMapPtr> maps{"maps"};
+    test::Reader<types::SonarTruthPtr> truths{"truths"}, returned{"returned"};
+    in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(1));
+    task.ping.connectTo(pings.port, framework::ConnPolicy::buffer(1));
+    task.range_image.connectTo(maps.port, framework::ConnPolicy::buffer(1));
+    task.truth.connectTo(truths.port, framework::ConnPolicy::buffer(1));
+    task.range_truth.connectTo(returned.port, framework::ConnPolicy::buffer(1));
+    task.config.set(config);
+    task.useThreads(threads);
+    if (!task.configure() || !task.start()) throw std::runtime_error(task.lastError());
+    const auto scene = makeScene({test::sphere(1.5f), test::wall(12)}, 0, {{6, 1, 0.5}, {}});
+    const auto other = makeScene({test::sphere(1), test::wall(10), test::ground(-2)}, 0, {{5, -1, 0}, {}, {}});
+    std::vector<float> all;
+    for (int k = 0; k < 8; ++k) {
+        types::Snapshot now = test::makeSnapshot(k < 6 ? scene : other, {0.7 * k, 0.2 * k, 0.1 * k}, 0.1 * k);
+        now.water_surface = 20 + 0.5 * k;
+        now.time = types::Time::fromSeconds(0.2 * k);
+        if (k == 2 || k == 3) now.moved.push_back({0, glm::translate(glm::dmat4(1), glm::dvec3(6, 1 - 0.5 * k, 0.5))});
+        if (k == 5) task.properties().front()->setAll({{"range", "14"}});
+        in.port.write(std::make_shared<types::Snapshot>(now));
+        task.update();
+        types::SonarPtr ping;
+        types::DepthMapPtr map;
+        types::SonarTruthPtr truth, of_returns;
+        if (!pings.port.readNew(ping) || !maps.port.readNew(map) || !truths.port.readNew(truth) ||
+            !returned.port.readNew(of_returns))
+            throw std::runtime_error("no ping: " + task.lastError());
+        for (const std::vector<float>* numbers : {&ping->bins, &map->distances, &map->remissions})
+            all.insert(all.end(), numbers->begin(), numbers->end());
+        for (const types::SonarTruthPtr& shown : {truth, of_returns})
+            for (const uint32_t bits : test::getBits(*shown)) all.push_back(static_cast<float>(bits));
+    }
+    return all;
+}
+
+TEST_F(Sonar3dTaskTest, ThreadsChangeNoBitOfSuccessivePings) {
+    Sonar3dConfig still = grid();
+    still.horizontal = {11, 60};
+    still.vertical = {6, 24};
+    Sonar3dConfig moving = still, bent = still;
+    moving.sonar.motion_in_ping = true;
+    const std::string profile = testing::TempDir() + "steep_profile.csv";
+    std::ofstream(profile) << "depth_m,sound_speed_m_s\n0,1400\n100,1700\n";
+    bent.sonar.water.emplace().profile = profile;
+    for (const auto& [name, config] :
+         {std::pair("still", still), std::pair("moving", moving), std::pair("bent", bent)}) {
+        const std::vector<float> one = getNumbers(config, 1);
+        EXPECT_GT(std::ranges::count_if(one, [](float number) { return number > 0; }), 1000) << name;
+        for (const int threads : {2, 5, 16}) EXPECT_TRUE(getNumbers(config, threads) == one) << name << " " << threads;
+    }
+    EXPECT_FALSE(getNumbers(moving, 1) == getNumbers(still, 1)) << "the motion is there";
+    EXPECT_FALSE(getNumbers(bent, 1) == getNumbers(still, 1)) << "the rays are bent";
 }
 
 }  // namespace

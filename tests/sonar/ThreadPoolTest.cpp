@@ -70,6 +70,19 @@ TEST(ThreadPoolTest, TheTimeOfJobsIsCountedByTheirCaller) {
     }
 }
 
+TEST(ThreadPoolTest, TheTimeOfAJobWithinAJobIsCountedOnce) {
+    ThreadPool pool(1), inner(1);
+    const double before = divided_seconds;
+    const auto start = std::chrono::steady_clock::now();
+    pool.run([&](int, int) {
+        for (int i = 0; i < 3; ++i)
+            inner.share([](int, int) { std::this_thread::sleep_for(std::chrono::milliseconds(10)); });
+    });
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    EXPECT_GE(divided_seconds - before, 0.03 * 0.99);
+    EXPECT_LE(divided_seconds - before, took.count());
+}
+
 TEST(ThreadPoolTest, AvailableThreadsShareAJob) {
     ThreadPool pool(4);
     for (int job = 0; job < 500; ++job) {

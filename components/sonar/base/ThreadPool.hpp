@@ -100,9 +100,12 @@ public:
     }
 
 private:
-    /** Adds its life to divided_seconds. */
+    /** Adds its life to divided_seconds, once where jobs run within each other. */
     struct Lap {
-        ~Lap() { divided_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+        ~Lap() {
+            divided_seconds = before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        }
+        double before = divided_seconds;
         std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
     };
     /** The team of one job, which has started; none for a pool of one thread, and where the system refuses another

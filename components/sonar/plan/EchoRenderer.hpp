@@ -47,6 +47,8 @@ public:
     /** Forgets all pings, as if the renderer and the effects had just been made. Returns false where a new renderer is
      *  needed. */
     virtual bool forget() { return false; }
+    /** Does only the part of a ping on which later pings depend, after updateShapes(). */
+    virtual void follow(const types::Snapshot& /*snapshot*/) {}
     /** Fills ping.bins, which have their size; adds to `stages`. Allocates nothing after the first ping. */
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;
     /** Sets the truth that the next pings fill; its grid is theirs already. Null: no truth is recorded. */

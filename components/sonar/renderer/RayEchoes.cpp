@@ -61,6 +61,7 @@ public:
     bool changePlan() override;
     void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) override;
     void updateShapes(const types::Snapshot& snapshot) override;
+    void follow(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool forget() override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
@@ -203,6 +204,11 @@ void RayEchoes::updateShapes(const types::Snapshot& snapshot) {
                 curves_[number] = std::make_shared<const std::vector<CurveRecord>>(facetCurves(mesh, world_from_mesh));
         }
     });
+}
+
+void RayEchoes::follow(const types::Snapshot& snapshot) {
+    visibility_.place(snapshot);
+    if (ray_paths_) ray_paths_->place(snapshot);
 }
 
 bool RayEchoes::setScene(types::GeometryPtr geometry, bool same_plan) {

@@ -51,6 +51,7 @@ struct SonarRenderer::Parts {
     void deform(const types::Snapshot& snapshot);
     bool setScene(types::GeometryPtr given);
     void changeConfig(const SonarConfig& config);
+    /** Poses the meshes that deform, if there are any. */
     void updateShapes(const types::Snapshot& snapshot);
     void describePlan();
     types::SonarTruth* getTruth(const types::Sonar& ping) const { return &ping == reported_ping ? truth : nullptr; }
@@ -113,10 +114,13 @@ void SonarRenderer::Parts::deform(const types::Snapshot& snapshot) {
 }
 
 void SonarRenderer::Parts::updateShapes(const types::Snapshot& snapshot) {
+    if (snapshot.deformed.empty() && !deformed) return;
+    const auto start = std::chrono::steady_clock::now();
     if (!deformed || !deformed->serves(snapshot)) deform(snapshot);
     if (!deformed->changes(snapshot)) return;
     echoes->updateShapes(snapshot);
     effects.updateShapes(snapshot);
+    stages[CullStage].seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 bool SonarRenderer::Parts::setScene(types::GeometryPtr given) {
@@ -185,12 +189,7 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
                    glm::length(snapshot.sonar.orientation));
     INSONIFY_CHECK(isFinite(snapshot.sonar.position), snapshot.sonar.position);
     parts_->stages = empty_stages;
-    if (!snapshot.deformed.empty() || parts_->deformed) {
-        const auto start = std::chrono::steady_clock::now();
-        parts_->updateShapes(snapshot);
-        parts_->stages[CullStage].seconds +=
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
+    parts_->updateShapes(snapshot);
     parts_->fillHeader(snapshot, ping);
     types::SonarTruth* const truth = parts_->getTruth(ping);
     if (truth) truth->copyGrid(ping);
@@ -204,6 +203,21 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
     types::SonarTruth::forEachArray(*truth, [&](const char*, auto& numbers, auto) {
         parts_->plan.beams.toTableOrder(std::span(numbers), truth->bin_count);
     });
+}
+
+void SonarRenderer::fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const {
+    parts_->fillHeader(snapshot, ping);
+}
+
+bool SonarRenderer::isRemembered(const types::Snapshot& snapshot) const {
+    const RenderPlan& plan = parts_->plan;
+    return plan.profile || plan.config.motion_in_ping || !snapshot.moved.empty() || !snapshot.deformed.empty() ||
+           parts_->deformed;
+}
+
+void SonarRenderer::follow(const types::Snapshot& snapshot) {
+    parts_->updateShapes(snapshot);
+    parts_->echoes->follow(snapshot);
 }
 
 void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth) {

@@ -12,8 +12,8 @@
 
 namespace insonify::sonar {
 
-/** Renders the noiseless pings of a sonar in a geometry, ray-traced or rasterised. Make it, use it and destroy it on
- *  one thread. Destroy a renderer that rasterises before making another on that thread.
+/** Renders the noiseless pings of a sonar in a geometry, ray-traced or rasterised. Use it from one thread at a time.
+ * Make, use and destroy a renderer that rasterises on one thread, and destroy it before making another on that thread.
  *
  *      SonarRenderer renderer(config, geometry);
  *      renderer.render(snapshot, ping);    // ping.bins[beam * bin_count + bin]
@@ -27,6 +27,14 @@ public:
     /** Renders one ping from snapshot.sonar (sonar frame in the world; orientation of unit length). Fills the whole
      *  sample. Allocates nothing when this renderer has filled `ping` before. */
     void render(const types::Snapshot& snapshot, types::Sonar& ping);
+
+    /** Fills everything of a ping except its bins, which get their number. */
+    void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
+
+    /** Returns whether a later ping may depend on this one: sonar or objects move, or sound paths bend. */
+    bool isRemembered(const types::Snapshot& snapshot) const;
+    /** Does only the part of a ping on which later pings depend. */
+    void follow(const types::Snapshot& snapshot);
 
     /** Makes each later rendering of `ping` fill `truth` with what its bins show (types::SonarTruth; its list of names
      *  is left alone). Null: no more. Other pings have no truth, and nothing is computed or kept for them. A beam is

@@ -299,7 +299,7 @@ void PingTask::makeRenderer() {
     quality_.reset();
     diagnostics_.emplace(pingsPerTurn());
     RenderOptions options;
-    options.threads = threads_;
+    options.threads = renderThreads();
     renderer_ = std::make_unique<SonarRenderer>(initial(config), geometry_, options);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
     updatePlan();

@@ -117,6 +117,8 @@ public:
 protected:
     /** Returns whether a ping is one rendering. The parts that each of several renderings omits are not reported. */
     virtual bool rendersOnce() const { return true; }
+    /** Returns the number of threads that share a rendering; 0: the number of cores [1]. */
+    virtual int renderThreads() const { return threads_; }
     /** Returns the time that the last ping spent in each stage. */
     virtual std::span<const Stage> renderStages(const SonarRenderer& renderer) const { return renderer.stages(); }
     /** Makes the ping of `scene`, and its truth unless `truth_of_ping` is null. Returns whether it has any echo. */

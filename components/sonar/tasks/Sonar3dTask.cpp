@@ -88,56 +88,129 @@ RenderPlan Sonar3dTask::coverage(const types::Snapshot& scene) const {
     return makeRenderPlan(fan, *scene.geometry);
 }
 
-glm::dquat Sonar3dTask::uprightAt(const glm::dquat& ahead, size_t column) const {
+void Sonar3dTask::turnUpright(types::Pose& sonar, size_t column) const {
     const double azimuth = types::radians(config->horizontal.centreDeg(static_cast<int>(column)));
     const glm::dquat stood_up = glm::angleAxis(types::radians(90), glm::dvec3(1, 0, 0));  // bearings become elevations
-    return ahead * glm::angleAxis(azimuth, glm::dvec3(0, 0, 1)) * stood_up;
+    sonar.orientation = sonar.orientation * glm::angleAxis(azimuth, glm::dvec3(0, 0, 1)) * stood_up;
 }
 
 PingTask::RenderedBeam Sonar3dTask::renderedBeam(size_t beam) const {
     RenderedBeam rendered = PingTask::renderedBeam(beam);
-    rendered.scene.sonar.orientation = uprightAt(rendered.scene.sonar.orientation, beam);
+    turnUpright(rendered.scene.sonar, beam);
     rendered.beam.reset();
     return rendered;
 }
 
+bool Sonar3dTask::configureHook() {
+    lacks_config_ = true;
+    return PingTask::configureHook();
+}
+
+void Sonar3dTask::cleanupHook() {
+    PingTask::cleanupHook();
+    workers_.clear();
+    column_threads_.reset();
+}
+
+bool Sonar3dTask::prepareWorkers(const SonarRenderer& renderer, const types::Snapshot& scene) {
+    const bool traces_rays = renderer.renderPlan().traces_rays;
+    if (!traces_rays) workers_.resize(std::min<size_t>(workers_.size(), 1));  // the task's thread has the images
+    const bool are_new = workers_.empty();
+    if (are_new) {
+        column_threads_.emplace(traces_rays ? PingTask::renderThreads() : 1, ThreadPool::Threads::Shared);
+        workers_.resize(static_cast<size_t>(column_threads_->size()));
+    }
+    for (Worker& worker : workers_) {
+        worker.scene = scene;
+        if (&worker != &workers_.front()) worker.scene.ahead.reset();  // what the task's renderer prepares
+        worker.received = false;
+        worker.stages = empty_stages;
+    }
+    const bool has_changed = known_geometry_ != scene.geometry || known_movable_ != scene.movable || lacks_config_;
+    known_geometry_ = scene.geometry;
+    known_movable_ = scene.movable;
+    return are_new || has_changed || renderer.isRemembered(scene);
+}
+
+void Sonar3dTask::updateWorker(const PingOfColumns& columns, Worker& worker) const {
+    const SonarConfig& fan = columns.renderer.renderPlan().config;
+    if (!worker.own) {
+        worker.own = std::make_unique<SonarRenderer>(fan, columns.scene.geometry, RenderOptions{.threads = 1});
+        return;
+    }
+    worker.own->setGeometry(columns.scene.geometry);
+    if (lacks_config_) worker.own->setConfig(fan);
+}
+
+void Sonar3dTask::work(PingOfColumns& columns, size_t number) {
+    Worker& worker = workers_[number];
+    if (number > 0 && columns.has_all_workers) updateWorker(columns, worker);
+    SonarRenderer& renderer = number > 0 ? *worker.own : columns.renderer;
+    renderer.setTruth(worker.fan, columns.truth ? &worker.truth : nullptr);
+    if (columns.has_all_workers) {  // the motion of sonar and objects is that seen by the first column
+        turnUpright(worker.scene.sonar, 0);
+        renderer.follow(worker.scene);
+    }
+    const bool has_first = number == 0 || columns.has_all_workers;
+    for (int column = has_first ? static_cast<int>(number) : columns.next++; column < config->horizontal.beam_count;
+         column = columns.next++)
+        renderColumn(columns, static_cast<size_t>(column), renderer, worker);
+}
+
+void Sonar3dTask::renderColumn(PingOfColumns& columns, size_t column, SonarRenderer& renderer, Worker& worker) {
+    worker.scene.sonar = columns.scene.sonar;
+    turnUpright(worker.scene.sonar, column);
+    renderer.render(worker.scene, worker.fan);
+    for (size_t i = 0; i < worker.stages.size(); ++i) worker.stages[i].seconds += renderer.stages()[i].seconds;
+    worker.received = renderer.hasEchoes() || renderer.othersReceived() > 0 || worker.received;
+    addTo(columns.sample, column, renderer, worker);
+    if (columns.truth) worker.grid_truth.addTo(worker.fan, worker.truth, column, *columns.truth);
+    if (columns.rules) detect(column, columns, worker);
+}
+
 bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
                              types::SonarTruth* truth_of_ping) {
-    const glm::dquat ahead = scene.sonar.orientation;
+    const bool has_all_workers = prepareWorkers(renderer, scene);
+    types::Sonar& fan = workers_.front().fan;
+    renderer.fillHeader(scene, fan);
+    shape(fan, sample);
+    if (truth_of_ping) GridTruth::shape(sample, map_.vertical_size, *truth_of_ping, return_truth_);
+    PingOfColumns columns{renderer,
+                          scene,
+                          sample,
+                          truth_of_ping,
+                          wantsReturns() ? &detectionRules() : nullptr,
+                          has_all_workers,
+                          has_all_workers ? column_threads_->size() : 1};
+    const auto job = [&](int part, int) { work(columns, static_cast<size_t>(part)); };
+    has_all_workers ? column_threads_->run(job) : column_threads_->share(job);
+    lacks_config_ = false;
+    fan_stages_ = empty_stages;
     bool received = false;
-    renderer.setTruth(fan_, truth_of_ping ? &fan_truth_ : nullptr);
-    for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i] = {renderer.stages()[i].name, 0};
-    for (int column = 0; column < config->horizontal.beam_count; ++column) {
-        scene.sonar.orientation = uprightAt(ahead, static_cast<size_t>(column));
-        renderer.render(scene, fan_);
-        for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i].seconds += renderer.stages()[i].seconds;
-        received = renderer.hasEchoes() || renderer.othersReceived() > 0 || received;
-        if (column == 0) shape(sample);
-        if (column == 0 && truth_of_ping) GridTruth::shape(sample, map_.vertical_size, *truth_of_ping, return_truth_);
-        addTo(sample, column, renderer);
-        if (truth_of_ping) grid_truth_.addTo(fan_, fan_truth_, static_cast<size_t>(column), *truth_of_ping);
-        if (wantsReturns()) detect(column, truth_of_ping != nullptr);
+    for (const Worker& worker : workers_) {
+        for (size_t i = 0; i < fan_stages_.size(); ++i)
+            fan_stages_[i].seconds += worker.stages[i].seconds / static_cast<double>(workers_.size());
+        received = received || worker.received;
     }
-    scene.sonar.orientation = ahead;
     return received;
 }
 
-void Sonar3dTask::shape(types::Sonar& sample) {
+void Sonar3dTask::shape(const types::Sonar& fan, types::Sonar& sample) {
     const BeamRow &across = config->horizontal, &up = config->vertical;
     const auto columns = static_cast<size_t>(across.beam_count), rows = static_cast<size_t>(up.beam_count);
-    sample.time = fan_.time;
+    sample.time = fan.time;
     sample.timestamps.clear();
-    static_cast<types::RangeBins&>(sample) = fan_;
-    sample.bin_count = fan_.bin_count;
+    static_cast<types::RangeBins&>(sample) = fan;
+    sample.bin_count = fan.bin_count;
     sample.beam_count = static_cast<uint32_t>(columns);
     sample.beam_width = types::Angle::fromDeg(config->beamWidthDeg());
     sample.beam_height = types::Angle::fromDeg(up.field_of_view_deg);
     sample.bearings.resize(columns);
     for (int k = 0; k < across.beam_count; ++k)
         sample.bearings[static_cast<size_t>(k)] = types::Angle::fromDeg(across.centreDeg(k));
-    sample.bins.assign(columns * fan_.bin_count, 0);
-    map_.time = fan_.time;
-    map_.bin_width = fan_.binWidth();
+    sample.bins.assign(columns * fan.bin_count, 0);
+    map_.time = fan.time;
+    map_.bin_width = fan.binWidth();
     map_.vertical_size = static_cast<uint32_t>(rows);
     map_.horizontal_size = static_cast<uint32_t>(columns);
     map_.vertical_interval.resize(rows);
@@ -151,30 +224,33 @@ void Sonar3dTask::shape(types::Sonar& sample) {
     levels_.assign(rows * columns, 0);
 }
 
-void Sonar3dTask::addTo(types::Sonar& sample, int column, const SonarRenderer& renderer) {
-    float* const sum = sample.bins.data() + static_cast<size_t>(column) * sample.bin_count;
-    for (size_t row = 0; row < fan_.bins.size(); row += fan_.bin_count)
-        for (size_t k = 0; k < fan_.bin_count; ++k) sum[k] += fan_.bins[row + k];
-    if (fan_.beam_count < 2 || !renderer.computeAlike(fan_, alike_)) return;
+void Sonar3dTask::addTo(types::Sonar& sample, size_t column, const SonarRenderer& renderer, Worker& worker) {
+    const types::Sonar& fan = worker.fan;
+    float* const sum = sample.bins.data() + column * sample.bin_count;
+    for (size_t row = 0; row < fan.bins.size(); row += fan.bin_count)
+        for (size_t k = 0; k < fan.bin_count; ++k) sum[k] += fan.bins[row + k];
+    if (fan.beam_count < 2 || !renderer.computeAlike(fan, worker.alike)) return;
     // The sonar rings once: its mean over the beams that were summed remains.
-    const double too_many = 1 - 1.0 / fan_.beam_count;
-    for (size_t k = 0; k < fan_.bin_count; ++k) {
+    const double too_many = 1 - 1.0 / fan.beam_count;
+    const std::vector<float>& alike = worker.alike.bins;
+    for (size_t k = 0; k < fan.bin_count; ++k) {
         double ringing = 0;
-        for (size_t i = k; i < alike_.bins.size(); i += fan_.bin_count) ringing += double{alike_.bins[i]};
+        for (size_t i = k; i < alike.size(); i += fan.bin_count) ringing += double{alike[i]};
         if (ringing > 0) sum[k] = std::max(0.0f, static_cast<float>(double{sum[k]} - too_many * ringing));
     }
 }
 
-void Sonar3dTask::detect(int column, bool with_truth) {
-    detector_.take(fan_, config->detection, detectionRules());
-    const size_t from_left = map_.horizontal_size - 1 - static_cast<size_t>(column);
-    for (uint32_t beam = 0; beam < fan_.beam_count; ++beam)
-        if (const auto found = detector_.strongest(beam)) {
+void Sonar3dTask::detect(size_t column, const PingOfColumns& columns, Worker& worker) {
+    const types::Sonar& fan = worker.fan;
+    worker.detector.take(fan, config->detection, *columns.rules);
+    const size_t from_left = map_.horizontal_size - 1 - column;
+    for (uint32_t beam = 0; beam < fan.beam_count; ++beam)
+        if (const auto found = worker.detector.strongest(beam)) {
             const size_t cell = size_t{map_.vertical_size - 1 - beam} * map_.horizontal_size + from_left;
             map_.distances[cell] = static_cast<float>(found->range);
             map_.remissions[cell] = found->intensity;
             levels_[cell] = found->level;
-            if (with_truth) GridTruth::copyReturn(fan_truth_, beam, found->bin, cell, return_truth_);
+            if (columns.truth) GridTruth::copyReturn(worker.truth, beam, found->bin, cell, return_truth_);
         }
 }
 

@@ -1,6 +1,11 @@
 #pragma once
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <vector>
 
 #include "components/framework/Properties.hpp"
+#include "components/sonar/base/ThreadPool.hpp"
 #include "components/sonar/bins/Detection.hpp"
 #include "components/sonar/bins/Truth.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
@@ -55,8 +60,9 @@ private:
 /** A 3-D sonar: narrow beams in a grid of azimuth and elevation. It reports each beam's strongest return.
  *
  *  Beam (row, column) looks along (cos e cos a, cos e sin a, sin e) of the sonar frame. `beam_width_deg` is its opening
- *  in azimuth; the default is the spacing of the beams. `beam_height_deg` is its opening in elevation. The columns are
- *  rendered one after the other as upright fans, all at the time of the ping. `quality.rows` are over the width of one
+ *  in azimuth; the default is the spacing of the beams. `beam_height_deg` is its opening in elevation. Each column is
+ *  rendered as an upright fan, at the time of the ping. Where rays are traced, each thread has a renderer of its own,
+ *  and takes columns as it becomes free. `quality.rows` are over the width of one
  *  beam, with a pattern between its half-power points, and `columns_per_beam` over its height; the defaults are 4
  * and 4.
  *
@@ -83,6 +89,9 @@ public:
 
 protected:
     bool rendersOnce() const override { return false; }
+    int renderThreads() const override { return sonarConfig().tracesRays() ? 1 : PingTask::renderThreads(); }
+    bool configureHook() override;
+    void cleanupHook() override;
     std::span<const Stage> renderStages(const SonarRenderer&) const override { return fan_stages_; }
     bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
                     types::SonarTruth* truth_of_ping) override;
@@ -94,13 +103,43 @@ protected:
     Changes changedBy(const types::SonarSettings& requested) const override;
 
 private:
-    /** Returns the pose of the upright fan of one azimuth. */
-    glm::dquat uprightAt(const glm::dquat& ahead, size_t column) const;
+    /** What a thread needs to render columns. */
+    struct Worker {
+        std::unique_ptr<SonarRenderer> own;  ///< Null for the first thread, which has the task's.
+        types::Snapshot scene;               ///< Seen by the fan of a column.
+        types::Sonar fan;                    ///< Beams of one azimuth.
+        types::Sonar alike;                  ///< What all of these beams record alike.
+        types::SonarTruth truth;             ///< Truth of the fan.
+        GridTruth grid_truth;
+        Detector detector;
+        sonar::Stages stages{};  ///< Sum over its columns of this ping.
+        bool received = false;
+    };
+    /** A ping whose columns are rendered. */
+    struct PingOfColumns {
+        SonarRenderer& renderer;  ///< The task's.
+        const types::Snapshot& scene;
+        types::Sonar& sample;
+        types::SonarTruth* truth;     ///< Null: none.
+        const DetectionRules* rules;  ///< Null: no returns are wanted.
+        bool has_all_workers;         ///< Whether each worker follows the scene, though it may get no column.
+        std::atomic<int> next;        ///< Column that the next free thread takes.
+    };
+
+    /** Turns the pose of the sonar to the upright fan of one azimuth. */
+    void turnUpright(types::Pose& sonar, size_t column) const;
+    /** Makes the workers that are missing. Returns whether each must take part in the ping. */
+    bool prepareWorkers(const SonarRenderer& renderer, const types::Snapshot& scene);
+    /** Renders columns as one of the workers, until none is left. */
+    void work(PingOfColumns& columns, size_t number);
+    /** Makes a worker's renderer, or switches it to the ping's geometry and configuration. */
+    void updateWorker(const PingOfColumns& columns, Worker& worker) const;
+    void renderColumn(PingOfColumns& columns, size_t column, SonarRenderer& renderer, Worker& worker);
     /** Writes the returns of one upright fan into a column of the map, and their truth if there is one. */
-    void detect(int column, bool with_truth);
+    void detect(size_t column, const PingOfColumns& columns, Worker& worker);
     /** Adds one upright fan to its beam of the ping, and the ring-down of the sonar once. */
-    void addTo(types::Sonar& sample, int column, const SonarRenderer& renderer);
-    void shape(types::Sonar& sample);
+    static void addTo(types::Sonar& sample, size_t column, const SonarRenderer& renderer, Worker& worker);
+    void shape(const types::Sonar& fan, types::Sonar& sample);
     void writePoints(const types::Sonar& sample, const types::Pose& sonar);
     void writeDetections(const types::Sonar& sample);
     void writeReturnTruth();
@@ -108,15 +147,15 @@ private:
         return range_image.connected() || soundings.connected() || range_truth.connected() || detections.connected();
     }
 
-    types::Sonar fan_;            ///< Beams of one azimuth.
-    types::Sonar alike_;          ///< What all of these beams record alike.
+    std::optional<ThreadPool> column_threads_;  ///< Made at the first ping; of one thread where images are rasterised.
+    std::vector<Worker> workers_;               ///< One for each thread.
+    types::GeometryPtr known_geometry_;         ///< That the workers have.
+    std::shared_ptr<const std::vector<uint32_t>> known_movable_;  ///< Snapshot::movable that the workers know.
+    bool lacks_config_ = false;   ///< Whether the workers lack the present configuration.
     sonar::Stages fan_stages_{};  ///< Sum over all azimuths of the last ping.
     types::DepthMap map_;
-    std::vector<double> levels_;  ///< Of the return of each cell of the map, without spreading [1].
-    Detector detector_;
-    DetectionRules summed_rules_;  ///< Of the sums over all elevations.
-    GridTruth grid_truth_;
-    types::SonarTruth fan_truth_;     ///< Truth of one azimuth.
+    std::vector<double> levels_;      ///< Of the return of each cell of the map, without spreading [1].
+    DetectionRules summed_rules_;     ///< Of the sums over all elevations.
     types::SonarTruth return_truth_;  ///< One bin for each cell of the map.
     framework::SamplePool<types::DepthMap> maps_;
     framework::SamplePool<types::PointCloud> clouds_;
