@@ -91,7 +91,9 @@ RenderPlan Sonar3dTask::coverage(const types::Snapshot& scene) const {
 void Sonar3dTask::turnUpright(types::Pose& sonar, size_t column) const {
     const double azimuth = types::radians(config->horizontal.centreDeg(static_cast<int>(column)));
     const glm::dquat stood_up = glm::angleAxis(types::radians(90), glm::dvec3(1, 0, 0));  // bearings become elevations
+    const glm::dvec3 turn = sonar.orientation * sonar.angular_velocity;                   // in the world
     sonar.orientation = sonar.orientation * glm::angleAxis(azimuth, glm::dvec3(0, 0, 1)) * stood_up;
+    sonar.angular_velocity = glm::conjugate(sonar.orientation) * turn;
 }
 
 PingTask::RenderedBeam Sonar3dTask::renderedBeam(size_t beam) const {
