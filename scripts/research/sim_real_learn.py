@@ -6,11 +6,12 @@ SIDE = 40  # of the input of a classifier [px]
 
 
 def normalised(pixels, side=SIDE):
-    """One size and one contrast: the root of levels that are 0 at the darkest tenth and 1 where 1 % exceed them."""
-    low, high = np.percentile(pixels, [10, 99])
-    levels = np.clip((pixels - low) / max(high - low, 1e-6), 0, 1).astype(np.float32)
-    return np.sqrt(Image.fromarray(levels, "F").resize((side, side), Image.Resampling.BOX if min(levels.shape) > side
-                                                        else Image.Resampling.BILINEAR))
+    """One size and one contrast: the rank of each pixel in its crop, 0 to 1, to the power of 3, since most pixels of a crop are dark. Ranks are the same for
+    any gain and gamma of a display, until pixels are white. Equal pixels have one rank, the mean."""
+    _, index, counts = np.unique(pixels, return_inverse=True, return_counts=True)
+    ranks = (np.cumsum(counts) - (counts + 1) / 2) / max(pixels.size - 1, 1)
+    levels = (ranks[index].reshape(pixels.shape) ** 3).astype(np.float32)
+    return np.array(Image.fromarray(levels, "F").resize((side, side), Image.Resampling.BOX if min(levels.shape) > side else Image.Resampling.BILINEAR))
 
 
 def arrays(crops, labels, sizes):
@@ -165,7 +166,7 @@ def with_background(x):
     speckle = -2 * torch.rand(n, 1, side, side).clamp(min=0.01).log()  # energy
     speckle = torch.where(at_times(0.5), 1.3 * pool.avg_pool2d(pool.pad(speckle, (2, 2, 0, 0), mode="reflect"), (1, 5), 1), speckle) / 2
     level = torch.rand(n, 1, 1, 1) * 0.5 * at_times(0.6)
-    x = (x**4 + level**2 * torch.sigmoid(2 * (row - begin) * sharp) * speckle) ** 0.25  # x is the root of an amplitude
+    x = (x**4 + level**2 * torch.sigmoid(2 * (row - begin) * sharp) * speckle) ** 0.25  # x is about the root of an amplitude
     return x * torch.exp((torch.rand(n, 1, 1, 1) - 0.35) * 0.8 * row * at_times(0.5))
 
 

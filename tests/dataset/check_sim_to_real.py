@@ -76,6 +76,22 @@ class DeviceSet(unittest.TestCase):
                 self.assertIn("device.yml: is no deployment", done.stderr)
 
 
+class Contrast(unittest.TestCase):
+    def test_a_crop_is_the_same_for_any_gain_offset_and_gamma_and_equal_pixels_have_one_level(self):
+        rng = np.random.default_rng(8)
+        for _ in range(20):
+            crop = rng.random(rng.integers(5, 90, 2))
+            levels = learn.normalised(crop)
+            gamma, gain, offset = rng.uniform(0.3, 3), rng.uniform(0.1, 5), rng.uniform(0, 0.5)
+            np.testing.assert_allclose(learn.normalised(offset + gain * crop**gamma), levels, atol=1e-6)
+            self.assertTrue(0 <= levels.min() and levels.max() <= 1)
+        flat = learn.normalised(np.full((12, 9), 0.3))
+        np.testing.assert_allclose(flat, flat[0, 0], atol=1e-6)
+        saturated = learn.normalised(np.where(np.arange(1600).reshape(40, 40) < 800, np.linspace(0, 0.9, 1600).reshape(40, 40), 1))
+        self.assertEqual(len(np.unique(saturated[20:])), 1)  # white is no texture
+        self.assertLess(saturated[:20].max(), saturated[20:].min())
+
+
 class Halves(unittest.TestCase):
     def test_no_film_and_no_picture_is_in_both_sets(self):
         rng, cut = random.Random(3), 0
