@@ -216,7 +216,7 @@ DEVICE_SET = """\
 # The set of a device as `insonify init` makes it, and what --ablate switches off: each effect that the deployment has.
 deployment: %(deployment)s
 sweeps: ["near_*.yml", "far_*.yml"]
-ablated: ["near_[0-4].yml", "far_[0-4].yml"]
+ablated: ["near_[0-2].yml", "far_[0-3].yml"]
 range_down: true            # far ranges are at the bottom of real pictures and at the top of simulated pictures
 margin: [0.0, 0.25]         # of a box, random, on each side
 sizes: true                 # pictures have the scale of real pictures: the size of a crop in pixels is an input
@@ -280,9 +280,10 @@ def device_set(deployment, folder):
 def device_sweep(rng, options, i, band, bits, bins):
     bin_metre = 1500e-6  # or a little less: a bin is of whole microseconds
     farthest = 0.99 * bins * bin_metre * max(1, round(rng.uniform(*RANGES[band]) / bins / bin_metre))
+    most, count = {"near": (2, options.samples), "far": (5, max(1, options.samples * 2 // 5))}[band]  # objects in a picture; pictures
     return DEVICE_SWEEP % {"nearest": max(1.2, 0.3 * farthest), "farthest": 0.8 * farthest, "side": 0.6 * farthest, "range": farthest, "bits": bits,
-                           "most": {"near": 2, "far": 5}[band], "height": int(rng.integers(700, 1200)), "seed": int(rng.integers(1 << 30)),
-                           "count": options.samples, "scene": f"objects_{i}.glb", "names": ", ".join(f"{name}_*" for name in CLASSES),
+                           "most": most, "height": int(rng.integers(700, 1200)), "seed": int(rng.integers(1 << 30)), "count": count,
+                           "scene": f"objects_{i}.glb", "names": ", ".join(f"{name}_*" for name in CLASSES),
                            "classes": ", ".join(f"{name}: {name}_*" for name in CLASSES)}
 
 
