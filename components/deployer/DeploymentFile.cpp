@@ -17,6 +17,7 @@
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "components/replay/ReplayTask.hpp"
+#include "components/scene/Scene.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "components/sonar/tasks/ScanningSonarTask.hpp"
 #include "types/text/ConfigError.hpp"
@@ -45,7 +46,14 @@ std::string exampleAt(const std::string& path) {
 std::string deploymentIn(const std::string& given) {
     const std::string path = exampleAt(given);
     std::error_code unreadable;
-    if (!fs::is_directory(path, unreadable)) return path;
+    if (path.empty()) throw types::ConfigError("", "", "the file's name is empty; must be a deployment file");
+    if (!fs::is_directory(path, unreadable)) {
+        if (scene::findSceneFormat(path))
+            throw types::ConfigError(path, "",
+                                     "is a scene; must be a deployment, a .yml file whose scene task names it as "
+                                     "`file`; `insonify init` makes one");
+        return path;
+    }
     std::vector<std::string> found;
     for (const auto& entry : fs::directory_iterator(path, unreadable))
         if (isDeployment(entry.path())) found.push_back(entry.path().string());

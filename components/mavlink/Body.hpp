@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "components/device/wire/Network.hpp"
 #include "components/mavlink/Frame.hpp"
 #include "types/SenderClock.hpp"
 #include "types/samples/Pose.hpp"
@@ -183,6 +184,7 @@ struct PoseConfig {
               self.request);
     }
     void check(types::Diagnostics& diagnostics) const {
+        device::checkAddress(diagnostics, address);
         if (bodies.empty()) diagnostics.push_back({"bodies", "is empty; must hold a body"});
         std::set<std::string> ports;
         for (size_t i = 0; i < bodies.size(); ++i)

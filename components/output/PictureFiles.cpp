@@ -83,8 +83,10 @@ void DisplayConfig::check(types::Diagnostics& diagnostics) const {
 
 void RecordingConfig::check(types::Diagnostics& diagnostics) const {
     if (file && !FilePattern::parse(*file))
-        diagnostics.push_back({"file", "is '" + *file + "'; it must have one number and end in " +
-                                           fileEndings(FileContent::Picture) + ", as in fan_%06d.png"});
+        diagnostics.push_back(
+            {"file", "is '" + *file + "'; it must have one number and end in " + fileEndings(FileContent::Picture) +
+                         ", as in fan_%06d.png" +
+                         (findFileFormat(*file, FileContent::Video) ? "; `video` takes this one" : "")});
     if (video && !findFileFormat(*video, FileContent::Video))
         diagnostics.push_back({"video", "is '" + *video + "'; it must end in " + fileEndings(FileContent::Video)});
 }

@@ -69,7 +69,8 @@ void refuseMissing(const std::filesystem::path& file) {
     std::error_code error;
     if (std::filesystem::exists(file, error)) return;
     const std::filesystem::path place = std::filesystem::absolute(file, error).lexically_normal();
-    const std::string near = types::didYouMean(file.filename().string(), scenesIn(place.parent_path()));
+    const std::string near =
+        types::offerCurrentFolder(file) + types::didYouMean(file.filename().string(), scenesIn(place.parent_path()));
     throw types::ConfigError(file.string(), "",
                              fmt::format("does not exist; {}looked for at {}; must be a scene, which may be {}", near,
                                          place.string(), sceneEndings()));

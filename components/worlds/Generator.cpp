@@ -93,7 +93,7 @@ Outcome runWith(const std::string& python, const std::vector<std::string>& optio
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-    std::vector<std::string> words = {python, "-m", package_name};
+    std::vector<std::string> words = {python, "-B", "-m", package_name};  // -B: nothing is compiled into its folder
     words.insert(words.end(), options.begin(), options.end());
     std::vector<std::string> environment = environmentWith(folder);
     console::flushResults();
@@ -114,12 +114,13 @@ Outcome runWith(const std::string& python, const std::vector<std::string>& optio
     return outcome;
 }
 
-/** Returns how to install the packages: in a build folder, in a wheel, elsewhere. */
+/** Returns how to install the packages: in a build folder, in a wheel (an archive has bin/insonify), elsewhere. */
 std::string remedy() {
     const fs::path around = packageFolder().parent_path().parent_path().parent_path();
     std::error_code none;
     if (fs::exists(around / "build.ninja", none)) return "`scripts/setup worlds` installs them";
-    if (fs::exists(around / "__init__.py", none)) return "`pip install 'insonify[worlds]'` installs them";
+    if (fs::exists(around / "__init__.py", none) && !fs::exists(around.parent_path() / "bin/insonify", none))
+        return "`pip install 'insonify[worlds]'` installs them";
     return fmt::format(
         "`python3 -m venv ~/worlds && ~/worlds/bin/pip install numpy pyyaml manifold3d` installs them, and "
         "{}=~/worlds/bin/python3 names that Python",

@@ -1,14 +1,13 @@
-"""Writes into build/packages what the packages there consist of, as CycloneDX: /usr/bin/python3 scripts/packaging/sbom.py deb|wheel...
+"""Writes into build/packages what the Debian packages there consist of, as CycloneDX: /usr/bin/python3 scripts/packaging/sbom.py
 
-For Debian packages: the packages that they depend on. For wheel and archive: what auditwheel has copied into them, by its own list. In
-both: libraries that are compiled in, which are those of the `packages` files without a shared library. Versions are this machine's."""
+These are the packages that they depend on, and the libraries that are compiled in, which are those of the `packages` files without a
+shared library. wheel.py writes the same of wheel and archive. Versions are this machine's."""
 
 import json
 import pathlib
 import platform
 import re
 import subprocess
-import sys
 
 PACKAGES = pathlib.Path("build/packages")
 SYSTEM = platform.freedesktop_os_release()["ID"]
@@ -65,8 +64,8 @@ def compiled_in() -> list[dict]:
     return found
 
 
-def write(file: pathlib.Path, name: str, version: str, libraries: list[dict]) -> None:
-    about = {"type": "application", "name": name, "version": version, "bom-ref": "insonify", "licenses": [{"license": {"id": "Apache-2.0"}}]}
+def write(file: pathlib.Path, version: str, libraries: list[dict]) -> None:
+    about = {"type": "application", "name": "insonify", "version": version, "bom-ref": "insonify", "licenses": [{"license": {"id": "Apache-2.0"}}]}
     commit = run("git", "log", "-1", "--format=%H").strip() if pathlib.Path(".git").exists() else ""
     if commit:
         about["properties"] = [{"name": "commit", "value": commit}]
@@ -87,21 +86,10 @@ def describe_debs() -> None:
     depends = " ".join(run("dpkg-deb", "--field", deb, "Depends") for deb in debs)
     names = set(re.findall(r"[a-z0-9][a-z0-9+.-]+", re.sub(r"\([^)]*\)", "", depends)))
     version = run("dpkg-deb", "--field", debs[0], "Version").strip()
-    write(PACKAGES / f"insonify-{version}-deb.sbom.json", "insonify", version, installed(names - {"insonify"}) + compiled_in())
-
-
-def describe_wheel() -> None:
-    copied = json.loads(pathlib.Path("build/wheel/copied.cdx.json").read_text())
-    about = copied["metadata"]["component"]
-    libraries = [each for each in copied["components"] if each["bom-ref"] != about["bom-ref"]]
-    write(PACKAGES / f"insonify-{about['version']}-{platform.machine()}.sbom.json", "insonify", about["version"], libraries + compiled_in())
+    write(PACKAGES / f"insonify-{version}-deb.sbom.json", version, installed(names | {each["name"] for each in compiled_in()}))
 
 
 if __name__ == "__main__":
-    for old in PACKAGES.glob("*.sbom.json"):
-        if ("-deb" in old.name) == ("deb" in sys.argv):
-            old.unlink()
-    if "deb" in sys.argv:
-        describe_debs()
-    if "wheel" in sys.argv:
-        describe_wheel()
+    for old in PACKAGES.glob("*-deb.sbom.json"):
+        old.unlink()
+    describe_debs()

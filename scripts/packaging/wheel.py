@@ -1,7 +1,7 @@
 """Makes the wheel and the archive from build/: python scripts/packaging/wheel.py wheel|archive...
 
 auditwheel copies the system libraries that they are linked with into them, except those of glibc and of OpenGL;
-their licences are added."""
+their licences and the list of what the wheel consists of are added."""
 
 import os
 import pathlib
@@ -40,8 +40,8 @@ def stage() -> pathlib.Path:
     return folder
 
 
-def licences(bundled: pathlib.Path, to: pathlib.Path) -> None:
-    """Copies the licences of the copied libraries, and of those that are compiled in, from their Debian packages."""
+def licences(bundled: pathlib.Path, to: pathlib.Path) -> list[dict]:
+    """Copies the licences of the copied libraries, and of those that are compiled in, from their Debian packages, which it returns."""
     to.mkdir()
     packages = {each["name"] for each in sbom.compiled_in()}
     for library in sorted(bundled.glob("*.so*")):
@@ -52,6 +52,7 @@ def licences(bundled: pathlib.Path, to: pathlib.Path) -> None:
         packages.add(owners.split(":")[0])
     for package in packages:
         shutil.copy(f"/usr/share/doc/{package}/copyright", to / f"{package}.txt")
+    return sbom.installed(packages)
 
 
 def make() -> pathlib.Path:
@@ -66,7 +67,11 @@ def make() -> pathlib.Path:
     run("auditwheel", "repair", plain, "--plat", f"manylinux_{major}_{minor}_{platform.machine()}", "--wheel-dir", STAGE / "repaired")
     run("wheel", "unpack", next((STAGE / "repaired").glob("*.whl")), "--dest", STAGE / "whole")
     folder = next((STAGE / "whole").iterdir())
-    licences(folder / "insonify.libs", folder / "insonify.libs/licences")
+    libraries = licences(folder / "insonify.libs", folder / "insonify.libs/licences")
+    lists = next(folder.glob("*.dist-info/sboms"))
+    shutil.rmtree(lists)  # auditwheel's lacks what is compiled in, and some that it has copied
+    lists.mkdir()
+    sbom.write(lists / "insonify.cdx.json", folder.name.split("-")[1], libraries)
     return folder
 
 
@@ -86,10 +91,10 @@ def make_archive(folder: pathlib.Path) -> None:
         archive.add(folder, name)
 
 
-for old in (*PACKAGES.glob("*.whl"), *PACKAGES.glob("*.tar.zst")):
+for old in (*PACKAGES.glob("*.whl"), *PACKAGES.glob("*.tar.zst"), *PACKAGES.glob(f"*-{platform.machine()}.sbom.json")):
     old.unlink()
 whole = make()
-shutil.copy(next(whole.glob("*.dist-info/sboms/*.cdx.json")), STAGE / "copied.cdx.json")  # for sbom.py
+shutil.copy(next(whole.glob("*.dist-info/sboms/*")), PACKAGES / f"{whole.name}-{platform.machine()}.sbom.json")
 if "wheel" in sys.argv:
     run("wheel", "pack", whole, "--dest-dir", PACKAGES)
 if "archive" in sys.argv:

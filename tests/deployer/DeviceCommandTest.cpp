@@ -20,6 +20,20 @@ TEST(DeviceCommandTest, ListPrintsTheReplacedDevicesAndTheirPorts) {
     EXPECT_EQ((*ping360)["ports"]["discovery.port"], 30303);
 }
 
+TEST(DeviceCommandTest, CheckRefusesAnAddressAsRunDoes) {
+    const TestFolder folder;
+    const std::pair<const char*, const char*> tasks[] = {{"hil_oculus", "device"},  {"hil_ping360", "ping360"},
+                                                         {"hil_ping360", "ping1d"}, {"hil_3d15", "device"},
+                                                         {"hil_micron", "device"},  {"mavlink_poses", "vehicles"}};
+    for (const auto& [deployment, task] : tasks)
+        for (const char* address : {"localhost", "0.0.0"})
+            EXPECT_THAT(
+                callInsonify(folder, {"check", insonify::test::sourceFile(std::string("deploy/") + deployment + ".yml"),
+                                      "--set", std::string(task) + ".address=" + address}),
+                isRefused(HasSubstr("--set: tasks." + std::string(task) + ".properties.address: is " + address +
+                                    ", which is no address; write one as 127.0.0.1 or ::1\n")));
+}
+
 TEST(DeviceCommandTest, AProbeIdentifiesTheDevice) {
     const TestFolder folder, asking;
     writeFile(

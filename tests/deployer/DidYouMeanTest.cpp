@@ -46,6 +46,26 @@ TEST(DidYouMeanTest, NamesOfTasksPortsPropertiesEnumsAndMaterials) {
     });
 }
 
+TEST(DidYouMeanTest, ASceneInPlaceOfADeploymentIsCalledOne) {
+    const WallFolder folder;
+    for (const char* scene : {"wall.gltf", "nowhere.GLB", "pool.sdf"})
+        EXPECT_THAT(callInsonify(folder, {"run", scene}),
+                    isRefused(HasSubstr(std::string(scene) + ": is a scene; must be a deployment")));
+    EXPECT_THAT(callInsonify(folder, {"check", ""}).err, HasSubstr("DEPLOYMENT is required"));
+}
+
+TEST(DidYouMeanTest, OffersAFileOfTheCurrentFolder) {
+    const WallFolder folder;
+    fs::create_directory(folder / "dive");
+    fs::copy(folder / "wall.yml", folder / "dive/wall.yml");
+    const Outcome refused = callInsonify(folder, {"check", "dive", "--set", "scene.file=wall.gltf"});
+    EXPECT_THAT(refused, isRefused(HasSubstr("dive/wall.gltf: does not exist; is the one of the current folder meant? "
+                                             "write " +
+                                             (folder / "wall.gltf").string() + "; looked for at")));
+    EXPECT_THAT(callInsonify(folder, {"check", "wall.yml", "--set", "scene.file=no.gltf"}).err,
+                Not(HasSubstr("meant")));
+}
+
 TEST(DidYouMeanTest, NamesTheTaskThatHasTheKey) {
     for (const char* key : {"tvg: {log_coefficient: 40}", "source_level_db: 210"})
         EXPECT_THAT(diagnosticsWith("range: 20", std::string("range: 20\n      ") + key),

@@ -168,8 +168,8 @@ TEST(BuildFolderTest, ThePartsThatAreBuiltAreInstalled) {
     ASSERT_THAT(build(folder, "a"), succeeds());
     // As after `scripts/run` and `scripts/setup study`: the command, its core and one part.
     fs::create_directories(folder / "a/build/lib/insonify");
-    for (const char* name : {"bin/insonify", "lib/libinsonify.so", "lib/libinsonify.so.0.1",
-                             "lib/libinsonify.so.0.1.0", "lib/insonify/study.so"})
+    for (const char* name : {"bin/insonify", "lib/libinsonify.so", "lib/libinsonify.so.0.1", "lib/libinsonify.so.0.1.0",
+                             "lib/insonify/study.so"})
         fs::copy(fs::path(insonify::test::build_dir) / name, folder / "a/build" / name,
                  fs::copy_options::copy_symlinks);
     fs::copy(insonify::test::sourceFile("deploy"), folder / "a/deploy");  // without its folders

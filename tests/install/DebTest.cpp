@@ -46,10 +46,11 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
 
     EXPECT_THAT(call(folder, {folder / "root/usr/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"}),
                 succeeds());
-    const Outcome stepped = call(
-        folder, {"env", "PYTHONPATH=" + (folder / "root/usr/lib/python3/dist-packages").string(),
-                 "LD_LIBRARY_PATH=" + (folder / "root/usr/lib").string(), "/usr/bin/python3", "-c",
-                 "import insonify; print(insonify.Simulation('wall.yml').step(insonify.Pose([0, 0, 0])).bins.max() > 0)"});
+    const Outcome stepped =
+        call(folder,
+             {"env", "PYTHONPATH=" + (folder / "root/usr/lib/python3/dist-packages").string(),
+              "LD_LIBRARY_PATH=" + (folder / "root/usr/lib").string(), "/usr/bin/python3", "-c",
+              "import insonify; print(insonify.Simulation('wall.yml').step(insonify.Pose([0, 0, 0])).bins.max() > 0)"});
     EXPECT_EQ(stepped.out, "True\n") << stepped.err;
     EXPECT_THAT(call(folder, {"dpkg-deb", "-f", package(folder, "python3-insonify"), "Depends"}).out,
                 AllOf(HasSubstr("insonify (="), HasSubstr("python3-numpy")));

@@ -50,6 +50,8 @@ void runArchive(const WallFolder& folder) {
     EXPECT_GT(std::distance(fs::directory_iterator(licences), {}), 20);
     for (const char* compiled_in : {"libcli11-dev.txt", "libglm-dev.txt", "libjs-three.txt", "nlohmann-json3-dev.txt"})
         EXPECT_TRUE(fs::exists(licences / compiled_in)) << compiled_in;
+    EXPECT_THAT(call(folder, {"env", "-i", program, "scene", "make", "--list"}).err, HasSubstr("INSONIFY_PYTHON="))
+        << "an archive has no pip";
     EXPECT_THAT(
         call(folder, {program, "check", std::string(insonify::test::source_dir) + "/deploy/survey_mission.yml"}).err,
         HasSubstr("the component library survey, which is not in wheels and archives"));
@@ -80,7 +82,7 @@ std::set<std::string> readLibraries(const std::string& end) {
         EXPECT_NE(each["version"], "") << each;
         EXPECT_THAT(each["purl"].get<std::string>(), testing::StartsWith("pkg:")) << each;
         EXPECT_FALSE(each.value("licenses", json::array()).empty()) << each;
-        names.insert(each["name"]);
+        EXPECT_TRUE(names.insert(each["name"]).second) << each;
     }
     EXPECT_EQ(list["dependencies"].size(), list["components"].size() + 1);
     return names;
@@ -101,7 +103,8 @@ TEST(PackageTest, TheArchiveRunsFromItsFolderAndTheWheelInAnyPython) {
     using testing::Contains, testing::StartsWith;
     for (const char* end : {"-deb.sbom.json", "64.sbom.json"}) {
         const std::set<std::string> libraries = readLibraries(end);
-        for (const char* library : {"libyaml-cpp", "libembree", "libboost1.", "libcli11-dev", "libglm-dev", "libjs-three", "nlohmann-json3-dev"})
+        for (const char* library : {"libyaml-cpp", "libembree", "libboost1.", "libcli11-dev", "libglm-dev",
+                                    "libjs-three", "nlohmann-json3-dev"})
             EXPECT_THAT(libraries, Contains(StartsWith(library))) << end;
         EXPECT_FALSE(libraries.contains("libgtest-dev")) << end;
     }

@@ -49,6 +49,8 @@ TEST(RecordingConfigTest, ReportsNamesThatCannotBeWritten) {
     EXPECT_THAT(test::countRefusals(RecordingConfig{.file = "%s%n", .video = "b.mkv", .video_rate = {}}),
                 ElementsAre(HasSubstr("must have one number and end in " + fileEndings(FileContent::Picture)),
                             HasSubstr("video: is 'b.mkv'; it must end in .avi or .mp4")));
+    EXPECT_THAT(test::countRefusals(RecordingConfig{.file = "b.mp4", .video = {}, .video_rate = {}}),
+                ElementsAre(HasSubstr("`video` takes this one")));
 }
 
 }  // namespace

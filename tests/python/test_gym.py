@@ -106,8 +106,33 @@ def test_a_changed_observation_does_not_change_the_next(deploy):
 @pytest.mark.parametrize("stack", [0, -1, 1.5, True, "4", None])
 def test_a_stack_is_a_whole_number_from_1(deploy, stack):
     for make in (lambda: made(deploy, stack=stack), lambda: many(deploy, 2, stack=stack)):
-        with pytest.raises(ValueError, match="^stack: is .*; must be a whole number of frames from 1$"):
+        with pytest.raises(ValueError, match="^stack: is .*; must be a whole number from 1$"):
             make()
+
+
+@pytest.mark.parametrize(
+    "name, value, error, bound",
+    [
+        ("max_steps", 0, ValueError, "must be a whole number from 1"),
+        ("max_steps", 2.5, ValueError, "must be a whole number from 1"),
+        ("floor_db", 60, ValueError, "must be a number below 0"),
+        ("max_speed", -1, ValueError, "must be a number from 0"),
+        ("scatter", np.nan, ValueError, "must be a number from 0"),
+        ("start", np.eye(4), TypeError, "must be an insonify.Pose"),
+    ],
+)
+def test_an_environment_is_not_made_with_a_wrong_number_or_start(deploy, name, value, error, bound):
+    arguments = {"start": START, name: value}
+    for make in (insonify.gym.SonarEnv, lambda path, **more: insonify.gym.SonarVectorEnv(path, num_envs=2, **more)):
+        with pytest.raises(error, match=f"^{name}: is .*; {bound}$"):
+            make(deploy / "minimal.yml", **arguments)
+
+
+@pytest.mark.parametrize("name", ["hil_ping360.yml", "two_vehicles.yml"])
+def test_an_environment_has_one_sonar_and_one_vehicle(deploy, name):
+    for make in (insonify.gym.SonarEnv, lambda path, start: insonify.gym.SonarVectorEnv(path, start, 2)):
+        with pytest.raises(ValueError, match=f"{name}: has several vehicles or sonars; .* one of each$"):
+            make(deploy / name, START)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])

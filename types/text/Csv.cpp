@@ -173,7 +173,8 @@ std::vector<std::vector<double>> readTable(const std::filesystem::path& file,
     std::ifstream stream(file, std::ios::binary);
     if (std::error_code error; !stream && !std::filesystem::exists(file, error))
         throw ConfigError(file.string(), "",
-                          "does not exist; " + didYouMean(file.filename().string(), csvFilesNextTo(file)) + wanted());
+                          "does not exist; " + offerCurrentFolder(file) +
+                              didYouMean(file.filename().string(), csvFilesNextTo(file)) + wanted());
     if (!stream || std::filesystem::is_directory(file))
         throw ConfigError(file.string(), "", "cannot be read" + permissionReason(errno) + "; it " + wanted());
     const std::string text{std::istreambuf_iterator<char>(stream), {}};

@@ -28,6 +28,13 @@ size_t editDistance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string offerCurrentFolder(const std::filesystem::path& missing) {
+    std::error_code none;
+    const std::filesystem::path here = std::filesystem::absolute(missing.filename(), none);
+    if (!std::filesystem::is_regular_file(here, none)) return "";
+    return "is the one of the current folder meant? write " + here.string() + "; ";
+}
+
 std::string didYouMean(std::string_view wrong, const std::vector<std::string>& known) {
     constexpr size_t longest = 200;  // longer texts are no mistyped names
     if (wrong.size() > longest) return "";

@@ -30,6 +30,10 @@ inline std::string lowered(std::string text) {
  * The last part of a known name with a namespace is enough, also without "Task". */
 std::string didYouMean(std::string_view wrong, const std::vector<std::string>& known);
 
+/** Returns "is the one of the current folder meant? write /home/me/x.glb; " where a file is not at its place, next to a
+ *  deployment for example, and the current folder has one of its name; else "". */
+std::string offerCurrentFolder(const std::filesystem::path& missing);
+
 /** Returns the choices as a message lists them: ".a, .b or .c". */
 std::string alternatives(const std::vector<std::string_view>& choices);
 

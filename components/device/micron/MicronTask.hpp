@@ -23,6 +23,7 @@ struct MicronConfig {
               self.serial);
         MicronDevice::describe(self.device, visit);
     }
+    void check(types::Diagnostics& diagnostics) const { checkAddress(diagnostics, address); }
 };
 
 /** Replaces a Tritech Micron or a SeaKing, for drivers that speak SeaNet over TCP or a serial line. MicronEmulator has

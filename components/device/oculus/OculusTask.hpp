@@ -37,6 +37,7 @@ struct OculusTaskConfig {
               self.record);
         OculusConfig::describe(self.device, visit);
     }
+    void check(types::Diagnostics& diagnostics) const { checkAddress(diagnostics, address); }
 };
 
 /** Replaces a Blueprint Subsea Oculus. Drivers find it by its status, connect over TCP, and get pings with the settings

@@ -14,6 +14,7 @@ struct Ping1dTaskConfig {
         PingEnds::describe(self.ends, visit);
         Ping1dConfig::describe(self.device, visit);
     }
+    void check(types::Diagnostics& diagnostics) const { ends.check(diagnostics); }
 };
 
 /** Replaces a Blue Robotics Ping1D for drivers, viewers and autopilots, over UDP, TCP or a serial line. Ping1dEmulator

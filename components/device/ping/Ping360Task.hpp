@@ -33,7 +33,10 @@ struct Ping360TaskConfig {
               self.discovery);
         Ping360Config::describe(self.device, visit);
     }
-    void check(types::Diagnostics& diagnostics) const { device.check(diagnostics); }
+    void check(types::Diagnostics& diagnostics) const {
+        ends.check(diagnostics);
+        device.check(diagnostics);
+    }
 };
 
 /** Replaces a Blue Robotics Ping360 for drivers and viewers, over UDP, TCP or a serial line. Ping360Emulator has the

@@ -24,6 +24,7 @@ struct PingEnds {
                "the run's output folder; empty: none"},
               self.serial);
     }
+    void check(types::Diagnostics& diagnostics) const { checkAddress(diagnostics, address); }
 };
 
 /** Moves bytes between drivers and a device of the ping protocol, and pings from the sonar to the device.

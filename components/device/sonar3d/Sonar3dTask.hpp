@@ -19,7 +19,10 @@ struct Sonar3dDeviceConfig {
         visit({"port", "1", "TCP port of the HTTP API; 0: a free port, named in a notice", 0, 65535}, self.port);
         Sonar3dDevice::describe(self.device, visit);
     }
-    void check(types::Diagnostics& diagnostics) const { device.check(diagnostics); }
+    void check(types::Diagnostics& diagnostics) const {
+        checkAddress(diagnostics, address);
+        device.check(diagnostics);
+    }
 };
 
 /** Replaces a Water Linked Sonar 3D-15: its HTTP API, and range images by UDP. Sonar3dEmulator has the device's

@@ -34,12 +34,16 @@ std::string toText(const auto& endpoint) {
     return endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
 }
 
-template <class Protocol>
-typename Protocol::endpoint makeEndpoint(const std::string& address, uint16_t port) {
+asio::ip::address parseAddress(const std::string& address) {
     error_code error;
     const asio::ip::address parsed = asio::ip::make_address(address, error);
     if (error) throw NetworkError("address", "is " + address + ", which is no address; write one as 127.0.0.1 or ::1");
-    return {parsed, port};
+    return parsed;
+}
+
+template <class Protocol>
+typename Protocol::endpoint makeEndpoint(const std::string& address, uint16_t port) {
+    return {parseAddress(address), port};
 }
 
 /** Opens and binds; errors begin with `what` before the port. */
@@ -532,6 +536,14 @@ private:
 };
 
 }  // namespace
+
+void checkAddress(types::Diagnostics& diagnostics, const std::string& address) {
+    try {
+        parseAddress(address);
+    } catch (const NetworkError& error) {
+        diagnostics.push_back({error.property, error.what()});
+    }
+}
 
 Network::Network(std::function<void()> wake) : core_(std::make_unique<Core>(std::move(wake))) {}
 Network::~Network() = default;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "components/device/wire/Bytes.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::device {
 
@@ -38,6 +39,9 @@ struct NetworkError : std::runtime_error {
     NetworkError(std::string of, const std::string& why) : std::runtime_error(why), property(std::move(of)) {}
     std::string property;  ///< address, port or serial.
 };
+
+/** Reports a property `address` that is no numeric address, before anything is opened. */
+void checkAddress(types::Diagnostics& diagnostics, const std::string& address);
 
 /** Moves bytes between clients and one task on its own thread, so that no client delays the task.
  *

@@ -31,6 +31,22 @@ def _distances_ahead(bins, bearings, ranges, half_sector: float = np.radians(15)
     return np.where(is_echo.any(axis=1), np.append(ranges, np.inf)[np.where(is_echo.any(axis=1), is_echo.argmax(axis=1), -1)], np.inf)
 
 
+def _whole(name: str, number) -> None:
+    if isinstance(number, bool) or not isinstance(number, (int, np.integer)) or number < 1:
+        raise ValueError(f"{name}: is {number!r}; must be a whole number from 1")
+
+
+def _check(start, max_steps: int, floor_db: float, **from_0: float) -> None:
+    if not isinstance(start, Pose):
+        raise TypeError(f"start: is a {type(start).__name__}; must be an insonify.Pose")
+    _whole("max_steps", max_steps)
+    if not -np.inf < floor_db < 0:
+        raise ValueError(f"floor_db: is {floor_db!r}; must be a number below 0")
+    for name, number in from_0.items():
+        if not 0 <= number < np.inf:
+            raise ValueError(f"{name}: is {number!r}; must be a number from 0")
+
+
 class _Frames:
     """Observations of several vehicles: pings as levels, uint8, or the newest `stack` of each along an axis of channels.
 
@@ -38,8 +54,7 @@ class _Frames:
     """
 
     def __init__(self, bins: np.ndarray, floor_db: float, channel_axis: bool, stack: int) -> None:
-        if isinstance(stack, bool) or not isinstance(stack, (int, np.integer)) or stack < 1:
-            raise ValueError(f"stack: is {stack!r}; must be a whole number of frames from 1")
+        _whole("stack", stack)
         loudest = float(np.nanmax(bins[0], initial=0))
         self._reference, self._floor_db = loudest if loudest > 0 else 1.0, floor_db
         self._stacked = np.zeros((len(bins), stack, *bins.shape[1:]), np.uint8)
@@ -124,6 +139,7 @@ class SonarEnv(gymnasium.Env):
         reward: Callable[[Ping, Pose, Pose], float] | None = None,
         render_mode: str | None = None,
     ) -> None:
+        _check(start, max_steps, floor_db, max_speed=max_speed, max_turn=max_turn, scatter=scatter, collision_range=collision_range)
         self.render_mode = render_mode
         self._made_of = (str(deployment), dict(overrides or {}))
         self._start, self._scatter, self._period = start, scatter, period
@@ -131,6 +147,8 @@ class SonarEnv(gymnasium.Env):
         self._collision_range, self._max_steps = collision_range, max_steps
         self._reward = reward or _progress
         self._simulation = self._simulate(0)
+        if (len(self._simulation.poses), len(self._simulation.pings)) != (1, 1):
+            raise ValueError(f"{deployment}: has several vehicles or sonars; an environment steps a deployment of one of each")
         self._pose, self._steps, self._ping = start, 0, self._simulation.step(start)
         self._frames = _Frames(self._ping.bins[None], floor_db, channel_axis, stack)
         self.action_space = gymnasium.spaces.Box(-1, 1, (4,), np.float32)
@@ -200,6 +218,7 @@ class SonarVectorEnv(gymnasium.vector.VectorEnv):
         stack: int = 1,
         reward: Callable[[Pings, np.ndarray, np.ndarray], np.ndarray] | None = None,
     ) -> None:
+        _check(start, max_steps, floor_db, max_speed=max_speed, max_turn=max_turn, scatter=scatter, collision_range=collision_range)
         self.num_envs = num_envs
         self._start, self._scatter, self._period = start, scatter, period
         self._speeds = np.array([max_speed, max_speed, max_speed, max_turn])

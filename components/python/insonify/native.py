@@ -160,7 +160,10 @@ class Handle:
 
 def _whole(name: str, number: int, end: int, first: int = 0) -> int:
     """A number from `first` to below `end`; numbers of numpy too."""
-    whole = operator.index(number)
+    try:
+        whole = operator.index(number)
+    except TypeError:
+        raise TypeError(f"{name}: is {number!r}; must be a whole number") from None
     if not first <= whole < end:
         raise ValueError(f"{name}: is {whole}; may be {first} to {end - 1}")
     return whole
