@@ -128,7 +128,7 @@ def test_an_environment_is_not_made_with_a_wrong_number_or_start(deploy, name, v
             make(deploy / "minimal.yml", **arguments)
 
 
-@pytest.mark.parametrize("name", ["hil_ping360.yml", "two_vehicles.yml"])
+@pytest.mark.parametrize("name", ["hil_ping360.yml", "crosstalk.yml"])
 def test_an_environment_has_one_sonar_and_one_vehicle(deploy, name):
     for make in (insonify.gym.SonarEnv, lambda path, start: insonify.gym.SonarVectorEnv(path, start, 2)):
         with pytest.raises(ValueError, match=f"{name}: has several vehicles or sonars; .* one of each$"):

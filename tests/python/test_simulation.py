@@ -300,6 +300,14 @@ def test_numbers_of_numpy_and_paths_are_overrides(deploy):
     assert simulation.step(HERE).bins.shape[0] == 16
 
 
+@pytest.mark.parametrize("seed", [1.5, "a", [1]])
+def test_a_seed_that_is_no_whole_number_is_named(deploy, seed):
+    sim = insonify.Simulation(deploy / "minimal.yml", seed=1)
+    for make in (lambda: insonify.Simulation(deploy / "minimal.yml", seed=seed), lambda: sim.reset(seed=seed)):
+        with pytest.raises(TypeError, match="^seed: is .*; must be a whole number$"):
+            make()
+
+
 def test_numbers_of_numpy_are_arguments(deploy):
     simulation = insonify.Simulation(deploy / "minimal.yml", np.uint64(3), period=np.float32(0.5))
     assert simulation.period == 0.5
