@@ -45,8 +45,8 @@ std::string stem(const std::string& digest, uint64_t index) {
 }
 
 std::string toBytes(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::string computeSum(Json record) {
