@@ -9,9 +9,9 @@ NEIGHBOURS = 2
 
 
 @contextmanager
-def neighbours():
+def neighbours(count=NEIGHBOURS):
     """Processes that keep one core busy each, on any core."""
-    processes = [subprocess.Popen(["/usr/bin/python3", "-c", "while True: pass"]) for _ in range(NEIGHBOURS)]
+    processes = [subprocess.Popen(["/usr/bin/python3", "-c", "while True: pass"]) for _ in range(count)]
     try:
         yield
     finally:

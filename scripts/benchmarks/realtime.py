@@ -1,4 +1,4 @@
-"""Realtime runs on two cores, also with readers that hang."""
+"""Realtime runs on two cores, also with readers that hang and next to busy processes."""
 import json
 import os
 import signal
@@ -8,6 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from benchmarks.busy import neighbours
 from benchmarks.common import INSONIFY, ROOT, fail, free_port, loopback
 from benchmarks.fans import SCENES, SONARS, deployment, scene
 
@@ -68,11 +69,14 @@ def hang_on(port):
 def measure_realtime(options):
     """Per fan: pings, those written after the next was due, those not rendered, and latency and jitter [ms]."""
     results = {}
-    runs = [(name, setting, None) for name, setting in REALTIME.items()]
+    runs = [(name, setting, None, 0) for name, setting in REALTIME.items()]
+    fast = REALTIME["FLS 256 x 500, 40 Hz"]
+    runs += [(f"the same, {busy} busy processes", fast, None, busy) for busy in [1, 2]]
     if (ROOT / "build/venv/bin/python3").exists():
-        runs.append(("the same, readers hang", REALTIME["FLS 256 x 500, 40 Hz"], free_port()))
-    for name, (sonar, period, reach), port in runs:
-        summary = run_realtime(sonar, period, reach, options.realtime_seconds, port)
+        runs.append(("the same, readers hang", fast, free_port(), 0))
+    for name, (sonar, period, reach), port, busy in runs:
+        with neighbours(busy):
+            summary = run_realtime(sonar, period, reach, options.realtime_seconds, port)
         vehicle, fan = summary["tasks"]["vehicle"], summary["tasks"]["sonar"]
         own = [lost for path, lost in summary["losses"].items() if not path.split(">")[1].startswith(("ros.", "view."))]
         skipped = vehicle["overruns"] + sum(own)
@@ -83,9 +87,9 @@ def measure_realtime(options):
 
 
 def show_realtime(results):
-    print(f"{'realtime, 2 cores, [ms]':24}{'pings':>7}{'misses':>8}{'echoes':>8}  "
+    print(f"{'realtime, 2 cores, [ms]':26}{'pings':>7}{'misses':>8}{'echoes':>8}  "
           + "".join(f"{name + ' median':>16}{'p99':>8}{'max':>8}" for name in ["latency", "jitter", "render"]))
     for name, fan in results.items():
         times = "".join(f"{fan[of]['median_ms']:16.3f}{fan[of]['p99_ms']:8.3f}{fan[of]['max_ms']:8.3f}"
                         for of in ["latency", "jitter", "render"])
-        print(f"{name:24}{fan['pings']:7}{fan['misses']:8}{fan['echoes_ms']:8.1f}  {times}")
+        print(f"{name:26}{fan['pings']:7}{fan['misses']:8}{fan['echoes_ms']:8.1f}  {times}")
