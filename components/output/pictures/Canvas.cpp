@@ -62,7 +62,7 @@ Palette getPalette(ColourMap map) {
 namespace {
 
 constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
-constexpr double font_scale = 0.45, caption_scale = 0.42;  ///< Captions are as large as labels.
+constexpr double font_scale = 0.45;
 
 }  // namespace
 
@@ -135,12 +135,7 @@ void sideBySide(const Captioned& left, const Captioned& right, types::Image& pic
         const cv::Mat pixels(half.picture.size.height, half.picture.size.width, CV_8UC3,
                              const_cast<uint8_t*>(half.picture.image.data()), half.picture.row_size);
         pixels.copyTo(canvas(cv::Rect(cv::Point(column, 0), pixels.size())));
-        const int room = pixels.cols - 24;
-        const auto addCaption = [&](const std::string& text) {
-            cv::putText(canvas, text, {column + 12, canvas.rows - 8}, font, caption_scale, cv::Scalar(ink), 1,
-                        cv::LINE_AA);
-        };
-        measureWidth(half.caption) > room ? addCaption(shorten(half.caption, room)) : addCaption(half.caption);
+        putLabel(canvas, half.caption, {column + 12, canvas.rows - 8}, pixels.cols - 24);
         column += pixels.cols;
     }
 }

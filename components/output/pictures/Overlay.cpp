@@ -206,11 +206,14 @@ int measureWidth(const std::string& text) {
     return cv::getTextSize(text, label_font, label_scale, 1, &baseline).width;
 }
 
-std::string shorten(std::string text, int width) {
-    if (measureWidth(text) <= width) return text;
-    text += "..";
-    while (text.size() > 2 && measureWidth(text) > width) text.erase(text.size() - 3, 1);
-    return text;
+void putLabel(cv::Mat& picture, const std::string& text, cv::Point at, int width) {
+    const auto put = [&](const std::string& part) {
+        cv::putText(picture, part, at, label_font, label_scale, cv::Scalar(ink), 1, cv::LINE_AA);
+    };
+    if (measureWidth(text) <= width) return put(text);
+    std::string part = text + "..";
+    while (part.size() > 2 && measureWidth(part) > width) part.erase(part.size() - 3, 1);
+    put(part);
 }
 
 }  // namespace insonify::output

@@ -66,7 +66,8 @@ double roundStep(double minimum, double end);
 
 /** Returns the width of text in the font of labels [px]. */
 int measureWidth(const std::string& text);
-/** Returns text, without its last letters where it is wider than `width` in the font of labels [px]. */
-std::string shorten(std::string text, int width);
+/** Writes text in the font of labels from the lower left corner `at` on, without its last letters where it is wider
+ * than `width` [px]. */
+void putLabel(cv::Mat& picture, const std::string& text, cv::Point at, int width);
 
 }  // namespace insonify::output

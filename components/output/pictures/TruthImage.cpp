@@ -12,8 +12,7 @@ namespace insonify::output {
 namespace {
 
 const std::string fan_caption = "echoes", truth_caption = "objects; dark blue: in shadow";
-constexpr double font_scale = 0.42;
-constexpr int line_height = 15, swatch = 10, margin = 12, legend_width = 118;
+constexpr int line_height = 15, swatch = 10, margin = 12, legend_width = 126;
 constexpr double dimmest = 0.35;  ///< Brightness of an object whose echo is below the dynamic range.
 
 DisplayConfig halved(DisplayConfig config) {
@@ -127,16 +126,13 @@ void TruthImage::addLegend(cv::Mat& canvas) const {
     canvas(fan_.bar()).setTo(background);
     int row = top;
     for (size_t i = 0; i < count; ++i, row += line_height)
-        addLine(canvas, row,
-                shorten(truth_->objects[static_cast<size_t>(shown_[i].object)], legend_width - margin - swatch - 8),
-                getColour(shown_[i].object));
+        addLine(canvas, row, truth_->objects[static_cast<size_t>(shown_[i].object)], getColour(shown_[i].object));
     if (!all && room > 0) addLine(canvas, row, fmt::format("and {} more", shown_.size() - count), {90, 90, 90});
 }
 
 void TruthImage::addLine(cv::Mat& canvas, int row, const std::string& text, const cv::Vec3b& colour) const {
     cv::rectangle(canvas, cv::Rect(margin, row, swatch, swatch), cv::Scalar(colour), cv::FILLED);
-    cv::putText(canvas, text, {margin + swatch + 7, row + swatch - 1}, cv::FONT_HERSHEY_SIMPLEX, font_scale,
-                cv::Scalar(ink), 1, cv::LINE_AA);
+    putLabel(canvas, text, {margin + swatch + 7, row + swatch - 1}, legend_width - margin - swatch - 8);
 }
 
 }  // namespace insonify::output
