@@ -255,7 +255,7 @@ TEST(SmallPictureTest, LongNamesOfObjectsStayBesideTheFan) {
     }
     const cv::Rect names = findDifference(drawn[0], drawn[1]);
     EXPECT_GT(names.width, 40);
-    EXPECT_LE(names.br().x, 500 + 128);
+    EXPECT_LE(names.br().x, 500 + 134);
 }
 
 TEST(SmallPictureTest, CaptionsAreBelowTheirPictures) {

@@ -88,6 +88,7 @@ void FanImage::buildTables() {
 
 void FanImage::buildOverlay() {
     bar_ = placeOfBar(*layout_, config_);
+    labelled_bar_ = labelledBar(bar_, config_) & cv::Rect({}, layout_->size());
     overlay_.emplace(fanOverlay(*layout_, bar_, config_));
 }
 

@@ -29,7 +29,7 @@ public:
     const FanLayout& layout() const { return *layout_; }
     const LevelScale& scale() const { return scale_; }
     /** Returns the area of the colour bar and its labels in the last picture, if it has one [px]. */
-    cv::Rect bar() const { return labelledBar(bar_, config_) & cv::Rect({}, layout_->size()); }
+    const cv::Rect& bar() const { return labelled_bar_; }
     const Overlay& overlay() const { return *overlay_; }
     int tablesBuilt() const { return tables_built_; }
 
@@ -60,6 +60,7 @@ private:
     std::vector<Span> spans_;
     std::optional<Overlay> overlay_;
     cv::Point bar_;  // of colours
+    cv::Rect labelled_bar_;
     int tables_built_ = 0;
 
     cv::Mat bins_, polar_, polar_levels_, levels_;

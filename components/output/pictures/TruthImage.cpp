@@ -12,7 +12,7 @@ namespace insonify::output {
 namespace {
 
 const std::string fan_caption = "echoes", truth_caption = "objects; dark blue: in shadow";
-constexpr int line_height = 15, swatch = 10, margin = 12, legend_width = 126;
+constexpr int line_height = 15, swatch = 10, margin = 12, legend_width = 132;
 constexpr double dimmest = 0.35;  ///< Brightness of an object whose echo is below the dynamic range.
 
 DisplayConfig halved(DisplayConfig config) {
