@@ -51,7 +51,7 @@ TEST(DidYouMeanTest, ASceneInPlaceOfADeploymentIsCalledOne) {
     for (const char* scene : {"wall.gltf", "nowhere.GLB", "pool.sdf"})
         EXPECT_THAT(callInsonify(folder, {"run", scene}),
                     isRefused(HasSubstr(std::string(scene) + ": is a scene; must be a deployment")));
-    EXPECT_THAT(callInsonify(folder, {"check", ""}).err, HasSubstr("DEPLOYMENT is required"));
+    EXPECT_THAT(callInsonify(folder, {"check", ""}), isRefused(HasSubstr("the file's name is empty; must be")));
 }
 
 TEST(DidYouMeanTest, OffersAFileOfTheCurrentFolder) {
