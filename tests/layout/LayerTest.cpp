@@ -64,8 +64,9 @@ std::vector<std::string> inCircles(const Graph& graph) {
 // What has been reached. Lower these numbers when the tree gets smaller; a commit that adds a function for users may
 // raise them, and states which. Last: fixes of satellites from DDS, links of joints in Gazebo, walls of `backscatter`,
 // shadows as what an object hides, pictures for `fit`, drawn numbers in the running sonar, parts of packages and of
-// --version, trials of graphics cards, errors with and without gain.
-constexpr size_t max_units = 477, max_small_files = 71, max_folder = 25, max_lines = 138'781;
+// --version, trials of graphics cards, errors with and without gain, threads for azimuths, labels that never touch,
+// headers of all folders by a script, lists of what packages consist of, sets of a device for sim_to_real.
+constexpr size_t max_units = 477, max_small_files = 71, max_folder = 25, max_lines = 139'410;
 
 /** Number of lines of the product, without pages. */
 size_t productLines() {
