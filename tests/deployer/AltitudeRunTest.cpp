@@ -84,7 +84,9 @@ struct AltitudeRunTest : testing::Test {
         ASSERT_THAT(callInsonify(folder_, {"log", "import", "wire.xtf", "--to", "wire.0.log"}), succeeds());
     }
     void expectStraight(const std::string& picture) const {
-        const output::SideScanPictureConfig config;
+        output::SideScanPictureConfig config;  // as above_ground: labels of codes of 16 bits are wide
+        config.scale = output::BinScale::Code;
+        config.code_bits = 16;
         const auto [minimum, greatest] = brightestColumns(folder_ / picture, config);
         const double column = output::SideScanImage(config).water().width / 2.0 * ground_range / 30;
         EXPECT_NEAR(minimum, column, 3);
