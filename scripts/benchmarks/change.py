@@ -3,13 +3,13 @@ import shutil
 import subprocess
 import time
 
-from benchmarks.common import BENCH, ROOT
+from benchmarks.common import BENCH, ROOT, fail
 
 COPY = BENCH / "change"
 CHANGES = {  # what is changed, and the tests of it
     "components/sonar/beams/Directivity.cpp": "LineArrayTest.*:PatternedPingTest.*",
     "components/sonar/rays/TilePatches.cpp": "FootprintTest.*",
-    "tests/sonar/BeamFanTest.cpp": "BeamFanTest.*",
+    "tests/sonar/BinGridTest.cpp": "BinGridTest.*",
 }
 
 
@@ -36,8 +36,11 @@ def measure_changes(unity):
     run("scripts/build", "build", "-DINSONIFY_TESTS=ON", f"-DINSONIFY_UNITY={unity}", "--", "sonar_test")
     times = {}
     for name, tests in CHANGES.items():
+        listed = subprocess.run(["build/bin/sonar_test", "--gtest_list_tests", f"--gtest_filter={tests}"], cwd=COPY, stdout=subprocess.PIPE, text=True, check=True)
+        if "\n  " not in listed.stdout:
+            fail(f"sonar_test, which has no {tests},", 1)
         with open(COPY / name, "a") as source:  # code, since the cache knows the file without a comment too
-            source.write(f"namespace {{ [[maybe_unused]] constexpr long changed_{unity} = {time.time_ns()}; }}\n")
+            source.write(f"namespace {{ [[maybe_unused]] constexpr int changed_{time.time_ns()} = 0; }}\n")
         times[name] = timed(("scripts/build", "build", "--", "sonar_test"), ("build/bin/sonar_test", f"--gtest_filter={tests}", "--gtest_brief=1"))
     return times
 
