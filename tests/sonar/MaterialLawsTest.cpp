@@ -1,11 +1,17 @@
 // Backscatter of materials between the entries of their tables, and materials that follow Lambert's law.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <random>
+#include <vector>
 
 #include "components/acoustics/Matter.hpp"
 #include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/Seabed.hpp"
+#include "components/sonar/bins/CellDeposit.hpp"
+#include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/surfaces/MaterialLaws.hpp"
 #include "types/geometry/Angle.hpp"
 
@@ -79,6 +85,107 @@ TEST(MaterialLawsTest, WithoutAFrequencyMatterFollowsLambertsLaw) {
     EXPECT_TRUE(laws.followsLambert(0));
     EXPECT_FALSE(laws.has_matter || laws.hasLobes());
     for (const double cosine : {0.1, 0.5, 1.0}) EXPECT_EQ(laws.overCosine(0, cosine), as_before.overCosine(0, cosine));
+}
+
+/** Materials of each law: Lambert's, a table, a lobe, both. */
+types::Geometry allLaws() {
+    types::Geometry geometry;
+    geometry.materials = {{.name = "mud", .lambert_db = -20},
+                          {.name = "sand", .seabed = "medium_sand"},
+                          {.name = "glossy", .lambert_db = -12, .reflection = 0.8f, .roughness_slope = 0.15f},
+                          {.name = "steel", .matter = "carbon_steel"},
+                          {.name = "measured",
+                           .measured = {{5, -40}, {45, -30}, {90, -10}},
+                           .reflection = 0.5f,
+                           .roughness_slope = 0.05f}};
+    return geometry;
+}
+
+TEST(MaterialLawsTest, EachCellOfABatchFollowsTheLawOfItsMaterial) {
+    const types::Geometry geometry = allLaws();
+    SonarConfig config;
+    config.frequency_khz = 700;
+    config.range = 50;
+    const RenderPlan plan = makeRenderPlan(config, geometry);
+    const PingEffects effects(plan, geometry);
+    EchoRules rules = makeEchoRules(plan, effects);
+    ASSERT_TRUE(rules.features.has(Feature::BackscatterLaws));
+    std::mt19937 random(5);
+    const auto draw = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    std::vector<uint64_t> sums(rules.sumCount() * plan.beams.size());
+    int compared = 0;
+    for (int round = 0; round < 200; ++round) {
+        CellDeposit deposit(rules, {}, false, {0, sums.data()});
+        Cells& cells = deposit.cells;
+        std::array<FacetRecord, Cells::capacity> facets;
+        std::array<PlacedRun, Cells::capacity> runs{};
+        cells.count = static_cast<int>(random() % (Cells::capacity + 1));
+        for (int i = 0; i < cells.count; ++i) {
+            const auto at = static_cast<size_t>(i);
+            PlacedRun& run = runs[at];
+            run.normal_x[0] = run.normal_y[1] = run.normal_z[2] = 1;
+            const bool is_flat = random() % 2 == 0;
+            const auto wave = is_flat ? static_cast<float>(draw(1e-5, 1e-3)) : 0;
+            facets[at] = {vec4(draw(-1, 1), draw(-1, 1), draw(-1, 1), random() % 2),
+                          vec4(draw(0, 0.1), wave, draw(0, 2), draw(-0.2, 0.2)),
+                          vec4(draw(0, 0.1), wave, draw(0, 2), draw(-0.2, 0.2))};
+            if (random() % 10 == 0) {
+                cells.setMiss(i);
+            } else {
+                const double azimuth = draw(-0.5, 0.5), elevation = draw(-0.2, 0.2), range = draw(1, 60);
+                cells.cos_az[i] = std::cos(azimuth), cells.sin_az[i] = std::sin(azimuth);
+                cells.cos_el[i] = std::cos(elevation), cells.sin_el[i] = std::sin(elevation);
+                cells.normal_x[i] = draw(-1, 0), cells.normal_y[i] = draw(-1, 1), cells.normal_z[i] = draw(-1, 1);
+                cells.distance[i] =
+                    range *
+                    (cells.cos_el[i] * (cells.normal_x[i] * cells.cos_az[i] + cells.normal_y[i] * cells.sin_az[i]) +
+                     cells.normal_z[i] * cells.sin_el[i]);
+                cells.near_limit[i] = 10, cells.far_limit[i] = 0;
+                cells.mapped[i] = random() % 3 == 0 ? draw(0, 1) : 0;
+            }
+            cells.material[i] = static_cast<uint32_t>(random() % geometry.materials.size());
+            cells.strength[i] = double{rules.laws.records[cells.material[i]].values.x} * rules.strength_scale;
+            cells.facet[i] = &facets[at], cells.run[i] = &run;
+            cells.width[i] = draw(1e-4, 0.01), cells.height[i] = draw(1e-4, 0.01), cells.lean[i] = 0;
+            cells.size[i] = draw(0.1, 2), cells.beam[i] = 0;
+        }
+        deposit.cover();
+        const Covered& covered = deposit.covered;
+        for (int i = 0; i < cells.count; ++i) {
+            const uint32_t material = cells.material[i];
+            if (!(covered.pixel[i] > 0) || rules.laws.followsLambert(material)) continue;
+            const glm::dvec3 normal(cells.normal_x[i], cells.normal_y[i], cells.normal_z[i]);
+            LobeSample sample{facets[static_cast<size_t>(i)],
+                              normal,
+                              glm::dvec3(facets[static_cast<size_t>(i)].axis),
+                              1 / covered.pixel[i],
+                              cells.cos_az[i],
+                              cells.sin_az[i],
+                              cells.cos_el[i],
+                              cells.sin_el[i],
+                              cells.width[i],
+                              cells.height[i],
+                              cells.mapped[i]};
+            const double cosine =
+                cells.mapped[i] > 0
+                    ? cells.mapped[i]
+                    : std::min(std::abs(cells.distance[i]) * covered.pixel[i] /
+                                   std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z),
+                               1.0);
+            const LobeSlopes slopes =
+                rules.laws.hasLobe(material) ? rules.laws.lobeSlopes(material, sample) : LobeSlopes{};
+            const double expected =
+                rules.strength_scale / covered.pixel[i] * rules.laws.overCosine(material, cosine, slopes);
+            ASSERT_GT(expected, 0) << material;
+            ASSERT_EQ(covered.strength_range[i], expected) << "material " << material << ", cell " << i;
+            ASSERT_EQ(covered.fade[i], 0);
+            ++compared;
+        }
+        cells.clear();
+    }
+    EXPECT_GT(compared, 1000);
 }
 
 }  // namespace

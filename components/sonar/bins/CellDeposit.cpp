@@ -44,6 +44,82 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void coverAll(const Cells& cells
     }
 }
 
+/** The laws of a batch's cells. */
+struct CellLaws {
+    bool follow[Cells::capacity];         ///< Whether the cell follows a law, or Lambert's.
+    int32_t table[Cells::capacity];       ///< Number of its table; -1: the diffuse part follows Lambert's law.
+    double mu[Cells::capacity];           ///< Lambert's parameter [1].
+    double cosine[Cells::capacity];       ///< Of the incidence [1].
+    double over_cosine[Cells::capacity];  ///< sigma_b / cos(theta) [1].
+};
+
+/** The cells of a batch that have lobes: LobeView and FacetRecord as arrays. */
+struct LobeCells {
+    int count = 0, cell[Cells::capacity];
+    double power[Cells::capacity], relief[Cells::capacity], cosine[Cells::capacity], lobe[Cells::capacity];
+    double normal_x[Cells::capacity], normal_y[Cells::capacity], normal_z[Cells::capacity];
+    double axis_x[Cells::capacity], axis_y[Cells::capacity], axis_z[Cells::capacity], range[Cells::capacity];
+    double cos_az[Cells::capacity], sin_az[Cells::capacity], cos_el[Cells::capacity], sin_el[Cells::capacity];
+    double width[Cells::capacity], height[Cells::capacity], mapped[Cells::capacity];
+    float facet[12][Cells::capacity];
+
+    void add(int i, const Cells& cells, const vec4& law, double inverse_range, double at_cosine) {
+        const int k = count++;
+        const FacetRecord& record = *cells.facet[i];
+        const glm::dvec3 axis = turned(*cells.run[i], record.axis);
+        cell[k] = i;
+        power[k] = double{law.y}, relief[k] = double{law.z}, cosine[k] = at_cosine;
+        normal_x[k] = cells.normal_x[i], normal_y[k] = cells.normal_y[i], normal_z[k] = cells.normal_z[i];
+        axis_x[k] = axis.x, axis_y[k] = axis.y, axis_z[k] = axis.z, range[k] = 1 / inverse_range;
+        cos_az[k] = cells.cos_az[i], sin_az[k] = cells.sin_az[i];
+        cos_el[k] = cells.cos_el[i], sin_el[k] = cells.sin_el[i];
+        width[k] = cells.width[i], height[k] = cells.height[i], mapped[k] = cells.mapped[i];
+        for (int part = 0; part < 4; ++part) {
+            facet[part][k] = record.axis[part];
+            facet[4 + part][k] = record.first[part];
+            facet[8 + part][k] = record.second[part];
+        }
+    }
+};
+
+/** Computes cosines, and sections without lobes. */
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void followTables(const double* tables, const Cells& cells,
+                                                                  const Covered& covered, CellLaws& __restrict laws) {
+    BackscatterCode code{tables};
+    for (int i = 0; i < cells.count; ++i) {
+        const double normal = sqrt(cells.normal_x[i] * cells.normal_x[i] + cells.normal_y[i] * cells.normal_y[i] +
+                                   cells.normal_z[i] * cells.normal_z[i]);
+        const double of_plane = min(abs(cells.distance[i]) * covered.pixel[i] / normal, 1.0);
+        const double cosine = cells.mapped[i] > 0 ? cells.mapped[i] : of_plane;
+        const double tabulated =
+            code.tabulatedBackscatter(static_cast<uint>(laws.table[i] < 0 ? 0 : laws.table[i]), cosine);
+        laws.cosine[i] = cosine;
+        laws.over_cosine[i] = laws.table[i] < 0 ? laws.mu[i] * cosine : tabulated;
+    }
+}
+
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void followLobes(LobeCells& __restrict cells) {
+    BackscatterCode code{nullptr};
+    for (int k = 0; k < cells.count; ++k) {
+        const auto values = [&](int part) {
+            return vec4(cells.facet[part][k], cells.facet[part + 1][k], cells.facet[part + 2][k],
+                        cells.facet[part + 3][k]);
+        };
+        const LobeSlopes slopes = code.lobeSlopes({values(0), values(4), values(8)}, cells.relief[k],
+                                                  {{cells.normal_x[k], cells.normal_y[k], cells.normal_z[k]},
+                                                   {cells.axis_x[k], cells.axis_y[k], cells.axis_z[k]},
+                                                   cells.range[k],
+                                                   cells.cos_az[k],
+                                                   cells.sin_az[k],
+                                                   cells.cos_el[k],
+                                                   cells.sin_el[k],
+                                                   cells.width[k],
+                                                   cells.height[k],
+                                                   cells.mapped[k]});
+        cells.lobe[k] = code.lobeOverCosine(cells.power[k], slopes, cells.cosine[k]);
+    }
+}
+
 /** Returns the estimator with the features of a plan. */
 const EstimatorEntry& estimator(const Features& features) {
     Features known;
@@ -147,31 +223,27 @@ void CellDeposit::bendCell(int i, double curvature, double near_edge, double far
 
 /** Sets the strength of cells that do not follow Lambert's law. */
 void CellDeposit::applyLaws() {
+    static constexpr double no_tables[BACKSCATTER_ENTRIES] = {};
+    CellLaws laws;
     for (int i = 0; i < cells.count; ++i) {
-        if (rules_.laws.followsLambert(cells.material[i]) || !(covered.pixel[i] > 0)) continue;
-        const double normal = sqrt(cells.normal_x[i] * cells.normal_x[i] + cells.normal_y[i] * cells.normal_y[i] +
-                                   cells.normal_z[i] * cells.normal_z[i]);
-        const double cosine =
-            cells.mapped[i] > 0 ? cells.mapped[i] : min(abs(cells.distance[i]) * covered.pixel[i] / normal, 1.0);
-        covered.fade[i] = 0;
-        covered.strength_range[i] =
-            rules_.strength_scale / covered.pixel[i] * rules_.laws.overCosine(cells.material[i], cosine, lobeSlopes(i));
+        const MaterialRecord& record = rules_.laws.records[cells.material[i]];
+        laws.follow[i] = !FOLLOWS_LAMBERT(record.law) && covered.pixel[i] > 0;
+        laws.table[i] = static_cast<int32_t>(record.law.x);
+        laws.mu[i] = double{record.values.x};
     }
-}
-
-LobeSlopes CellDeposit::lobeSlopes(int i) const {
-    if (cells.facet[i] == nullptr || !rules_.laws.hasLobe(cells.material[i])) return {};
-    return rules_.laws.lobeSlopes(cells.material[i], {*cells.facet[i],
-                                                      {cells.normal_x[i], cells.normal_y[i], cells.normal_z[i]},
-                                                      turned(*cells.run[i], cells.facet[i]->axis),
-                                                      1 / covered.pixel[i],
-                                                      cells.cos_az[i],
-                                                      cells.sin_az[i],
-                                                      cells.cos_el[i],
-                                                      cells.sin_el[i],
-                                                      cells.width[i],
-                                                      cells.height[i],
-                                                      cells.mapped[i]});
+    followTables(rules_.laws.tables.empty() ? no_tables : rules_.laws.tables.data(), cells, covered, laws);
+    LobeCells lobes;
+    for (int i = 0; i < cells.count; ++i) {
+        const vec4& law = rules_.laws.records[cells.material[i]].law;
+        if (laws.follow[i] && law.y > 0) lobes.add(i, cells, law, covered.pixel[i], laws.cosine[i]);
+    }
+    followLobes(lobes);
+    for (int k = 0; k < lobes.count; ++k) laws.over_cosine[lobes.cell[k]] += lobes.lobe[k];
+    for (int i = 0; i < cells.count; ++i) {
+        covered.fade[i] = laws.follow[i] ? 0 : covered.fade[i];
+        const double strength = rules_.strength_scale / covered.pixel[i] * laws.over_cosine[i];
+        covered.strength_range[i] = laws.follow[i] ? strength : covered.strength_range[i];
+    }
 }
 
 CellDeposit::CellDeposit(const EchoRules& rules, const WaterView& water, bool bent, const EchoSums& to)

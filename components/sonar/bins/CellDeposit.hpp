@@ -47,8 +47,6 @@ private:
     double curvature(const Cells::OfBody& of_body, double cosine) const;
     void bendCell(int i, double curvature, double near_edge, double far_edge);
     void applyLaws();
-    /** Returns the slopes of the lobe in cell i; zeros where its material has none. */
-    LobeSlopes lobeSlopes(int i) const;
 
     const EchoRules& rules_;
     WaterView water_;

@@ -17,18 +17,6 @@ static_assert(acoustics::BackscatterTable::entries == BACKSCATTER_ENTRIES);
 
 constexpr double min_lobe_share = 1e-4;  ///< A rough solid whose lobe has less energy has no lobe [1].
 
-/** Input and code of shaders/backscatter.glsl. */
-struct Shared {
-    const double* entries;
-    double backscatterEntry(uint i) const { return entries[i]; }
-    static double exp(float x) { return double{std::exp(x)}; }
-    static double sqrt(double x) { return std::sqrt(x); }
-    static double min(double a, double b) { return std::min(a, b); }
-    static double max(double a, double b) { return std::max(a, b); }
-    static uint min(uint a, uint b) { return std::min(a, b); }
-#include "shaders/backscatter.glsl"
-};
-
 /** Returns the surface of a material that follows the law of its matter at the sonar's frequency; none of others. */
 std::optional<acoustics::RoughSurface> roughSurface(const types::Material& material, const SonarConfig& config) {
     if (material.matter.empty() || !config.frequency_khz) return {};
@@ -136,13 +124,13 @@ void LobeSample::lookAlong(const glm::dvec3& direction) {
 }
 
 double MaterialLaws::overCosine(size_t material, double cosine, const LobeSlopes& slopes) const {
-    Shared shared{tables.data()};
+    BackscatterCode shared{tables.data()};
     const MaterialRecord& record = records[material];
     return shared.backscatterOverCosine(record.law, double{record.values.x}, cosine, slopes);
 }
 
 LobeSlopes MaterialLaws::lobeSlopes(size_t material, const LobeSample& sample) const {
-    Shared shared{tables.data()};
+    BackscatterCode shared{tables.data()};
     const glm::dvec3 &n = sample.normal, &a = sample.axis;
     return shared.lobeSlopes(sample.facet, double{records[material].law.z},
                              {{n.x, n.y, n.z},
@@ -159,7 +147,7 @@ LobeSlopes MaterialLaws::lobeSlopes(size_t material, const LobeSample& sample) c
 
 MaterialLaws::Bistatic MaterialLaws::bistatic(size_t material, double in, double out, double half,
                                               const LobeSlopes& slopes) const {
-    Shared shared{tables.data()};
+    BackscatterCode shared{tables.data()};
     const MaterialRecord& record = records[material];
     const auto diffuse = [&](double cosine) {  // relative to the cosine
         return record.law.x < 0 ? double{record.values.x} * cosine
@@ -179,7 +167,7 @@ double MaterialLaws::loudest() const {
 }
 
 double MaterialLaws::loudestLobe(double sample_angle) const {
-    Shared shared{tables.data()};
+    BackscatterCode shared{tables.data()};
     double strongest = 0;
     for (const MaterialRecord& record : records) {
         if (record.law.y == 0) continue;

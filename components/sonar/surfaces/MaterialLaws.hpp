@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -8,8 +9,21 @@
 #include "components/sonar/config/SonarConfig.hpp"
 #include "components/sonar/surfaces/WallLaws.hpp"
 #include "types/geometry/Geometry.hpp"
+#include "types/geometry/VectorMath.hpp"
 
 namespace insonify::sonar {
+
+/** The arithmetic of backscatter that the processor shares with the compute shader. */
+struct BackscatterCode {
+    const double* entries;  ///< MaterialLaws::tables.
+    double backscatterEntry(uint i) const { return entries[i]; }
+    static double exp(float x) { return double{types::exponential(x)}; }
+    static double sqrt(double x) { return std::sqrt(x); }
+    static double min(double a, double b) { return a < b ? a : b; }
+    static double max(double a, double b) { return a > b ? a : b; }
+    static uint min(uint a, uint b) { return a < b ? a : b; }
+#include "shaders/backscatter.glsl"
+};
 
 /** A sample of a facet: the part of its plane that a sonar sees within a rectangle of azimuth and elevation. */
 struct LobeSample {
