@@ -21,7 +21,8 @@ struct Footprint {
 
 // Inverse range of a place on a trapezoid; places behind the limb have that of the limb.
 double inverseAt(double limb, double place) {
-    return limb > 0.0 ? max(0.5 * (place + sqrt(max(place * place - 4.0 * limb * limb, 0.0))), limb) : place;
+    double curved = max(0.5 * (place + sqrt(max(place * place - 4.0 * limb * limb, 0.0))), limb);
+    return limb > 0.0 ? curved : place;
 }
 
 // Returns the trapezoid about `centre` that a cell covers: box `along` convolved with box `across`. It is clipped to

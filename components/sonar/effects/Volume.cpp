@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -35,43 +36,31 @@ double azimuthBetween(const SonarConfig& config, const Beam& cell, double elevat
     return coneAzimuth(cell.high, elevation) - coneAzimuth(cell.low, elevation);
 }
 
-/** Sums to which shaders/volume.glsl adds the water that cells hide, or the layers up to each cell. */
-struct VolumeChanges {
-    explicit VolumeChanges(const CellBatch& batch)
-        : changes(batch.own),
-          beam_sums(batch.beam_stride),
-          bin_count(static_cast<uint>(batch.rules.bins.bin_count)),
+/** Input of shaders/volume.glsl. */
+struct VolumeNumbers {
+    explicit VolumeNumbers(const CellBatch& batch)
+        : bin_count(static_cast<uint>(batch.rules.bins.bin_count)),
           bin_width(batch.rules.bins.bin_width),
           numbers(batch.rules.layers.data()),
           layer_count(static_cast<uint>(batch.rules.layers.size() / 3)),
           sonar_height(batch.water.height) {}
-
-    void addVolume(uint beam, uint bin, double amount) const {
-        changes[beam * beam_sums + bin] +=
-            static_cast<uint64_t>(static_cast<int64_t>(amount * quanta_per_unit + (amount < 0 ? -0.5 : 0.5)));
-    }
     double layerNumber(uint i) const { return numbers[i]; }
 
-    uint64_t* changes;
-    size_t beam_sums;
     uint bin_count;
     double bin_width;
     const double* numbers;
     uint layer_count;
-    double sonar_height;
+    double sonar_height;  ///< Above the surface [m].
 };
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-parameter"  // only layers use the slope of a ray
-struct OpenVolume : VolumeChanges {
-    static constexpr bool echoes_from_misses = false;
-    using VolumeChanges::VolumeChanges;
+struct OpenVolume : VolumeNumbers {
+    static constexpr bool has_layers = false;
+    using VolumeNumbers::VolumeNumbers;
 #include "shaders/volume.glsl"
 };
-#pragma GCC diagnostic pop
 #define HAVE_VOLUME_LAYERS
-struct LayeredVolume : VolumeChanges {
-    static constexpr bool echoes_from_misses = true;
-    using VolumeChanges::VolumeChanges;
+struct LayeredVolume : VolumeNumbers {
+    static constexpr bool has_layers = true;
+    using VolumeNumbers::VolumeNumbers;
 #include "shaders/volume.glsl"
 };
 #undef HAVE_VOLUME_LAYERS
@@ -82,17 +71,95 @@ double rise(const WaterView& water, const Cells& cells, int i) {
            water.up.z * cells.sin_el[i];
 }
 
+/** Ends of the rays of a batch, one in each cell: at the surface, or for a miss at the max range. */
+struct RayEnds {
+    double parts[Cells::capacity];  ///< Ends of the cell [1].
+    double rise[Cells::capacity], range[Cells::capacity], size[Cells::capacity];
+};
+
+/** Adds changes of the water, one of each cell, to the sums. */
+class WaterChanges {
+public:
+    explicit WaterChanges(const CellBatch& batch) : batch_(batch) {}
+
+    /** Changes the water from a range on, which is the cell's. */
+    template <class Water>
+    void add(Water& water, const double* ranges, const double* amounts) {
+        const int count = batch_.cells.count;
+        uint bins[Cells::capacity];
+        int64_t here[Cells::capacity], behind[Cells::capacity];
+        for (int i = 0; i < count; ++i) {
+            const auto change = water.volumeChange(ranges[i], amounts[i]);
+            bins[i] = amounts[i] != 0 ? change.bin : water.bin_count;
+            here[i] = getQuanta(change.here);
+            behind[i] = getQuanta(change.behind);
+        }
+        for (int i = 0; i < count; ++i) {
+            if (bins[i] >= water.bin_count) continue;
+            const auto beam = static_cast<size_t>(batch_.cells.beam[i] - batch_.first_beam);
+            uint64_t* const sums = batch_.own + beam * batch_.beam_stride + bins[i];
+            sums[0] += static_cast<uint64_t>(here[i]);
+            if constexpr (Water::has_layers) sums[1] += static_cast<uint64_t>(behind[i]);
+        }
+    }
+
+private:
+    static int64_t getQuanta(double amount) {
+        return static_cast<int64_t>(amount * quanta_per_unit + (amount < 0 ? -0.5 : 0.5));
+    }
+
+    const CellBatch& batch_;
+};
+
+/** Ends the water behind the surfaces of a batch, or adds its layers before them. */
 template <class Water>
-void hideVolumeBy(const CellBatch& batch) {
+void changeWater(const CellBatch& batch) {
     const Cells& cells = batch.cells;
     Water water(batch);
+    WaterChanges changes(batch);
+    RayEnds ends;
+    constexpr double of_a_miss = Water::has_layers ? 1 : 0;
+    const double range_max = batch.rules.bins.range_max;
     for (int i = 0; i < cells.count; ++i) {
-        const auto beam = static_cast<uint>(cells.beam[i] - batch.first_beam);
-        if (batch.covered.pixel[i] > 0)
-            water.hideVolume(getFootprint(batch.covered, i), beam, rise(batch.water, cells, i), cells.size[i]);
-        else if constexpr (Water::echoes_from_misses)
-            water.addLayers(beam, rise(batch.water, cells, i), batch.rules.bins.range_max, cells.size[i]);
+        const double parts = water.countVolumeParts(getFootprint(batch.covered, i));
+        ends.parts[i] = batch.covered.pixel[i] > 0 ? parts : of_a_miss;
+        ends.rise[i] = rise(batch.water, cells, i);
     }
+    const double max_parts = cells.count > 0 ? *std::max_element(ends.parts, ends.parts + cells.count) : 0;
+    for (double part = 0; part < max_parts; ++part) {
+        for (int i = 0; i < cells.count; ++i) {
+            const double inverse = water.inverseAtPart(getFootprint(batch.covered, i), part, ends.parts[i]);
+            const bool is_miss = !(batch.covered.pixel[i] > 0);
+            const bool ends_ray = (part < ends.parts[i]) & (is_miss | (inverse > 0));
+            ends.range[i] = is_miss ? range_max : 1 / inverse;
+            const double size = cells.size[i] / ends.parts[i];
+            ends.size[i] = ends_ray ? size : 0;
+        }
+        if constexpr (Water::has_layers) {
+            for (uint layer = 0; layer < water.layer_count; ++layer) {
+                double enters[Cells::capacity], leaves[Cells::capacity], amounts[Cells::capacity];
+                const double share = water.layerNumber(3 * layer + 2);
+                for (int i = 0; i < cells.count; ++i) {
+                    const auto ray = water.layerStretch(layer, ends.rise[i], ends.range[i]);
+                    enters[i] = ray.enters, leaves[i] = ray.leaves;
+                    amounts[i] = ray.enters < ray.leaves ? ends.size[i] * share : 0;
+                }
+                changes.add(water, enters, amounts);
+                for (int i = 0; i < cells.count; ++i) amounts[i] = -amounts[i];
+                changes.add(water, leaves, amounts);
+            }
+        } else {
+            for (int i = 0; i < cells.count; ++i) ends.size[i] = -ends.size[i];
+            changes.add(water, ends.range, ends.size);
+        }
+    }
+}
+
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void changeOpenWater(const CellBatch& batch) {
+    changeWater<OpenVolume>(batch);
+}
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void changeLayeredWater(const CellBatch& batch) {
+    changeWater<LayeredVolume>(batch);
 }
 
 /** Returns the layers of a configuration as in EchoRules::layers; empty where a layer has no bounds. */
@@ -140,10 +207,7 @@ public:
     bool hasSums() const override { return true; }
     bool isOnDevice() const override { return true; }
     void addCells(const CellBatch& batch) const override {
-        if (layers_.empty())
-            hideVolumeBy<OpenVolume>(batch);
-        else
-            hideVolumeBy<LayeredVolume>(batch);
+        layers_.empty() ? changeOpenWater(batch) : changeLayeredWater(batch);
     }
     void addToCell(const uint64_t* changes, size_t cell, double unit, std::span<float> bins) const override;
 
@@ -164,14 +228,24 @@ void VolumeInPings::updateQuality() {
         intensity_.push_back(waterBetween(grid, j, strength) * std::exp(-beta * grid.centre(j)));
 }
 
+/** Adds intensities times received solid angles, `open` plus whole quanta, to bins. */
+INSONIFY_VECTOR_CLONES void addReceived(const int64_t* sums, double quantum, double open, const double* intensities,
+                                        float* __restrict bins, size_t count) {
+    constexpr double loudest = std::numeric_limits<float>::max();
+    for (size_t j = 0; j < count; ++j) {
+        const double received = open + static_cast<double>(sums[j]) * quantum;
+        const double sum = double{bins[j]} + intensities[j] * (received > 0 ? received : 0);
+        bins[j] = static_cast<float>(sum < loudest ? sum : loudest);
+    }
+}
+
 void VolumeInPings::addToCell(const uint64_t* changes, size_t cell, double unit, std::span<float> bins) const {
-    const double quantum = unit / quanta_per_unit;
+    std::array<int64_t, 256> sums;
     uint64_t sum = 0;
-    for (size_t j = 0; j < bins.size(); ++j) {
-        sum += changes[j];
-        const double received = std::max(0.0, open_[cell] + static_cast<double>(static_cast<int64_t>(sum)) * quantum);
-        bins[j] = static_cast<float>(
-            std::min(double{bins[j]} + intensity_[j] * received, double{std::numeric_limits<float>::max()}));
+    for (size_t from = 0; from < bins.size(); from += sums.size()) {
+        const size_t count = std::min(sums.size(), bins.size() - from);
+        for (size_t j = 0; j < count; ++j) sums[j] = static_cast<int64_t>(sum += changes[from + j]);
+        addReceived(sums.data(), unit / quanta_per_unit, open_[cell], &intensity_[from], &bins[from], count);
     }
 }
 
