@@ -206,7 +206,7 @@ void addErrorStudy(CLI::App& study, console::Action& action) {
     command->add_option("--pings", options->study.pings, "pings timed for each point")->check(CLI::Range(1, 1000));
     command
         ->add_option("--levels", options->study.levels,
-                     "number of doublings of rows and columns, plus one; at most 4 without a closed form")
+                     "number of doublings of rows and columns, plus one (5; 4 without a closed form)")
         ->check(CLI::Range(1, 6));
     command
         ->add_option("--reference-rays", options->study.reference_rays,

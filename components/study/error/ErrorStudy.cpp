@@ -96,7 +96,8 @@ Halves means(const StudyScene& scene, const sonar::SonarConfig& config, int pose
 }
 
 constexpr int min_rows = 64;
-constexpr int max_computed_levels = 4;  ///< Without a closed form: the reference must be finer still.
+constexpr int default_levels = 5,
+              default_computed_levels = 4;  ///< With a closed form; with a reference that takes long.
 
 double wallMs() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -198,28 +199,27 @@ private:
         std::vector<float> energies;
     };
 
-    int levels() const { return scene_.truth ? options_.levels : std::min(options_.levels, max_computed_levels); }
+    int levels() const { return options_.levels.value_or(scene_.truth ? default_levels : default_computed_levels); }
 
-    /** Returns whether one perspective image can cover the fan, at all levels. */
-    bool fitsOneFrustum() const {
-        const int64_t columns = int64_t{base_columns_} << (levels() - 1);
+    /** Returns whether one perspective image can cover the fan. */
+    bool fitsOneFrustum(int level) const {
+        const int64_t columns = int64_t{base_columns_} << level;
         return scene_.config.fieldOfViewDeg() < 175 && columns * scene_.config.beam_count <= sonar::max_image_size;
     }
 
     /** Other methods than the sonar's own handle only surfaces; the ray tracer also a pattern in elevation. */
-    bool canRun(Method method) const {
+    bool canRun(Method method, int level) const {
         const sonar::SonarConfig& config = scene_.config;
         if (method == Method::Footprint) return true;
         if (!config.volume.empty() || config.pulse || config.multipath || config.isCoherent()) return false;
         if (config.beam_pattern && config.beam_pattern->hasAzimuth()) return false;
-        return method != Method::Published || fitsOneFrustum();
+        return method != Method::Published || fitsOneFrustum(level);
     }
 
     void measureAll() {
         for (const Method method : methods)
-            if (canRun(method))
-                for (int level = 0; level < levels(); ++level)
-                    measure(method, min_rows << level, base_columns_ << level);
+            for (int level = 0; level < levels(); ++level)
+                if (canRun(method, level)) measure(method, min_rows << level, base_columns_ << level);
         for (int level = 0; level < levels(); ++level)
             if (base_columns_ << level != 2) measure(Method::Footprint, min_rows << level, 2);
     }
@@ -371,7 +371,7 @@ void studyCoherent(const StudyScene& scene, const ErrorOptions& options, int min
     energies.speckle.reset();
     const Halves expected = means(scene, energies, poses, nullptr, result.device);
     double chance = 0;
-    for (int level = 0; level < std::min(options.levels, max_levels); ++level) {
+    for (int level = 0; level < std::min(options.levels.value_or(max_levels), max_levels); ++level) {
         Measurement point{scene.name, Method::Footprint, min_rows << level, base_columns << level, 1, {}, 0, 0, 0, 0};
         options.progress(fmt::format("{} footprint {} x {}", scene.name, point.rows, point.columns_per_beam));
         std::vector<double> times;

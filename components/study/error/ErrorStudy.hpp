@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,7 +73,8 @@ struct ErrorResult {
 
 struct ErrorOptions {
     int pings = 30;  ///< Pings timed for each point, after a warm-up [1].
-    int levels = 5;  ///< Number of doublings of rows and columns, plus one; at most 4 without a closed form [1].
+    std::optional<int>
+        levels;  ///< Number of doublings of rows and columns, plus one; 5, or 4 without a closed form [1].
     double reference_rays = 2e9;  ///< Max number of rays and points for the finest reference without a closed form [1].
     int coherent_poses = 64;      ///< Number of poses over which pings with coherent speckle are averaged [1].
     std::function<void(const std::string&)> progress = [](const std::string&) {};
