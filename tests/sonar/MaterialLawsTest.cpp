@@ -101,6 +101,69 @@ types::Geometry allLaws() {
     return geometry;
 }
 
+/** A batch of random cells of random materials, some of them misses. */
+class RandomCells {
+public:
+    void fill(const EchoRules& rules, Cells& cells) {
+        cells.count = static_cast<int>(random_() % (Cells::capacity + 1));
+        for (int i = 0; i < cells.count; ++i) {
+            const auto at = static_cast<size_t>(i);
+            runs_[at].normal_x[0] = runs_[at].normal_y[1] = runs_[at].normal_z[2] = 1;
+            facets_[at] = drawFacet();
+            drawPlane(i, cells);
+            cells.material[i] = static_cast<uint32_t>(random_() % rules.laws.records.size());
+            cells.strength[i] = double{rules.laws.records[cells.material[i]].values.x} * rules.strength_scale;
+            cells.facet[i] = &facets_[at], cells.run[i] = &runs_[at];
+            cells.width[i] = draw(1e-4, 0.01), cells.height[i] = draw(1e-4, 0.01), cells.lean[i] = 0;
+            cells.size[i] = draw(0.1, 2), cells.beam[i] = 0;
+        }
+    }
+
+private:
+    double draw(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+    float drawFloat(double low, double high) { return static_cast<float>(draw(low, high)); }
+
+    FacetRecord drawFacet() {
+        const float wave = random_() % 2 == 0 ? drawFloat(1e-5, 1e-3) : 0;
+        const auto direction = [&] { return vec4(drawFloat(0, 0.1), wave, drawFloat(0, 2), drawFloat(-0.2, 0.2)); };
+        return {vec4(drawFloat(-1, 1), drawFloat(-1, 1), drawFloat(-1, 1), static_cast<float>(random_() % 2)),
+                direction(), direction()};
+    }
+
+    void drawPlane(int i, Cells& cells) {
+        const double azimuth = draw(-0.5, 0.5), elevation = draw(-0.2, 0.2), range = draw(1, 60);
+        cells.cos_az[i] = std::cos(azimuth), cells.sin_az[i] = std::sin(azimuth);
+        cells.cos_el[i] = std::cos(elevation), cells.sin_el[i] = std::sin(elevation);
+        if (random_() % 10 == 0) return cells.setMiss(i);
+        cells.normal_x[i] = draw(-1, 0), cells.normal_y[i] = draw(-1, 1), cells.normal_z[i] = draw(-1, 1);
+        const double across = cells.normal_x[i] * cells.cos_az[i] + cells.normal_y[i] * cells.sin_az[i];
+        cells.distance[i] = range * (cells.cos_el[i] * across + cells.normal_z[i] * cells.sin_el[i]);
+        cells.near_limit[i] = 10, cells.far_limit[i] = 0;
+        cells.mapped[i] = random_() % 3 == 0 ? draw(0, 1) : 0;
+    }
+
+    std::mt19937 random_{5};
+    std::array<FacetRecord, Cells::capacity> facets_;
+    std::array<PlacedRun, Cells::capacity> runs_{};
+};
+
+/** Returns the strength of a cell alone, by the law of its material. */
+double computeStrength(const EchoRules& rules, const CellDeposit& deposit, int i) {
+    const Cells& cells = deposit.cells;
+    const double inverse_range = deposit.covered.pixel[i], x = cells.normal_x[i], y = cells.normal_y[i],
+                 z = cells.normal_z[i];
+    const LobeSample sample{*cells.facet[i],   {x, y, z},       glm::dvec3(cells.facet[i]->axis),
+                            1 / inverse_range, cells.cos_az[i], cells.sin_az[i],
+                            cells.cos_el[i],   cells.sin_el[i], cells.width[i],
+                            cells.height[i],   cells.mapped[i]};
+    const double of_plane =
+        std::min(std::abs(cells.distance[i]) * inverse_range / std::sqrt(x * x + y * y + z * z), 1.0);
+    const double cosine = cells.mapped[i] > 0 ? cells.mapped[i] : of_plane;
+    const uint32_t material = cells.material[i];
+    const LobeSlopes slopes = rules.laws.hasLobe(material) ? rules.laws.lobeSlopes(material, sample) : LobeSlopes{};
+    return rules.strength_scale / inverse_range * rules.laws.overCosine(material, cosine, slopes);
+}
+
 TEST(MaterialLawsTest, EachCellOfABatchFollowsTheLawOfItsMaterial) {
     const types::Geometry geometry = allLaws();
     SonarConfig config;
@@ -108,82 +171,24 @@ TEST(MaterialLawsTest, EachCellOfABatchFollowsTheLawOfItsMaterial) {
     config.range = 50;
     const RenderPlan plan = makeRenderPlan(config, geometry);
     const PingEffects effects(plan, geometry);
-    EchoRules rules = makeEchoRules(plan, effects);
+    const EchoRules rules = makeEchoRules(plan, effects);
     ASSERT_TRUE(rules.features.has(Feature::BackscatterLaws));
-    std::mt19937 random(5);
-    const auto draw = [&](double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(random);
-    };
     std::vector<uint64_t> sums(rules.sumCount() * plan.beams.size());
+    RandomCells random;
     int compared = 0;
     for (int round = 0; round < 200; ++round) {
         CellDeposit deposit(rules, {}, false, {0, sums.data()});
-        Cells& cells = deposit.cells;
-        std::array<FacetRecord, Cells::capacity> facets;
-        std::array<PlacedRun, Cells::capacity> runs{};
-        cells.count = static_cast<int>(random() % (Cells::capacity + 1));
-        for (int i = 0; i < cells.count; ++i) {
-            const auto at = static_cast<size_t>(i);
-            PlacedRun& run = runs[at];
-            run.normal_x[0] = run.normal_y[1] = run.normal_z[2] = 1;
-            const bool is_flat = random() % 2 == 0;
-            const auto wave = is_flat ? static_cast<float>(draw(1e-5, 1e-3)) : 0;
-            facets[at] = {vec4(draw(-1, 1), draw(-1, 1), draw(-1, 1), random() % 2),
-                          vec4(draw(0, 0.1), wave, draw(0, 2), draw(-0.2, 0.2)),
-                          vec4(draw(0, 0.1), wave, draw(0, 2), draw(-0.2, 0.2))};
-            if (random() % 10 == 0) {
-                cells.setMiss(i);
-            } else {
-                const double azimuth = draw(-0.5, 0.5), elevation = draw(-0.2, 0.2), range = draw(1, 60);
-                cells.cos_az[i] = std::cos(azimuth), cells.sin_az[i] = std::sin(azimuth);
-                cells.cos_el[i] = std::cos(elevation), cells.sin_el[i] = std::sin(elevation);
-                cells.normal_x[i] = draw(-1, 0), cells.normal_y[i] = draw(-1, 1), cells.normal_z[i] = draw(-1, 1);
-                cells.distance[i] =
-                    range *
-                    (cells.cos_el[i] * (cells.normal_x[i] * cells.cos_az[i] + cells.normal_y[i] * cells.sin_az[i]) +
-                     cells.normal_z[i] * cells.sin_el[i]);
-                cells.near_limit[i] = 10, cells.far_limit[i] = 0;
-                cells.mapped[i] = random() % 3 == 0 ? draw(0, 1) : 0;
-            }
-            cells.material[i] = static_cast<uint32_t>(random() % geometry.materials.size());
-            cells.strength[i] = double{rules.laws.records[cells.material[i]].values.x} * rules.strength_scale;
-            cells.facet[i] = &facets[at], cells.run[i] = &run;
-            cells.width[i] = draw(1e-4, 0.01), cells.height[i] = draw(1e-4, 0.01), cells.lean[i] = 0;
-            cells.size[i] = draw(0.1, 2), cells.beam[i] = 0;
-        }
+        random.fill(rules, deposit.cells);
         deposit.cover();
-        const Covered& covered = deposit.covered;
-        for (int i = 0; i < cells.count; ++i) {
-            const uint32_t material = cells.material[i];
-            if (!(covered.pixel[i] > 0) || rules.laws.followsLambert(material)) continue;
-            const glm::dvec3 normal(cells.normal_x[i], cells.normal_y[i], cells.normal_z[i]);
-            LobeSample sample{facets[static_cast<size_t>(i)],
-                              normal,
-                              glm::dvec3(facets[static_cast<size_t>(i)].axis),
-                              1 / covered.pixel[i],
-                              cells.cos_az[i],
-                              cells.sin_az[i],
-                              cells.cos_el[i],
-                              cells.sin_el[i],
-                              cells.width[i],
-                              cells.height[i],
-                              cells.mapped[i]};
-            const double cosine =
-                cells.mapped[i] > 0
-                    ? cells.mapped[i]
-                    : std::min(std::abs(cells.distance[i]) * covered.pixel[i] /
-                                   std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z),
-                               1.0);
-            const LobeSlopes slopes =
-                rules.laws.hasLobe(material) ? rules.laws.lobeSlopes(material, sample) : LobeSlopes{};
-            const double expected =
-                rules.strength_scale / covered.pixel[i] * rules.laws.overCosine(material, cosine, slopes);
+        for (int i = 0; i < deposit.cells.count; ++i) {
+            const uint32_t material = deposit.cells.material[i];
+            if (!(deposit.covered.pixel[i] > 0) || rules.laws.followsLambert(material)) continue;
+            const double expected = computeStrength(rules, deposit, i);
             ASSERT_GT(expected, 0) << material;
-            ASSERT_EQ(covered.strength_range[i], expected) << "material " << material << ", cell " << i;
-            ASSERT_EQ(covered.fade[i], 0);
+            ASSERT_EQ(deposit.covered.strength_range[i], expected) << "material " << material << ", cell " << i;
+            ASSERT_EQ(deposit.covered.fade[i], 0);
             ++compared;
         }
-        cells.clear();
     }
     EXPECT_GT(compared, 1000);
 }
