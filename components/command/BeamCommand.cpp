@@ -134,7 +134,7 @@ void addBeamCommand(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("beam", "Shows a sonar's beam, two way, as its echoes are weighed");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     command->add_option("--task", options->task, "the sonar; absent: the first");
-    command->add_flag("--json", options->json, "for machines; scripts/plot draws it");
+    command->add_flag("--json", options->json, "for machines");
     command->callback([options, &action] { action = [options] { return showBeam(*options); }; });
 }
 

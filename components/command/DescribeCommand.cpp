@@ -101,7 +101,8 @@ void printTask(const Json& task) {
     console::printResult("\nproperties\n");
     for (const Json& property : task["properties"])
         console::printResult("  {}: {}{}{}\n       {}{}\n", field(property, "name"), field(property, "type"),
-                             defaultText(property), boundsText(property), field(property, "doc"), unitText(property));
+                             defaultText(property), boundsText(property), loader::locatePages(field(property, "doc")),
+                             unitText(property));
     console::printResult("\noperations\n");
     for (const Json& operation : task["operations"])
         console::printResult("  {}: {}\n       {}\n", field(operation, "name"), field(operation, "signature"),
@@ -147,8 +148,9 @@ void loadLibraries(const Described& options, framework::Registry& registry) {
     for (const std::string& library : options.libraries) registry.loadLibrary(library);
     if (options.deployment.empty()) return;
     const std::string file = deploymentIn(options.deployment);
-    for (const std::string& library : framework::DeploymentSpec::load(file).libraries)
-        registry.loadLibrary(std::filesystem::path(file).parent_path() / library);
+    types::Diagnostics wrong =
+        registry.loadLibraries(framework::DeploymentSpec::load(file), std::filesystem::path(file).parent_path());
+    if (!wrong.empty()) throw types::ConfigError(std::move(wrong));
 }
 
 int describe(const Described& options) {

@@ -1,7 +1,10 @@
 #include "components/framework/Registry.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "components/framework/config/DeploymentSpec.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 
 namespace insonify::framework {
@@ -34,6 +37,18 @@ void Registry::loadLibrary(const std::filesystem::path& file) {
     if (!library.entry<void(Registry&)>("insonify_register"))
         throw types::ConfigError(file.string(), "", "has no function insonify_register(Registry&)");
     enter(library);
+}
+
+types::Diagnostics Registry::loadLibraries(const DeploymentSpec& spec, const std::filesystem::path& folder) {
+    ConfigReader reader(spec.file);
+    for (size_t i = 0; i < spec.libraries.size(); ++i) try {
+            loadLibrary(folder / spec.libraries[i]);
+        } catch (const types::ConfigError& error) {
+            const bool is_listed = spec.library_list.IsSequence() && i < spec.library_list.size();
+            reader.report(is_listed ? spec.library_list[i] : spec.library_list, fmt::format("libraries[{}]", i),
+                          "is " + spec.libraries[i] + ": " + error.diagnostics().front().text());
+        }
+    return reader.diagnostics();
 }
 
 types::Diagnostics Registry::loadAll() {

@@ -15,6 +15,8 @@ class ComponentLibrary;
 
 namespace insonify::framework {
 
+struct DeploymentSpec;
+
 /** The task types that a deployment may name: those of the core and of component libraries. A component library is
  *  loaded when a deployment names one of its types. */
 class Registry {
@@ -41,6 +43,8 @@ public:
      *  stays loaded until the process ends. Throws types::ConfigError when the file is missing, cannot be loaded, or
      *  lacks that function. */
     void loadLibrary(const std::filesystem::path& file);
+    /** Loads the `libraries` of a deployment in `folder`. @return diagnostics, each at its place in the file */
+    types::Diagnostics loadLibraries(const DeploymentSpec& spec, const std::filesystem::path& folder);
     /** Adds the types of all available component libraries. @return diagnostics of the libraries that cannot be
      *  loaded */
     types::Diagnostics loadAll();

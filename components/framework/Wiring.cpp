@@ -96,11 +96,8 @@ void Wiring::consequence(const YAML::Node& place, const std::string& path, const
 }
 
 void Wiring::loadLibraries() {
-    for (const std::string& library : spec_.libraries) try {
-            registry_.loadLibrary(environment_->input_folder / library);
-        } catch (const types::ConfigError& error) {
-            diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
-        }
+    const types::Diagnostics wrong = registry_.loadLibraries(spec_, environment_->input_folder);
+    diagnostics_.insert(diagnostics_.end(), wrong.begin(), wrong.end());
 }
 
 /** Null, with a diagnostic, when there is no such type. */

@@ -241,4 +241,22 @@ fs::path sharedFolder() {
     return {};
 }
 
+std::string locatePages(const std::string& text) {
+    constexpr std::string_view begin = "components/", end = ".md";
+    const fs::path shared = sharedFolder();
+    std::string located = text;
+    for (size_t at = located.find(begin), last = 0; at != located.npos; at = located.find(begin, last)) {
+        if (last = located.find(end, at); last == located.npos) break;
+        last += end.size();
+        const std::string page = located.substr(at, last - at);
+        for (const fs::path& folder : {shared.parent_path() / "doc" / "insonify", shared})
+            if (std::error_code none; fs::exists(folder / page, none)) {
+                located.replace(at, page.size(), (folder / page).string());
+                last = at + (folder / page).string().size();
+                break;
+            }
+    }
+    return located;
+}
+
 }  // namespace insonify::loader

@@ -66,4 +66,9 @@ std::string absence(const std::string& name, Installation installation);
  *  is none. */
 std::filesystem::path sharedFolder();
 
+/** Returns a text in which each page of the repository, such as "components/device/README.md", is named by its path in
+ *  this installation: in the clone, or share/doc/insonify of a package, prefix, archive or wheel. A page that is not
+ *  there keeps its name. */
+std::string locatePages(const std::string& text);
+
 }  // namespace insonify::loader

@@ -159,6 +159,21 @@ TEST(InstallationTest, ThePartThatIsMissingIsNamedByWhatInstallsItThere) {
                 testing::ContainsRegex("not in wheels and archives; it is in insonify-survey_[0-9.]+_(amd|arm)64.deb"));
 }
 
+TEST_F(ComponentLibraryTest, PagesAreNamedByTheirPathInTheInstallation) {
+    const std::string page = "components/sonar/EFFECTS.md";
+    const auto describe = [&] { return call({"describe", "sonar::SonarTask"}); };
+    EXPECT_THAT(describe(), prints(HasSubstr("focus, clock (" + page + ");"))) << "it is not installed";
+    for (const char* file : {"share/doc/insonify/components/sonar/EFFECTS.md", "share/insonify/deploy/near.yml"}) {
+        fs::create_directories((folder_ / file).parent_path());
+        writeFile(folder_ / file, "");
+    }
+    EXPECT_THAT(describe(),
+                prints(HasSubstr("focus, clock (" + (folder_ / "share/doc/insonify" / page).string() + ");")));
+    const std::string in_clone = test::source_dir + ("/" + page);
+    EXPECT_EQ(loader::locatePages("see " + page + ", " + page + " and components/none.md"),
+              "see " + in_clone + ", " + in_clone + " and components/none.md");
+}
+
 TEST_F(ComponentLibraryTest, ExamplesAreFoundFromEveryFolder) {
     EXPECT_THAT(call({"examples"}), isRefused(HasSubstr("examples: are not part of this installation")));
     EXPECT_THAT(call({"check", "deploy/near.yml"}), isRefused(HasSubstr("deploy/near.yml: cannot be opened")));

@@ -211,8 +211,9 @@ bool hasStream(const DeploymentSpec& spec, const log::Reader& log) { return !log
 
 std::set<std::string> outsideTasks(const DeploymentSpec& spec) {
     framework::Registry registry = coreTasks();
-    for (const std::string& library : spec.libraries)
-        registry.loadLibrary(std::filesystem::path(spec.file).parent_path() / library);
+    if (types::Diagnostics wrong = registry.loadLibraries(spec, std::filesystem::path(spec.file).parent_path());
+        !wrong.empty())
+        throw types::ConfigError(std::move(wrong));
     std::set<std::string> names;
     for (const TaskSpec& task : spec.tasks)
         if (const auto made = registry.make(task.type, task.name); made && made->reachesOutside())

@@ -14,6 +14,7 @@
 #include "components/device/DeviceTask.hpp"
 #include "components/device/Probe.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/loader/ComponentLibrary.hpp"
 
 namespace insonify::device {
 namespace {
@@ -51,8 +52,8 @@ int listDevices(bool json) {
     for (const Json& device : devices)
         console::printResult("{:22} {}\n{:22} {}\n", device["type"].get<std::string>(),
                              device["doc"].get<std::string>(), "", toText(device["ports"]));
-    console::printResult(
-        "\nproperties: insonify describe TYPE; how to start and connect each: components/device/README.md\n");
+    console::printResult("\nproperties: insonify describe TYPE; how to start and connect each: {}\n",
+                         loader::locatePages("components/device/README.md"));
     return 0;
 }
 

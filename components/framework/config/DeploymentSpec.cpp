@@ -247,6 +247,7 @@ DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string&
     spec.watchdog = keys.watchdog;
     spec.lock_memory = keys.lock_memory;
     spec.libraries = keys.libraries;
+    spec.library_list.reset(child(document, "libraries"));
     spec.names.setNamespace(keys.ros_namespace);
     spec.names.setFramePrefix(keys.frame_prefix);
     readTasks(reader, keys.tasks, spec);

@@ -63,8 +63,9 @@ struct DeploymentSpec {
     double watchdog = 10;                ///< In realtime, the max duration of a cycle before it is reported [s].
     bool lock_memory = false;            ///< In realtime, keeps all memory resident.
     std::vector<std::string> libraries;  ///< Shared objects, relative to the deployment file.
-    types::RosNames names;               ///< Translation of ROS 2 names in this deployment.
-    std::vector<TaskSpec> tasks;         ///< In file order, the order of configuring.
+    YAML::Node library_list{YAML::NodeType::Undefined};  ///< Their list in the file, for diagnostics.
+    types::RosNames names;                               ///< Translation of ROS 2 names in this deployment.
+    std::vector<TaskSpec> tasks;                         ///< In file order, the order of configuring.
     std::vector<ConnectionSpec> connections;
     Origins origins;  ///< Sources of properties from elsewhere: property files, aliases, set().
     types::Diagnostics diagnostics;
