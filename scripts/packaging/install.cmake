@@ -41,8 +41,25 @@ file(GLOB pages RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS components/*.md
 foreach(page ${pages})
   get_filename_component(folder ${page} DIRECTORY)
   install(FILES ${page} DESTINATION ${documents}/${folder} COMPONENT runtime)
+  install(FILES ${page} DESTINATION insonify/share/doc/insonify/${folder} COMPONENT python EXCLUDE_FROM_ALL)  # of a wheel
 endforeach()
+
+# The copyright of each package: the licence, and those of the libraries that are compiled in, which the system's packages have.
 install(FILES LICENSE DESTINATION ${documents} RENAME copyright COMPONENT runtime)
+find_program(INSONIFY_DPKG_QUERY dpkg-query)
+find_program(INSONIFY_PYTHON3 python3)
+if(INSONIFY_DPKG_QUERY AND INSONIFY_PYTHON3)
+  file(GLOB lists CONFIGURE_DEPENDS types/packages components/*/packages)
+  add_custom_command(
+    OUTPUT ${PROJECT_BINARY_DIR}/copyright
+    COMMAND ${INSONIFY_PYTHON3} scripts/packaging/sbom.py ${PROJECT_BINARY_DIR}/copyright
+    DEPENDS LICENSE scripts/packaging/sbom.py ${lists}
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    VERBATIM)
+  add_custom_target(insonify_copyright ALL DEPENDS ${PROJECT_BINARY_DIR}/copyright)
+  install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${documents} COMPONENT runtime OPTIONAL)
+  set(copyright insonify_copyright)
+endif()
 
 # insonify, the command with its examples; insonify-NAME for each component library; python3-insonify; and insonify-dev.
 set(CPACK_GENERATOR DEB)
@@ -91,6 +108,16 @@ if(GEOGRAPHICLIB_FOUND)
 endif()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
   "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libprotobuf-dev, libsdformat-dev, libsnappy-dev, libsqlite3-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzmq3-dev, libzstd-dev, zlib1g-dev")
+# Each has the documents of insonify, on which it depends, by a link of their folder.
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+  string(TOUPPER ${component} upper)
+  if(NOT component STREQUAL "runtime")
+    install(CODE "set(documents \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATAROOTDIR}/doc\")
+      file(MAKE_DIRECTORY \"\${documents}\")
+      file(CREATE_LINK insonify \"\${documents}/${CPACK_DEBIAN_${upper}_PACKAGE_NAME}\" SYMBOLIC)"
+      COMPONENT ${component} EXCLUDE_FROM_ALL)
+  endif()
+endforeach()
 # Contents of the packages.
-add_custom_target(insonify_packages DEPENDS insonify insonify_man ${python} ${installed} ${components})
+add_custom_target(insonify_packages DEPENDS insonify insonify_man ${copyright} ${python} ${installed} ${components})
 include(CPack)

@@ -1,6 +1,7 @@
 """Writes into build/packages what the Debian packages there consist of, as CycloneDX: /usr/bin/python3 scripts/packaging/sbom.py
 
-These are the packages that they depend on, and the libraries that are compiled in, which are those of the `packages` files without a
+With the name of a file it writes there the `copyright` of the Debian packages: our licence, and those of what is compiled in. The list has
+the packages that they depend on, and the libraries that are compiled in, which are those of the `packages` files without a
 shared library. wheel.py writes the same of wheel and archive. Versions are this machine's."""
 
 import json
@@ -8,6 +9,7 @@ import pathlib
 import platform
 import re
 import subprocess
+import sys
 
 PACKAGES = pathlib.Path("build/packages")
 SYSTEM = platform.freedesktop_os_release()["ID"]
@@ -64,6 +66,15 @@ def compiled_in() -> list[dict]:
     return found
 
 
+def copyright() -> str:
+    """Our licence, and the copyright file of each package that is compiled in."""
+    parts = [f"Insonify\n\n{pathlib.Path('LICENSE').read_text()}"]
+    for each in compiled_in():
+        text = pathlib.Path(f"/usr/share/doc/{each['name']}/copyright").read_text(errors="replace")
+        parts.append(f"{each['name']} {each['version']}, which is compiled in\n\n{text}")
+    return f"\n{'=' * 80}\n\n".join(parts)
+
+
 def write(file: pathlib.Path, version: str, libraries: list[dict]) -> None:
     about = {"type": "application", "name": "insonify", "version": version, "bom-ref": "insonify", "licenses": [{"license": {"id": "Apache-2.0"}}]}
     commit = run("git", "log", "-1", "--format=%H").strip() if pathlib.Path(".git").exists() else ""
@@ -89,7 +100,9 @@ def describe_debs() -> None:
     write(PACKAGES / f"insonify-{version}-deb.sbom.json", version, installed(names | {each["name"] for each in compiled_in()}))
 
 
-if __name__ == "__main__":
+if __name__ == "__main__" and sys.argv[1:]:
+    pathlib.Path(sys.argv[1]).write_text(copyright())
+elif __name__ == "__main__":
     for old in PACKAGES.glob("*-deb.sbom.json"):
         old.unlink()
     describe_debs()

@@ -17,6 +17,31 @@ std::string package(const TestFolder& folder, const std::string& name) {
     throw std::runtime_error("no package " + name);
 }
 
+/** Expects the licences of the libraries that are compiled in, as the list of contents names them, in the copyright of
+ *  each package. */
+void expectLicences(const TestFolder& folder) {
+    const Outcome listed = call(folder, {"/usr/bin/python3", "-c",
+                                         "import json, os, sys\n"
+                                         "source = sys.argv[1]\n"
+                                         "os.chdir(source)\n"
+                                         "sys.path.insert(0, source + '/scripts/packaging')\n"
+                                         "import sbom\n"
+                                         "print(json.dumps(sbom.compiled_in()))",
+                                         insonify::test::source_dir});
+    ASSERT_EQ(listed.code, 0) << listed.err;
+    const json libraries = json::parse(listed.out);
+    ASSERT_GT(libraries.size(), 4u);
+    for (const char* name : {"insonify", "insonify-dev", "insonify-nav", "python3-insonify"}) {
+        const std::string text = readFile(folder / ("root/usr/share/doc/" + std::string(name) + "/copyright"));
+        EXPECT_THAT(text, HasSubstr("Apache License")) << name;
+        for (const json& library : libraries) {
+            EXPECT_THAT(text, HasSubstr("\n" + library["name"].get<std::string>() + " ")) << name;
+            for (const json& licence : library["licenses"])
+                EXPECT_THAT(text, HasSubstr(licence["license"]["name"].get<std::string>())) << name << library["name"];
+        }
+    }
+}
+
 }  // namespace
 
 TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
@@ -30,6 +55,9 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
         ASSERT_EQ(call(folder, {"dpkg-deb", "-x", package(folder, name), "root"}).code, 0);
 
     EXPECT_TRUE(fs::exists(folder / "root/usr/lib/systemd/system/insonify.service"));
+    expectLicences(folder);
+    EXPECT_THAT(call(folder, {folder / "root/usr/bin/insonify", "describe", "sonar::SonarTask"}).out,
+                HasSubstr((folder / "root/usr/share/doc/insonify/components/sonar/EFFECTS.md").string()));
 
     const std::string depends = call(folder, {"dpkg-deb", "-f", package(folder, "insonify"), "Depends"}).out;
     for (const char* needed : {"libc6 (>=", "libyaml-cpp", "libepoxy0", "libopencv-core", "libegl1", "libgl1-mesa-dri"})

@@ -46,6 +46,8 @@ void runArchive(const WallFolder& folder) {
         for (const std::string& library : fromSystem(folder, each))
             EXPECT_THAT(library, testing::MatchesRegex("lib(c|m|dl|rt|pthread|resolv|gcc_s|stdc\\+\\+|z|expat)"))
                 << each;
+    EXPECT_THAT(call(folder, {"env", "-i", program, "device", "list"}).out,
+                HasSubstr((package / "share/doc/insonify/components/device/README.md\n").string()));
     const fs::path licences = package / "../insonify.libs/licences";
     EXPECT_GT(std::distance(fs::directory_iterator(licences), {}), 20);
     for (const char* compiled_in : {"libcli11-dev.txt", "libglm-dev.txt", "libjs-three.txt", "nlohmann-json3-dev.txt"})
