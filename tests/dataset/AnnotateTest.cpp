@@ -221,8 +221,8 @@ TEST_F(AnnotateTest, LevelsAreTurnedIntoEnergies) {
 }
 
 TEST_F(AnnotateTest, PartsOfOneThingAreOneInstance) {
-    truth_.objects = {"floor", "tyre", "hub"};
-    lineages_ = {{"floor"}, {"tyre", "wheel_1"}, {"hub", "wheel_1"}};
+    truth_.objects = {"floor", "tire", "hub"};
+    lineages_ = {{"floor"}, {"tire", "wheel_1"}, {"hub", "wheel_1"}};
     nodes_ = {"wheel_1"};
     sweep_.classes = {{"wheel", {"wheel_*"}, 1, 1}};
     const Annotated all = annotated();

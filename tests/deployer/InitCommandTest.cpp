@@ -43,9 +43,9 @@ std::vector<json> getRecords(const fs::path& set) {
     return records;
 }
 
-/** Returns the number of tyres that the starter's sweep annotates in `dive`, after its last line is replaced if one is
+/** Returns the number of tires that the starter's sweep annotates in `dive`, after its last line is replaced if one is
  *  given. */
-size_t annotatedTyres(const TestFolder& folder, const std::string& annotations) {
+size_t annotatedTires(const TestFolder& folder, const std::string& annotations) {
     std::string sweep = readFile(folder / "dive/sweep.yml");
     if (!annotations.empty()) sweep = sweep.substr(0, sweep.find("annotations:")) + annotations;
     writeFile(folder / "dive/other.yml", sweep);
@@ -53,10 +53,10 @@ size_t annotatedTyres(const TestFolder& folder, const std::string& annotations) 
     EXPECT_THAT(callInsonify(folder, {"dataset", "dive", "--sweep", "dive/other.yml", "--out", out, "--format", "mask",
                                       "--set", "sonar.quality.rows=128"}),
                 succeeds());
-    size_t tyres = 0;
+    size_t tires = 0;
     for (const json& record : getRecords(folder / out))
-        for (const json& annotation : record["annotations"]) tyres += annotation["class"] == "tyre";
-    return tyres;
+        for (const json& annotation : record["annotations"]) tires += annotation["class"] == "tire";
+    return tires;
 }
 
 /** Returns the line of a sweep that says how its pictures look. */
@@ -171,7 +171,7 @@ TEST_P(InitPresetTest, EachPictureOfAFanShowsAnObjectOnTheFloor) {
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
     writeFile(folder / "pass.yml",
               "poses: {trajectory: {file: pass.csv, period: 1}}\n"
-              "classes: {object: [tyre_*, stone_*, container, pile_*]}\n" +
+              "classes: {object: [tire_*, stone_*, container, pile_*]}\n" +
                   pictureOf(readFile(folder / "sweep.yml")) + "annotations: {min_level: 40, min_pixels: 100}\n");
     ASSERT_THAT(callInsonify(folder, {"dataset", ".", "--sweep", "pass.yml", "--out", "set", "--format", "mask",
                                       "--set", "sonar.quality.rows=128"}),
@@ -245,18 +245,18 @@ TEST(InitCommandTest, TheSweepMakesADataSetWhoseObjectsFindTheirPlaces) {
                 for (const json& category : set["categories"])
                     if (category["id"] == annotation["category_id"]) ++found[category["name"].get<std::string>()];
         }
-        for (const char* name : {"pile", "container", "tyre", "stone", "pipeline"}) EXPECT_GT(found[name], 0u) << name;
+        for (const char* name : {"pile", "container", "tire", "stone", "pipeline"}) EXPECT_GT(found[name], 0u) << name;
     }
     ASSERT_EQ(callInsonify(folder, {"init", "head", "--sonar", "micron"}).code, 0);
     EXPECT_FALSE(fs::exists(folder / "head/sweep.yml")) << "its picture is a beam";
 }
 
-TEST(InitCommandTest, TheSweepAnnotatesTheTyresInView) {
+TEST(InitCommandTest, TheSweepAnnotatesTheTiresInView) {
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", "dive"}).code, 0);
-    const size_t in_view = annotatedTyres(folder, "annotations: {min_level: 1, min_pixels: 3}\n");
+    const size_t in_view = annotatedTires(folder, "annotations: {min_level: 1, min_pixels: 3}\n");
     EXPECT_GT(in_view, 20u);
-    EXPECT_GE(annotatedTyres(folder, ""), in_view * 9 / 10);
+    EXPECT_GE(annotatedTires(folder, ""), in_view * 9 / 10);
 }
 
 TEST(InitCommandTest, AnUnknownSonarIsReportedWithTheNearestName) {

@@ -143,7 +143,7 @@ TEST(MovingQualityTest, APassOverARoughFloorMeetsItsTarget) {
     EXPECT_LE(nearlyAll(errors), 2 * target) << summary(run, errors);
 }
 
-/** Returns a basin of 10 x 8 x 3 m with a ball of a tyre's size on its floor. */
+/** Returns a basin of 10 x 8 x 3 m with a ball of a tire's size on its floor. */
 types::GeometryPtr pool() {
     return test::makeScene(
         {test::quad({-5, -4, -2}, {10, 0, 0}, {0, 8, 0}), test::quad({-5, -4, -2}, {10, 0, 0}, {0, 0, 3}),

@@ -241,7 +241,7 @@ def add_wares(glb, steel, concrete, rubber):
     glb.object("buoy", moved(stone(0.9), (x + 0.5, y - 0.1, z + 5.6)), rubber)
     for number, (x, y, tilt) in enumerate(((3.8, 0.4, 0.0), (10.4, -0.3, 0.5), (13.0, -14.0, 0.3))):
         ring = [(0.38 * math.cos(a), 0.38 * math.sin(a), 0.38 * tilt * math.sin(a)) for a in (k * math.pi / 16 for k in range(32))]
-        glb.object(f"tyre_{number}", moved(tube(ring, 0.12, 10, closed=True), (x, y, floor_height(x, y) + 0.12 + 0.3 * tilt)), rubber)
+        glb.object(f"tire_{number}", moved(tube(ring, 0.12, 10, closed=True), (x, y, floor_height(x, y) + 0.12 + 0.3 * tilt)), rubber)
 
 
 def add_stones(glb, granite):
