@@ -10,6 +10,9 @@ namespace insonify::acoustics {
 
 /** Returns mu cos^2(theta) by Lambert's law, mu = 10^(lambert_db / 10) [m^2 at 1 m per m^2]. ACOUSTICS.md 3.1. */
 double lambertSection(double lambert_db, double cos_incidence);
+/** A surface that follows Lambert's law returns no more energy than it receives up to here, mu = 1/pi [dB].
+ * ACOUSTICS.md 3.1. */
+inline constexpr double max_lambert_db = -4.97;
 
 /** The rms slopes [1] that determine the width of a surface's lobe about its normal. */
 struct Slopes {

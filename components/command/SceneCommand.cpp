@@ -323,9 +323,12 @@ void printScene(const Json& scene) {
 }  // namespace
 
 int showScene(const std::string& file, bool json, const scene::OmitRules& rules, std::optional<double> frequency_khz) {
-    if (frequency_khz && !(*frequency_khz >= 0.001 && *frequency_khz <= 1e5))
-        throw types::ConfigError("", "--frequency-khz",
-                                 fmt::format("is {:g}; must be from 0.001 to 100000", *frequency_khz));
+    const auto require = [](const char* option, const std::optional<double>& value, double min, double max) {
+        if (value && !(*value >= min && *value <= max))
+            throw types::ConfigError("", option, fmt::format("is {:g}; must be from {} to {}", *value, min, max));
+    };
+    require("--frequency-khz", frequency_khz, 0.001, 1e5);
+    require("--water-surface", rules.water_surface, -1e5, 1e5);
     const Json scene = sceneReport(file, rules, frequency_khz);
     json ? print(scene) : printScene(scene);
     return 0;

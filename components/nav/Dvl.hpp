@@ -91,7 +91,7 @@ struct DvlConfig {
               self.min_altitude);
         visit({"max_altitude", "m", "max height above the bottom, along the axis; farther beams are lost", 1e-3, 1e4},
               self.max_altitude);
-        visit({"speed_of_sound", "m/s", "reported with the velocities", 1, 1e4}, self.speed_of_sound);
+        visit({"speed_of_sound", "m/s", "reported with the velocities", 300, 2500}, self.speed_of_sound);
         visit({"bottom_height", "m",
                "of a level bottom in the world, if no scene is connected; absent: a scene is required", -1e5, 1e5},
               self.bottom_height);

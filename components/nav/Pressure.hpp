@@ -38,7 +38,7 @@ struct PressureConfig {
                                "between measurements; 0: a measurement per pose");
         visit({"water_surface", "m", "its height in the world", -1e5, 1e5}, self.water_surface);
         visit({"latitude_deg", "deg", "of the world, for gravity", -90, 90}, self.latitude_deg);
-        visit({"density", "kg/m^3", "of water of constant density; absent: UNESCO's standard ocean (1983)", 1, 1e5},
+        visit({"density", "kg/m^3", "of water of constant density; absent: UNESCO's standard ocean (1983)", 500, 2000},
               self.density);
         visit({"atmosphere", "Pa", "pressure of the air at the surface", 0, 1e7}, self.atmosphere);
         visit({"max_pressure", "Pa", "max reading; absent: unlimited", 1, 1e12}, self.max_pressure);

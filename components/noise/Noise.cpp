@@ -1,5 +1,7 @@
 #include "components/noise/Noise.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -195,6 +197,9 @@ void AmbientConfig::check(types::Diagnostics& diagnostics) const {
         if (!level_db && !value)
             diagnostics.push_back({"", std::string("has no ") + name + ", which is needed without level_db"});
     }
+    if (bandwidth_khz && *bandwidth_khz > 2 * frequency_khz)
+        diagnostics.push_back({"bandwidth_khz", fmt::format("is {:g} kHz; a band about {:g} kHz may have {:g} kHz",
+                                                            *bandwidth_khz, frequency_khz, 2 * frequency_khz)});
 }
 
 double ambientIntensity(const AmbientConfig& ambient) {

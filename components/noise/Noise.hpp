@@ -51,7 +51,7 @@ struct AmbientConfig {
         visit({"directivity_index_db", "dB", "of the receiver; reduces the noise by this", 0, 100},
               self.directivity_index_db);
         visit({"bandwidth_khz", "kHz", "of the receiver", 1e-3, 1e4}, self.bandwidth_khz);
-        visit({"source_level_db", "dB re 1 uPa m", "of the sonar", -300, 400}, self.source_level_db);
+        visit({"source_level_db", "dB re 1 uPa m", "of the sonar", -300, 300}, self.source_level_db);
         visit({"frequency_khz", "kHz", "of the sonar", 1e-3, 1e4}, self.frequency_khz);
         visit({"shipping", "1", "activity of ships, whose noise is below 1 kHz", 0, 1}, self.shipping);
     }

@@ -112,7 +112,7 @@ struct ReceiverConfig {
                "intensity; amplitude, its root; level_db, 10 log10 of it; received_level_db, the same plus "
                "source_level_db; code, whole numbers by `code`"},
               self.output);
-        visit({"source_level_db", "dB re 1 uPa m", "used by output received_level_db", -300, 400},
+        visit({"source_level_db", "dB re 1 uPa m", "used by output received_level_db", -300, 300},
               self.source_level_db);
         visit({"code", "", "used by output code"}, self.code);
         visit({"automatic_gain", "", "gain that follows the level along each ping; absent: none"}, self.automatic_gain);

@@ -106,9 +106,9 @@ struct SeabedRow {
     double lambert_db;  ///< Lambert parameter, 10 log10(mu) [dB].
 };
 constexpr SeabedRow seabeds[] = {
-    // Fitted to APL-UW TR 9407 at 100 kHz, except for rough rock, which is kept below 1/pi.
+    // Fitted to APL-UW TR 9407 at 100 kHz, except for both rocks, which are kept below 1/pi.
     {Sediment::RoughRock, -5.0},
-    {Sediment::Rock, -3.7},
+    {Sediment::Rock, -5.0},
     {Sediment::Cobble, -8.1},
     {Sediment::SandyGravel, -11.7},
     {Sediment::CoarseSand, -14.2},

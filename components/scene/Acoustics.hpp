@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/Matter.hpp"
 #include "components/scene/Scene.hpp"
 #include "types/geometry/Geometry.hpp"
@@ -75,12 +76,12 @@ struct ShellAcoustics {
     static void describe(auto& self, auto& visit) {
         visit({"thickness_mm", "mm", "of the wall", 1e-3, 1000}, self.thickness_mm);
         visit({"material", "", "matter of the table that has these numbers: density, speeds and loss"}, self.material);
-        visit({"density", "kg/m^3", "of the wall", 1, 30000}, self.density);
+        visit({"density", "kg/m^3", "of the wall", 25, 23000}, self.density);
         visit({"sound_speed", "m/s", "of its longitudinal waves", 100, 20000}, self.sound_speed);
         visit({"shear_speed", "m/s", "of its shear waves; 0: it has none", 0, 10000}, self.shear_speed);
         visit({"loss", "1", "imaginary over real part of its wave numbers", 0, 1}, self.loss);
         visit({"fill", "", "medium behind the wall"}, self.fill);
-        visit({"fill_density", "kg/m^3", "of the medium behind the wall, in place of that of `fill`", 10, 20000},
+        visit({"fill_density", "kg/m^3", "of the medium behind the wall, in place of that of `fill`", 25, 20000},
               self.fill_density);
         visit({"fill_sound_speed", "m/s", "of the medium behind the wall, in place of that of `fill`", 200, 6000},
               self.fill_sound_speed);
@@ -118,7 +119,9 @@ struct Acoustics {
                "matter of the table: its law at the sonar's frequency, else its reflection and "
                "lambert_db"},
               self.material);
-        visit({"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, 20}, self.lambert_db);
+        visit(
+            {"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, acoustics::max_lambert_db},
+            self.lambert_db);
         visit({"reflection", "1", "signed pressure reflection coefficient at normal incidence", -1, 1},
               self.reflection);
         visit({"roughness_slope", "1", "rms slope of the micro-relief: adds the lobe of a `reflection`", 0, 10},

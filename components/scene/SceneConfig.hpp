@@ -118,7 +118,8 @@ struct SceneConfig {
              "by name of a node: factor of the size of the node and of what is below it, about its origin", 1e-3, 1e3},
             self.scale);
         visit({"mount", "", "the sonar in the body"}, self.mount);
-        visit({"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
+        visit({"water_surface", "m", "z of the water surface in the world; absent: none", -1e5, 1e5},
+              self.water_surface);
         visit({"omit", "",
                "names of nodes, models, links and visuals that are omitted, with all below them; * is any text; "
                "absent: "

@@ -116,7 +116,7 @@ struct Mount {
     }
 
     static void describe(auto& self, auto& visit) {
-        visit({"position", "m", "of the sensor in the body"}, self.position);
+        visit({"position", "m", "of the sensor in the body", -1e5, 1e5}, self.position);
         visit({"roll_deg", "deg", "about x", -360, 360}, self.roll_deg);
         visit({"pitch_deg", "deg", "about y, positive looks down", -360, 360}, self.pitch_deg);
         visit({"yaw_deg", "deg", "about z, positive turns to port", -360, 360}, self.yaw_deg);

@@ -74,7 +74,7 @@ struct CrosstalkConfig {
         visit({"source_level_db", "dB re 1 uPa m",
                "of this sonar, both as a source and as the reference for what it receives; absent: all sonars "
                "have equal levels",
-               -300, 400},
+               -300, 300},
               self.source_level_db);
         visit({"rejection_db", "dB", "attenuation of the receiver outside its band", 0, 300}, self.rejection_db);
     }
@@ -96,7 +96,7 @@ struct AbsorptionConfig {
     static void describe(auto& self, auto& visit) {
         visit({"db_per_m", "dB/m", "one-way absorption, instead of a law", 0, 1000}, self.db_per_m);
         visit({"law", "", "computes it from frequency and water"}, self.law);
-        visit({"frequency_khz", "kHz", "frequency for the law; absent: the sonar's", 0, 1e5}, self.frequency_khz);
+        visit({"frequency_khz", "kHz", "frequency for the law; absent: the sonar's", 0.001, 1e5}, self.frequency_khz);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -360,7 +360,9 @@ void SonarConfig::describeBeam(auto& self, auto& visit) {
     visit({"beam_height_deg", "deg", "total elevation aperture; at most 150 if rasterised", 0.001, 180},
           self.beam_height_deg);
     visit({"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
-    visit({"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
+    visit({"speed_of_sound", "m/s", "absent: computed from water, else 1500", acoustics::min_sound_speed,
+           acoustics::max_sound_speed},
+          self.speed_of_sound);
     visit({"water", "", "state of the water"}, self.water);
     visit({"frequency_khz", "kHz", "of the sonar; absorption uses it unless it has its own", 0.001, 1e5},
           self.frequency_khz);

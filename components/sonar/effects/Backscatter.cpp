@@ -1,7 +1,8 @@
+#include "components/acoustics/Backscatter.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "components/acoustics/Seabed.hpp"
 #include "components/sonar/plan/Effect.hpp"
@@ -73,12 +74,14 @@ public:
     }
     void note(const RenderPlan& plan, const types::Geometry& geometry, types::Notices& notices) const override {
         if (plan.config.model != Model::Physical) return;
+        const auto max_law = static_cast<float>(1.0001 * acoustics::lambertSection(acoustics::max_lambert_db, 1));
         std::vector<std::string> plain, loud;
         for (size_t i = 0; i < geometry.materials.size(); ++i) {
             const types::Material& material = geometry.materials[i];
             if (!material.has_acoustics) plain.push_back(material.name);
             const MaterialRecord& record = plan.laws.records[i];
-            if (record.law.x < 0 && record.values.x > std::numbers::inv_pi_v<float>) loud.push_back(material.name);
+            if (record.law.x < 0 && record.values.x * material.max_map_strength > max_law)
+                loud.push_back(material.name);
         }
         if (!plain.empty())
             notices.push_back(
@@ -86,7 +89,8 @@ public:
                             plain.size(), geometry.materials.size(), listed(plain)));
         if (!loud.empty())
             notices.push_back(types::warning(
-                fmt::format("a lambert_db above -4.97 dB returns more energy than it receives: {}", listed(loud))));
+                fmt::format("a lambert_db above {} dB, with its map, returns more energy than it receives: {}",
+                            acoustics::max_lambert_db, listed(loud))));
         if (!plan.laws.outside_validity.empty() && !isAboveLaw(plan))
             notices.push_back(types::warning(fmt::format(
                 "backscatter of seabeds is extrapolated outside its law's validity: {}", plan.laws.outside_validity)));
