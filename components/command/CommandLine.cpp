@@ -5,7 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <regex>
 #include <sstream>
 
@@ -224,8 +227,12 @@ std::vector<std::string> withRosWords(const std::vector<std::string>& words) {
             inside = true;
         else if (inside && word == "--")
             inside = false;
+        else if (inside)
+            plain.push_back(std::string(section_start) + "=" + (word.empty() ? "''" : word));
+        else if (word.starts_with("--") && word.find('=') == word.size() - 1)
+            plain.insert(plain.end(), {word.substr(0, word.size() - 1), ""});  // the parser would skip the empty value
         else
-            plain.push_back(inside ? std::string(section_start) + "=" + (word.empty() ? "''" : word) : word);
+            plain.push_back(word);
     }
     return plain;
 }
@@ -283,12 +290,18 @@ std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
     return "";
 }
 
-/** Returns what is wrong with an option's value, in place of the parser's "Could not convert" and "At Most 1 required";
- *  empty: the parser's text is clear. */
+/** Returns what is wrong with an option's value, in place of the parser's "Could not convert", "At Most 1 required" and
+ *  "not in range"; empty: the parser's text is clear. */
 std::string wrongValue(const std::string& text) {
     static const std::string conversion = "Could not convert: ", between = " = ", twice = ": At Most 1 required";
     if (const size_t at = text.find(twice); at != text.npos)
         return text.substr(0, at) + ": is given more than once; once is allowed";
+    static const std::regex outside("(.*): Value (.*) not in range (\\S+) to (\\S+)");
+    if (std::smatch found; std::regex_match(text, found, outside)) {
+        const double min = std::atof(found.str(3).c_str()), max = std::atof(found.str(4).c_str());
+        const std::string bounds = max < 1e100 ? fmt::format("from {:g} to {:g}", min, max) : "above 0";
+        return found.str(1) + ": is " + found.str(2) + "; must be a number " + bounds;
+    }
     const size_t equals = text.find(between);
     if (!text.starts_with(conversion) || equals == text.npos) return "";
     const std::string name = text.substr(conversion.size(), equals - conversion.size());
@@ -306,6 +319,22 @@ std::string settingWithoutSet(int argc, char** argv) {
     return "";
 }
 
+/** Makes an empty value of any option or argument, and a number that is not finite, an error before other checks. */
+void checkValues(CLI::App& app) {
+    for (CLI::Option* option : app.get_options()) {
+        if (option->get_items_expected_max() == 0) continue;  // a flag
+        const std::string type = option->get_type_name(), wanted = type + ": " + option->get_description();
+        option->transform(CLI::Validator(
+            [wanted, is_number = type.starts_with("FLOAT")](std::string& text) -> std::string {
+                if (text.empty()) return "is empty; must be " + wanted;
+                const bool is_finite = !is_number || std::isfinite(std::strtod(text.c_str(), nullptr));
+                return is_finite ? "" : "is " + text + "; must be a finite number";
+            },
+            ""));
+    }
+    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) checkValues(*command);
+}
+
 /** Whether the words end where a command must follow, as in `insonify` and `insonify log`. */
 bool asksForCommand(const CLI::App& app, int argc) {
     const CLI::App* command = &app;
@@ -315,6 +344,7 @@ bool asksForCommand(const CLI::App& app, int argc) {
 }
 
 int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
+    checkValues(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {  // --help and --version also end here, with code 0
@@ -405,6 +435,11 @@ int guarded(CLI::App& app, Action& action, int argc, char** argv) {
         for (const types::Diagnostic& diagnostic : error.diagnostics())
             console::printDiagnostic("{}\n", diagnostic.text());
         return bad_input;
+    } catch (const std::filesystem::filesystem_error& error) {
+        const bool is_name = error.code() == std::errc::filename_too_long;  // wherever a path is looked at first
+        console::printDiagnostic("insonify: {}\n",
+                                 is_name ? error.path1().string() + ": the name is too long" : types::getReason(error));
+        return is_name ? bad_input : failed;
     } catch (const std::exception& error) {
         console::printDiagnostic("insonify: {}\n", types::getReason(error));
         return failed;

@@ -8,7 +8,7 @@
 namespace insonify::command {
 
 /** Returns a command line in which each word between `--ros-args` and `--`, or the end, is an option
- *  `--ros-args=WORD`. */
+ *  `--ros-args=WORD`, and an option `--NAME=` without a value has an empty word as value. */
 std::vector<std::string> withRosWords(const std::vector<std::string>& words);
 
 /** Applies the words after `--ros-args` to a deployment, by the rules of ROS 2: `-r FROM:=TO` (`--remap`) for topics,

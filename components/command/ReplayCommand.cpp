@@ -214,11 +214,6 @@ log::PoseSource poseSource(const ReplayAsked& options, const std::string& given,
     if (!options.datum.empty()) {
         source.datum =
             types::Datum{options.datum[0], options.datum[1], options.datum.size() > 2 ? options.datum[2] : 0};
-        if (!(std::abs(source.datum->latitude_deg) <= 90))
-            throw types::ConfigError(
-                "", "--datum",
-                fmt::format("has a latitude of {:g}; may be -90 to 90, and comes before the longitude",
-                            options.datum[0]));
     }
     source.orientation = options.orientation;
     return source;
@@ -258,7 +253,21 @@ void choosePoses(log::Reader& log, ReplayAsked& options) {
     }
 }
 
+/** Refuses places that are not on the earth. */
+void checkDatum(const std::vector<double>& datum) {
+    static constexpr struct {
+        const char* name;
+        double min, max;
+    } parts[] = {{"latitude", -90, 90}, {"longitude", -360, 360}, {"height", -12000, 100000}};
+    for (size_t i = 0; i < std::min(datum.size(), std::size(parts)); ++i)
+        if (!(datum[i] >= parts[i].min && datum[i] <= parts[i].max))
+            throw types::ConfigError(
+                "", "--datum",
+                fmt::format("has the {} {:g}; may be {} to {}", parts[i].name, datum[i], parts[i].min, parts[i].max));
+}
+
 int replay(ReplayAsked options) {
+    checkDatum(options.datum);
     recordings::refuseRecording(options.replay.log);
     const log::WholeLog opened = log::openWholeLog(options.replay.log, log::AtDamage::Stop, options.replay.world_frame);
     log::Reader& log = *opened.log;

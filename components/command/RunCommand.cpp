@@ -171,10 +171,12 @@ void printNotices(const framework::TaskContext& task, const types::Notices& noti
 }
 
 /** Checks without making a file. */
-void refuseUnwritable(const std::filesystem::path& summary_file, const std::string& deployment) {
+void refuseUnwritable(const RunOptions& options, const std::string& deployment) {
     namespace fs = std::filesystem;
-    if (std::error_code none; fs::equivalent(summary_file, deployment, none))
-        throw types::ConfigError(summary_file, "--summary", "is the deployment itself; give another file");
+    for (const auto& [option, file] : {std::pair("--summary", &options.summary), {"--health", &options.health}})
+        if (std::error_code none; fs::equivalent(*file, deployment, none))
+            throw types::ConfigError(*file, option, "is the deployment itself; give another file");
+    const fs::path summary_file = options.summary;
     const fs::path folder = summary_file.has_parent_path() ? summary_file.parent_path() : ".";
     const fs::path evaluated = fs::exists(summary_file) ? summary_file : folder;
     if (!summary_file.empty() && (fs::is_directory(summary_file) || access(evaluated.c_str(), W_OK) != 0))
@@ -264,7 +266,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     OutputFolder folder(options.out, options.deployment);
     deployment.environment().output_folder = folder.path();
     if (written_to) *written_to = folder.path();
-    refuseUnwritable(options.summary, deployment.spec().file);
+    refuseUnwritable(options, deployment.spec().file);
 
     const std::atomic<bool>& stop = stopOnSignals();
     Supervision supervision(options.health);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <filesystem>
 #include <set>
 #include <string_view>
 
@@ -269,6 +270,10 @@ std::vector<Probe> allProbes() {
 ProbeAddress probeAddress(const std::string& text) {
     ProbeAddress address;
     if (text.find('/') != std::string::npos) {
+        std::error_code none;
+        const auto type = std::filesystem::status(text, none).type();
+        if (type != std::filesystem::file_type::character && type != std::filesystem::file_type::not_found)
+            refuse(text, "which is no serial line");
         address.serial = text;
         return address;
     }

@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <iterator>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -79,6 +81,69 @@ TEST(CommandLineTest, TheVersionHasTheCommitAndTheParts) {
         if (each["state"] == "here") present.insert(each["name"]);
     EXPECT_EQ(words["parts:"], present);
     for (const std::string& absent : words["absent:"]) EXPECT_FALSE(present.contains(absent)) << absent;
+}
+
+TEST(CommandLineTest, AnEmptyValueOfAnyOptionIsRefusedByItsName) {
+    const TestFolder folder;
+    std::istringstream lines(callInsonify(folder, {"completion", "bash"}).out);
+    const std::regex command("^        \" ([a-z ]+)\"\\) words="), option("^  (?:-.,)?(--[a-z-]+) ([A-Z{i][^ ]*)");
+    std::set<std::string> refused;
+    std::smatch found;
+    for (std::string line; std::getline(lines, line);) {
+        if (!std::regex_search(line, found, command)) continue;
+        std::istringstream named(found[1]);
+        const std::vector<std::string> words{std::istream_iterator<std::string>(named), {}};
+        std::vector<std::string> help = words;
+        help.emplace_back("--help");
+        std::istringstream helped(callInsonify(folder, help).out);
+        for (std::string text; std::getline(helped, text);) {
+            if (!std::regex_search(text, found, option) || found.str(2).ends_with(':')) continue;
+            std::vector<std::string> apart = words, joined = words;
+            apart.insert(apart.end(), {found[1], ""});
+            joined.push_back(found.str(1) + "=");
+            for (const std::vector<std::string>& call : {apart, joined})
+                EXPECT_THAT(callInsonify(folder, call), isRefused(HasSubstr(found.str(1) + ": is empty; must be ")))
+                    << testing::PrintToString(call);
+            refused.insert(found.str(1));
+        }
+    }
+    for (const char* name : {"--out", "--real", "--to", "--pings", "--sweep", "--sediment", "--timeout", "--pose"})
+        EXPECT_TRUE(refused.contains(name)) << name;
+}
+
+TEST(CommandLineTest, NumbersThatAreNotFiniteAreRefused) {
+    const WallFolder folder;
+    using Words = std::vector<std::string>;
+    for (const Words& words : {Words{"water", "--depth"},
+                               {"device", "probe", "x", "--timeout"},
+                               {"fit", "wall.yml", "--real", "x", "--out", "y.yml", "--range"},
+                               {"backscatter", "--frequency-khz"}})
+        for (const char* value : {"nan", "-NaN", "inf", "Infinity", "1e999"}) {
+            Words call = words;
+            call.emplace_back(value);
+            EXPECT_THAT(callInsonify(folder, call),
+                        isRefused(HasSubstr(words.back() + ": is " + value + "; must be a finite number")));
+        }
+}
+
+TEST(CommandLineTest, ANameThatIsTooLongIsBadInput) {
+    const WallFolder folder;
+    const std::string name(300, 'a');
+    using Words = std::vector<std::string>;
+    for (const Words& words : {Words{"check", name},
+                               {"run", "wall.yml", "--out", name},
+                               {"scene", name + ".glb"},
+                               {"log", "info", name},
+                               {"replay", name + ".log", "wall.yml"},
+                               {"init", name},
+                               {"log", "repair", name + ".0.log", "--to", "x.0.log"},
+                               {"fit", "wall.yml", "--real", name, "--out", "y.yml"},
+                               {"fit", "wall.yml", "--real", "x", "--out", name},
+                               {"dataset", "wall.yml", "--sweep", name, "--out", "set"},
+                               {"run", "wall.yml", "--summary", name}}) {
+        const Outcome refused = callInsonify(folder, words);
+        EXPECT_THAT(refused, isRefused(HasSubstr(name))) << testing::PrintToString(words) << refused.err;
+    }
 }
 
 TEST(CommandLineTest, FailsWhenResultsCannotBeWritten) {

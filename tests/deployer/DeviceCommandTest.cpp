@@ -81,6 +81,8 @@ TEST(DeviceCommandTest, ABadAddressIsOneClearErrorAndCode2) {
     EXPECT_THAT(callInsonify(folder, {"device", "probe", "127.0.0.1:70000"}),
                 isRefused(HasSubstr("ADDRESS: is '127.0.0.1:70000', whose port '70000' is not from 1 to 65535")));
     EXPECT_EQ(callInsonify(folder, {"device", "probe", ""}).code, 2);
+    EXPECT_THAT(callInsonify(folder, {"device", "probe", "./"}),
+                isRefused(HasSubstr("is './', which is no serial line")));
     EXPECT_EQ(callInsonify(folder, {"device", "probe"}).code, 2);
     EXPECT_EQ(callInsonify(folder, {"device"}).code, 2);
     EXPECT_EQ(callInsonify(folder, {"device", "probe", "127.0.0.1", "--timeout", "0"}).code, 2);

@@ -51,7 +51,8 @@ TEST(DidYouMeanTest, ASceneInPlaceOfADeploymentIsCalledOne) {
     for (const char* scene : {"wall.gltf", "nowhere.GLB", "pool.sdf"})
         EXPECT_THAT(callInsonify(folder, {"run", scene}),
                     isRefused(HasSubstr(std::string(scene) + ": is a scene; must be a deployment")));
-    EXPECT_THAT(callInsonify(folder, {"check", ""}), isRefused(HasSubstr("the file's name is empty; must be")));
+    EXPECT_THAT(callInsonify(folder, {"check", ""}),
+                isRefused(HasSubstr("DEPLOYMENT: is empty; must be TEXT: a YAML file")));
 }
 
 TEST(DidYouMeanTest, OffersAFileOfTheCurrentFolder) {

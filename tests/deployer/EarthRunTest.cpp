@@ -140,6 +140,12 @@ TEST_F(EarthRunTest, FixesGiveThePosesBack) {
                                     HasSubstr("the deployment's is {latitude_deg: 54.5,"), HasSubstr("one origin"))));
         fs::remove_all(folder_ / "out");
     }
+    for (const auto& [datum, why] : {std::pair("91,10", "latitude 91; may be -90 to 90"),
+                                     {"54,nan", "longitude nan;"},
+                                     {"54,361", "longitude 361; may be -360"},
+                                     {"54,10,inf", "height inf; may be"}})
+        EXPECT_THAT(call({"replay", "x.0.log", "wall.yml", "--datum", datum}),
+                    isRefused(HasSubstr("--datum: has the " + std::string(why))));
 }
 
 TEST_F(EarthRunTest, SoundingsAsTextHaveTheirPlacesOnTheEarth) {

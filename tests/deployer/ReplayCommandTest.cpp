@@ -184,7 +184,9 @@ connections: [{from: replay.noise.noisy, to: log.noisy}]
     EXPECT_NE(inside.code, 0);
     EXPECT_THAT(inside.err, HasSubstr("the log cannot be written: it is the log that is read"));
     EXPECT_EQ(readFile(folder / "out/wall.0.log"), before);
-    EXPECT_THAT(folder.run({"--summary", "wall.yml"}).err, HasSubstr("--summary: is the deployment itself"));
+    for (const char* option : {"--summary", "--health"})
+        EXPECT_THAT(folder.run({option, "wall.yml"}),
+                    isRefused(HasSubstr(option + std::string(": is the deployment itself"))));
 }
 
 TEST(ReplayCommandTest, ATaskOfAnotherTypeThanInTheLogIsRefused) {

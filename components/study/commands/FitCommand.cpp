@@ -7,6 +7,7 @@
 
 #include "components/console/Console.hpp"
 #include "components/console/ProgressLine.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/FittedDeployment.hpp"
 #include "components/study/PictureFile.hpp"
 #include "components/study/commands/StudyCommand.hpp"
@@ -32,13 +33,17 @@ struct FitOptions {
 void refuseFiles(const FitOptions& options) {
     types::Diagnostics wrong;
     for (const std::string& real : options.real)
-        if (!fs::exists(real)) wrong.push_back({"--real", "does not exist; may be a file or a folder of them", real});
+        if (std::error_code none; !fs::exists(real, none))
+            wrong.push_back({"--real", "does not exist; may be a file or a folder of them", real});
     const fs::path path(options.out), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     const std::string end = path.extension().string();
-    if (fs::is_directory(path))
+    std::error_code none;
+    if (fs::is_directory(path, none))
         wrong.push_back({"--out", "is a folder; give the name of a file, FITTED.yml", options.out});
-    else if (!fs::is_directory(folder))
+    else if (!fs::is_directory(folder, none))
         wrong.push_back({"--out", "is in a folder that does not exist: " + folder.string(), options.out});
+    else if (fs::equivalent(path, deployer::deploymentIn(options.deployment), none))
+        wrong.push_back({"--out", "is the deployment that is fitted; give another file", options.out});
     else if (end != ".yml" && end != ".yaml")
         wrong.push_back({"--out", "must end in .yml or .yaml", options.out});
     if (!wrong.empty()) throw types::ConfigError(std::move(wrong));
@@ -90,14 +95,15 @@ void addFit(CLI::App& app, console::Action& action) {
         ->required();
     command->add_option("--real", options->real, "recordings, or .png pictures of pings: files, or folders of them")
         ->required();
-    const auto picture = [&](const char* name, double& value, const char* meaning) {
-        command->add_option(name, value, std::string("of a picture: ") + meaning)->check(CLI::PositiveNumber);
+    const auto picture = [&](const char* name, double& value, double max, const char* meaning) {
+        command->add_option(name, value, std::string("of a picture: ") + meaning)->check(CLI::Range(1e-3, max));
     };
     command->add_option("--shape", options->shape, "of a picture: fan, or polar with a column for each beam")
         ->check(CLI::IsMember({"fan", "polar"}));
-    picture("--range", options->pictures.range, "slant range of its far edge; absent: the deployment's [m]");
-    picture("--range-min", options->pictures.range_min, "slant range of its near edge; absent: 0, a fan shows it [m]");
-    picture("--field-of-view-deg", options->pictures.field_of_view_deg, "angle between its sides; a fan shows it");
+    picture("--range", options->pictures.range, 1e5, "slant range of its far edge; absent: the deployment's [m]");
+    picture("--range-min", options->pictures.range_min, 1e5,
+            "slant range of its near edge; absent: 0, a fan shows it [m]");
+    picture("--field-of-view-deg", options->pictures.field_of_view_deg, 360, "angle between its sides; a fan shows it");
     command
         ->add_option(
             "--scene-is", options->scene_is,
