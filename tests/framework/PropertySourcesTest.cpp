@@ -104,7 +104,8 @@ TEST_F(PropertySourcesTest, NamesThePlaceInAnInvalidPropertyFile) {
             HasSubstr("bad.yml:5:1: loop: chains loop, which chains it"),
             HasSubstr("bad.yml:5:1: loop: chains nobody; "), HasSubstr("bad.yml:6:1: loop: is a list; must be a block"),
             HasSubstr("bad.yml:8:1: holds Ruby, which is not run"),
-            HasSubstr("no.yml: cannot be opened; must be a property file")));
+            HasSubstr("a.yml:5:39: tasks.t.property_files.files[1]: is no.yml, which cannot be opened; must be a "
+                      "property file")));
     write("twice.yml", "--- name:a\nlast: 1\n--- name:a\nlast: 2\n");
     EXPECT_THAT(diagnostics(head + "    property_files: {files: [twice.yml], sections: [a]}\n"),
                 ElementsAre("twice.yml:3:1: a: is a section that is given twice; once is allowed"));

@@ -37,8 +37,11 @@ TEST(RegistryTest, NamesALibraryThatIsMissingOrHasNoEntry) {
     const std::string yaml = std::string("libraries: [nowhere.so, ") + NO_PLUGIN + "]\ntasks: {a: {type: b::C}}\n";
     EXPECT_THAT(
         test::refused([&] { Deployment(DeploymentSpec::parse(yaml, "plugin.yml"), registry); }),
-        testing::ElementsAre(testing::HasSubstr("nowhere.so: cannot be loaded"),
-                             testing::HasSubstr("has no function insonify_register"), testing::HasSubstr("is b::C; ")));
+        testing::ElementsAre(testing::AllOf(testing::HasSubstr("plugin.yml:1:13: libraries[0]: is nowhere.so: "),
+                                            testing::HasSubstr("nowhere.so: cannot be loaded")),
+                             testing::AllOf(testing::HasSubstr("plugin.yml:1:25: libraries[1]: is "),
+                                            testing::HasSubstr("has no function insonify_register")),
+                             testing::HasSubstr("is b::C; ")));
 }
 
 }  // namespace

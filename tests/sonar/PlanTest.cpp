@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "components/acoustics/Backscatter.hpp"
 #include "components/sonar/renderer/PlanReport.hpp"
 
 namespace insonify::sonar {
@@ -148,16 +149,21 @@ TEST(PlanTest, AbsorptionWithinABinIsBounded) {
 }
 
 TEST(PlanTest, ReportsMaterialsWithoutValuesAndTooLoudMaterialsOnce) {
-    types::Material concrete, rope, mirror = sand();
+    types::Material concrete, rope, mirror = sand(), mapped = sand(), limit = sand();
     concrete.name = "Concrete";
     rope.name = "Rope";
     mirror.name = "Mirror";
     mirror.lambert_db = 0;
-    const types::Plan plan = makePlan(quietSonar(), makeScene({concrete, sand(), rope, mirror}));
-    EXPECT_THAT(plan.notices,
-                ElementsAre(HasSubstr("2 of 4 materials have no acoustic values and are medium sand, -16.7 "
-                                      "dB: 'Concrete', 'Rope'"),
-                            HasSubstr("'Mirror'")));
+    mapped.name = "Mapped";
+    mapped.lambert_db = -7;
+    mapped.max_map_strength = 2;
+    limit.lambert_db = acoustics::max_lambert_db;
+    const types::Plan plan = makePlan(quietSonar(), makeScene({concrete, sand(), rope, mirror, mapped, limit}));
+    EXPECT_THAT(
+        plan.notices,
+        ElementsAre(HasSubstr("2 of 6 materials have no acoustic values and are medium sand, -16.7 "
+                              "dB: 'Concrete', 'Rope'"),
+                    testing::EndsWith("with its map, returns more energy than it receives: 'Mirror', 'Mapped'")));
 }
 
 TEST(PlanTest, HasNoticesOfTheConfiguration) {

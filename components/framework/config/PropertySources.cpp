@@ -1,5 +1,7 @@
 #include "components/framework/config/PropertySources.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <sstream>
 
@@ -23,8 +25,8 @@ void PropertySections::report(const std::string& file, int line, const std::stri
     diagnostics_.push_back({path, message, file, line, line > 0 ? 1 : 0});
 }
 
-void PropertySections::read(const std::filesystem::path& file, const std::string& shown) try {
-    std::istringstream text(readFile(file, "a property file"));
+void PropertySections::read(const std::string& contents, const std::string& shown) try {
+    std::istringstream text(contents);
     PropertySection section{"default", shown, 0, true, {}, {}};
     std::string body, line;
     for (int number = 1; std::getline(text, line); ++number) {
@@ -231,12 +233,19 @@ void PropertySources::applyFiles(TaskSpec& task) {
     if (task.property_files.files.empty()) return;
     PropertySections sections;
     const auto folder = std::filesystem::path(spec_.file).parent_path();
-    for (const std::string& file : task.property_files.files) sections.read(folder / file, (folder / file).string());
-
+    const std::vector<std::string>& files = task.property_files.files;
     ConfigReader here(spec_.file);
-    const YAML::Node place = child(task.place, "property_files");
+    const YAML::Node place = child(task.place, "property_files"), list = child(place, "files");
+    for (size_t i = 0; i < files.size(); ++i) try {
+            sections.read(readFile(folder / files[i], "a property file"), (folder / files[i]).string());
+        } catch (const types::ConfigError& error) {
+            here.report(list.IsSequence() && i < list.size() ? list[i] : place,
+                        fmt::format("{}.property_files.files[{}]", task.path(), i),
+                        "is " + files[i] + ", which " + error.diagnostics().front().message);
+        }
+    const bool has_none = !here.diagnostics().empty() && sections.names().empty();
     for (const std::string& name : task.property_files.sections)
-        if (!sections.contains(name))
+        if (!has_none && !sections.contains(name))
             here.report(place, task.path() + ".property_files.sections",
                         "there is no section " + name + "; " + suggestion(name, sections.names()));
     types::Diagnostics diagnostics = here.diagnostics();

@@ -28,8 +28,8 @@ struct PropertySection {
  *  below it. Ruby (`<%= %>`) is not run. */
 class PropertySections {
 public:
-    /** Reads a file, named `shown` in diagnostics, which are collected. */
-    void read(const std::filesystem::path& file, const std::string& shown);
+    /** Reads the contents of a file, named `shown` in diagnostics, which are collected. */
+    void read(const std::string& contents, const std::string& shown);
     /** Returns the sections of `names` with their chained sections, the lowest first. */
     std::vector<const PropertySection*> inOrder(const std::vector<std::string>& names);
     const types::Diagnostics& diagnostics() const { return diagnostics_; }

@@ -80,8 +80,8 @@ public:
             const types::Material& material = geometry.materials[i];
             if (!material.has_acoustics) plain.push_back(material.name);
             const MaterialRecord& record = plan.laws.records[i];
-            if (record.law.x < 0 && record.values.x * material.max_map_strength > max_law)
-                loud.push_back(material.name);
+            const float of_map = material.max_map_strength > 0 ? material.max_map_strength : 1;
+            if (record.law.x < 0 && record.values.x * of_map > max_law) loud.push_back(material.name);
         }
         if (!plain.empty())
             notices.push_back(
