@@ -159,11 +159,10 @@ TEST(PlanTest, ReportsMaterialsWithoutValuesAndTooLoudMaterialsOnce) {
     mapped.max_map_strength = 2;
     limit.lambert_db = acoustics::max_lambert_db;
     const types::Plan plan = makePlan(quietSonar(), makeScene({concrete, sand(), rope, mirror, mapped, limit}));
-    EXPECT_THAT(
-        plan.notices,
-        ElementsAre(HasSubstr("2 of 6 materials have no acoustic values and are medium sand, -16.7 "
-                              "dB: 'Concrete', 'Rope'"),
-                    testing::EndsWith("with its map, returns more energy than it receives: 'Mirror', 'Mapped'")));
+    EXPECT_THAT(plan.notices,
+                ElementsAre(HasSubstr("2 of 6 materials have no acoustic values and are medium sand, -16.7 "
+                                      "dB: 'Concrete', 'Rope'"),
+                            HasSubstr("with its map, returns more energy than it receives: 'Mirror', 'Mapped'")));
 }
 
 TEST(PlanTest, HasNoticesOfTheConfiguration) {
