@@ -139,10 +139,12 @@ TEST(BackscatterCommandTest, RefusesUnknownNamesAndInvalidAngles) {
     for (const Case& c :
          {Case{{"--sediment", "medium_snad", "--frequency-khz", "50"}, "did you mean medium_sand?"},
           Case{{"--material", "stel", "--frequency-khz", "50"}, "did you mean steel?"},
-          Case{{"--material", "", "--frequency-khz", "50"}, "names 0 scatterers"},
+          Case{{"--material", "", "--frequency-khz", "50"}, "--material: is empty; must be TEXT: a material"},
           Case{{"--material", "Aluminum", "--frequency-khz", "50"}, "did you mean aluminium?"},
           Case{{"--frequency-khz", "50"}, "names 0 scatterers"},
           Case{{"--sediment", "clay", "--lambert-db", "-20", "--frequency-khz", "50"}, "names 2 scatterers"},
+          Case{{"--lambert-db", "20", "--frequency-khz", "50"}, "--lambert-db: is 20; must be from -200 to -4.97"},
+          Case{{"--sediment", "clay", "--frequency-khz", "50", "--sound-speed", "4921"}, "must be from 300 to 2500"},
           Case{{"--sediment", "clay"}, "--frequency-khz"},
           Case{{"--sediment", "clay", "--frequency-khz", "nan"}, "--frequency-khz: is nan"},
           Case{{"--sediment", "clay", "--frequency-khz", "0"}, "--frequency-khz: is 0"},
