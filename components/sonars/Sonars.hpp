@@ -40,17 +40,19 @@ struct SonarMode {
 struct SonarDevice {
     std::string kind;     ///< "lens": beams by an acoustic lens; "array": by its elements; "head": one beam that turns.
     double pulse_us = 0;  ///< Of a tone at the starter's range; 0: its resolution.
-    double sidelobe_db = 0;                                ///< Highest of a beam, two-way about its own axis.
-    double gain_error_db = 0, phase_error_deg = 0;         ///< Deviations of elements.
-    double beam_gain_error_db = 0, step_error_deg = 0;     ///< Deviations of beams, of the head's steps.
-    double scatterers = 0;                                 ///< In a resolution cell, of fields; 0: energies.
-    double looks = 0;                                      ///< Averaged in a bin.
-    double correlation_beams = 0, correlation_bins = 0;    ///< Lags of 1/e of its noise.
-    double source_level_db = 0, directivity_index_db = 0;  ///< Of its noise.
-    double tvg = 0;                                        ///< Gain per decade of range [dB].
-    int code_bits = 0;                                     ///< 0: its samples are not codes.
-    double gamma = 0, dynamic_range_db = 0;                ///< Codes of amplitude to that power, or of level.
-    double full_scale_db = 0;                              ///< Level of the max code.
+    double sidelobe_db = 0;                              ///< Highest of a beam, two-way about its own axis.
+    double gain_error_db = 0, phase_error_deg = 0;       ///< Deviations of elements.
+    double beam_gain_error_db = 0, step_error_deg = 0;   ///< Deviations of beams, of the head's steps.
+    double scatterers = 0;                               ///< In a resolution cell, of fields; 0: energies.
+    double looks = 0;                                    ///< Averaged in a bin.
+    double correlation_beams = 0, correlation_bins = 0;  ///< Lags of 1/e of its noise.
+    double noise_db = 0;                                 ///< Median of its noise, relative to white.
+    double directivity_index_db = 0;                     ///< Of its noise.
+    double tvg = 0;                                      ///< Gain per decade of range [dB].
+    int code_bits = 0;                                   ///< 0: its samples are not codes.
+    double gamma = 0, dynamic_range_db = 0;              ///< Codes of amplitude to that power, or of level.
+    double headroom_db = 0;                              ///< Of white above a white body.
+    bool smooth = false;                                 ///< Its display interpolates between bins.
 
     static void describe(auto& self, auto& visit) {
         visit({"kind", "", "lens, array or head"}, self.kind);
@@ -64,13 +66,16 @@ struct SonarDevice {
         visit({"looks", "1", "intensities that are averaged in a bin", 0, 256}, self.looks);
         visit({"correlation_beams", "1", "beams over which its noise is correlated", 0, 16}, self.correlation_beams);
         visit({"correlation_bins", "1", "bins over which its noise is correlated", 0, 16}, self.correlation_bins);
-        visit({"source_level_db", "dB re 1 uPa m", "of its pulse", 0, 300}, self.source_level_db);
+        visit({"noise_db", "dB", "median of its noise at a third of the range of `insonify init`, relative to white",
+               -200, 0},
+              self.noise_db);
         visit({"directivity_index_db", "dB", "of its receiver", 0, 100}, self.directivity_index_db);
         visit({"tvg", "dB", "gain per decade of range", 0, 100}, self.tvg);
         visit({"code_bits", "1", "bits of a code; 0: its samples are no codes", 0, 16}, self.code_bits);
         visit({"gamma", "1", "codes are amplitudes to this power", 0, 5}, self.gamma);
         visit({"dynamic_range_db", "dB", "codes are levels over this range", 0, 300}, self.dynamic_range_db);
-        visit({"full_scale_db", "dB", "level of the max code", -1000, 1000}, self.full_scale_db);
+        visit({"headroom_db", "dB", "of white above a white body there", -100, 100}, self.headroom_db);
+        visit({"smooth", "", "its display interpolates between bins"}, self.smooth);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -95,7 +100,6 @@ struct SonarStarter {
     double period = 0;              ///< Between pings [s].
     int columns_per_beam = 0;
     double pitch_deg = 0;      ///< Of the mount of a fan, down.
-    double reference_db = 0;   ///< Level of white in the pictures of a fan without codes.
     int picture_height = 0;    ///< Of the pictures of its sweep [px].
     bool sends_tones = false;  ///< Else chirps.
 
@@ -107,7 +111,6 @@ struct SonarStarter {
         visit({"period", "s", "time between pings", 1e-3, 100}, self.period);
         visit({"columns_per_beam", "1", "samples across a beam", 1, 4096}, self.columns_per_beam);
         visit({"pitch_deg", "deg", "of the mount, down", -90, 90}, self.pitch_deg);
-        visit({"reference_db", "dB", "level of white in pictures", -1000, 1000}, self.reference_db);
         visit({"picture_height", "1", "height of the pictures of its data sets", 16, 8192}, self.picture_height);
         visit({"sends_tones", "", "else chirps"}, self.sends_tones);
     }

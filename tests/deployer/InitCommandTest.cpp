@@ -1,6 +1,11 @@
 #include <gmock/gmock.h>
+#include <yaml-cpp/yaml.h>
 
+#include <cmath>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
+#include <regex>
+#include <set>
 
 #include "components/command/init/Starter.hpp"
 #include "tests/deployer/Command.hpp"
@@ -65,6 +70,30 @@ std::string pictureOf(const std::string& sweep) {
     return sweep.substr(from, sweep.find('\n', from) + 1 - from);
 }
 
+/** Returns the level below white that a code of a device states [dB], by the law of its codes. */
+double belowWhite(const YAML::Node& receiver, double code) {
+    const YAML::Node law = receiver["code"];
+    const double share = code / (std::pow(2.0, law["bits"].as<int>()) - 1);
+    if (law["law"].Scalar() == "log") return (share - 1) * law["dynamic_range_db"].as<double>();
+    return 20 / law["gamma"].as<double>() * std::log10(share);
+}
+
+/** Returns the median code in bins about a third of the range, of the deployment `.` in empty water. */
+double medianCodeOfNoise(const TestFolder& folder, const SonarFigures& figures) {
+    EXPECT_THAT(
+        callInsonify(folder, {"run", ".", "--pings", figures.isFan() ? "1" : "40", "--out", "empty", "--set",
+                              "vehicle.file=null", "--set", "vehicle.waypoints=[{time: 0, position: [-5000, 0, -6]}]"}),
+        succeeds());
+    EXPECT_THAT(callInsonify(folder, {"log", "export", "empty/" + figures.name + ".0.log", "--stream", "receiver.ping",
+                                      "--to", "empty.npz"}),
+                succeeds());
+    const Outcome read = python(folder,
+                                "import numpy; b = numpy.load('empty.npz')['bins']; n = b.shape[-1]; "
+                                "print(numpy.median(b[..., n // 3 - n // 50:n // 3 + n // 50]))");
+    EXPECT_EQ(read.code, 0) << read.err;
+    return std::stod(read.out);
+}
+
 /** Settings that hide almost everything in a ping: only its last hundredth, or only returns above the source's
  *  level. */
 std::string almostNothing(const SonarFigures& figures) {
@@ -87,6 +116,25 @@ int brightPixels(const TestFolder& folder, const std::string& sonar, const std::
     ADD_FAILURE() << "there is no picture";
     return 0;
 }
+
+/** Counts pixels of objects in data sets of masks: all, those that are white, and those of at least a third of white.
+ */
+struct Shares {
+    int pixels = 0, white = 0, bright = 0;
+
+    void add(const fs::path& set) {
+        for (const auto& entry : fs::directory_iterator(set)) {
+            const std::string name = entry.path().string(), ending = "_instances.png";
+            if (!name.ends_with(ending)) continue;
+            const cv::Mat mask = cv::imread(name, cv::IMREAD_GRAYSCALE);
+            const cv::Mat levels =
+                cv::imread(name.substr(0, name.size() - ending.size()) + ".png", cv::IMREAD_GRAYSCALE);
+            pixels += cv::countNonZero(mask);
+            white += cv::countNonZero(mask & (levels >= 250));
+            bright += cv::countNonZero(mask & (levels >= 85));
+        }
+    }
+};
 
 class InitPresetTest : public testing::TestWithParam<std::string> {};
 
@@ -179,6 +227,70 @@ TEST_P(InitPresetTest, EachPictureOfAFanShowsAnObjectOnTheFloor) {
     const std::vector<json> records = getRecords(folder / "set");
     EXPECT_GE(records.size(), 12u);
     for (const json& record : records) EXPECT_FALSE(record["annotations"].empty()) << record["index"];
+    Shares shares;
+    shares.add(folder / "set");
+    EXPECT_LE(shares.white, 0.01 * shares.pixels) << "an object is not white over large parts";
+    EXPECT_GT(shares.bright, 0.05 * shares.pixels);
+}
+
+/** Where nothing is: in real recordings noise has a code, too. */
+TEST_P(InitPresetTest, NoiseHasTheCodeOfItsDeviceAtAThirdOfTheRange) {
+    const SonarFigures& figures = starterSonar(GetParam());
+    if (figures.device->code_bits == 0) GTEST_SKIP() << "its samples are no codes";
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
+    const YAML::Node receiver = YAML::LoadFile(folder / (GetParam() + ".yml"))["tasks"]["receiver"]["properties"];
+    EXPECT_NEAR(belowWhite(receiver, medianCodeOfNoise(folder, figures)), figures.device->noise_db, 1);
+}
+
+TEST_P(InitPresetTest, TheSweepOfAFanDrawsWhatAnOperatorSets) {
+    if (!starterSonar(GetParam()).isFan()) GTEST_SKIP() << "only fans have a sweep";
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
+    ASSERT_THAT(callInsonify(folder, {"dataset", ".", "--sweep", "sweep.yml", "--out", "set", "--format", "mask",
+                                      "--count", "4", "--set", "sonar.quality.rows=64"}),
+                succeeds());
+    const YAML::Node tasks = YAML::LoadFile(folder / (GetParam() + ".yml"))["tasks"];
+    const YAML::Node noise = tasks["noise"]["properties"], receiver = tasks["receiver"]["properties"];
+    std::map<std::string, std::set<double>> drawn;
+    for (const json& record : getRecords(folder / "set"))
+        for (const auto& [property, value] : record["settings"].items()) drawn[property].insert(value.get<double>());
+    const auto expectAbout = [&](const char* property, double value, double below, double above) {
+        ASSERT_EQ(drawn[property].size(), 4u) << property << " is the same in two samples";
+        EXPECT_GE(*drawn[property].begin(), value - below) << property;
+        EXPECT_LE(*drawn[property].rbegin(), value + above) << property;
+    };
+    expectAbout("receiver.gain_db", 0, 9, 9);
+    expectAbout("receiver.tvg.log_coefficient", receiver["tvg"]["log_coefficient"].as<double>(), 5, 5);
+    expectAbout("noise.ambient.source_level_db", noise["ambient"]["source_level_db"].as<double>(), 8, 8);
+    if (const YAML::Node code = receiver["code"]; code && code["gamma"]) {
+        expectAbout("receiver.code.gamma", code["gamma"].as<double>(), 0.1, 0.1);
+    }
+}
+
+/** Bodies of metal that hang in front of the sonar as the deployment is, without what the sweep draws. */
+TEST(InitCommandTest, BodiesInMidWaterAreNotWhite) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", "device"}).code, 0);
+    ASSERT_THAT(Process({"/usr/bin/python3", insonify::test::sourceFile("scripts/scenes/make_hanging_objects.py"),
+                         "hang", "--seed", "7", "--scenes", "2", "--objects", "2", "--samples", "5", "--device",
+                         "device/oculus_m750d.yml"},
+                        folder.path())
+                    .wait(),
+                succeeds());
+    Shares shares;
+    for (const std::string name : {"near_0", "far_0", "near_1", "far_1"}) {
+        writeFile(folder / ("hang/" + name + ".yml"),
+                  std::regex_replace(readFile(folder / ("hang/" + name + ".yml")),
+                                     std::regex("\n  (receiver|noise)\\.[^\n]*"), ""));
+        ASSERT_THAT(callInsonify(folder, {"dataset", "device", "--sweep", "hang/" + name + ".yml", "--out", name,
+                                          "--format", "mask", "--set", "sonar.quality.rows=256"}),
+                    succeeds());
+        shares.add(folder / name);
+    }
+    EXPECT_GT(shares.pixels, 5000);
+    EXPECT_LE(shares.white, 0.01 * shares.pixels);
+    EXPECT_GT(shares.bright, 0.05 * shares.pixels) << "they are not dark either";
 }
 
 TEST(InitCommandTest, AFanRunsInShards) {

@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "components/command/init/Starter.hpp"
 #include "components/device/oculus/OculusEmulator.hpp"
 #include "components/device/ping/Ping1dEmulator.hpp"
@@ -142,6 +145,30 @@ TEST(SonarsTest, TheDeploymentsOfInitAreTheDevices) {
             EXPECT_EQ(noise["filter"]["correlation_beams"].as<double>(), device.correlation_beams);
         }
     }
+}
+
+/** The rule of components/sonars/README.md, by the numbers of the deployment: a white body at a third of the range is
+ *  white in one of a hundred bins of its speckle. */
+TEST(SonarsTest, WhiteIsThatOfAWhiteBody) {
+    for (const SonarFigures* figures : command::starterSonars()) {
+        SCOPED_TRACE(figures->name);
+        const YAML::Node tasks = starter(*figures)["tasks"], sonar = tasks["sonar"]["properties"];
+        if (figures->isGrid()) continue;
+        const double longest = sonar["range"].as<double>(), range = longest / 3;
+        const YAML::Node pulse = sonar["pulse"]["duration_us"];
+        const double depth =
+            std::max(longest / sonar["bin_count"].as<double>(), pulse ? pulse.as<double>() * 1497e-6 / 2 : 0);
+        const double square_metres = range * sonar["beam_width_deg"].as<double>() * std::numbers::pi / 180 * depth;
+        const YAML::Node receiver = tasks["receiver"]["properties"];
+        const double gain = receiver["tvg"]["log_coefficient"].as<double>() * std::log10(range);
+        const double body = 10 * std::log10(square_metres / std::numbers::pi) - 40 * std::log10(range) + gain;
+        const YAML::Node white =
+            receiver["code"] ? receiver["code"]["full_scale_db"] : tasks["fan"]["properties"]["reference_db"];
+        EXPECT_NEAR(white.as<double>(), body + 10 * std::log10(std::log(100)) + figures->device->headroom_db, 0.51);
+    }
+    EXPECT_EQ(starter(sonar("oculus_m750d"))["tasks"]["receiver"]["properties"]["code"]["full_scale_db"].as<double>(),
+              -40)
+        << "10.1 m, 1 degree and 40 mm are 71 cm^2: -26.5 dB, less 20.1 dB with 20 log r, and 6.6 dB of speckle";
 }
 
 TEST(SonarsTest, TheEmulatorsAndTheirDeploymentsHaveTheFigures) {

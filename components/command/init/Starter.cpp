@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <initializer_list>
+#include <numbers>
 #include <sstream>
 #include <utility>
 
 #include "components/acoustics/Absorption.hpp"
+#include "components/acoustics/AmbientNoise.hpp"
 #include "components/acoustics/SoundSpeed.hpp"
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/config/Embed.hpp"
@@ -129,19 +133,59 @@ std::string noiseLines(const SonarDevice& device) {
                      "noise of neighbours is correlated");
 }
 
+/** Returns the bandwidth of the noise behind the matched filter, 1 / duration of the pulse [kHz]. */
+double noiseBandwidth(const SonarFigures& sonar) {
+    constexpr double of_chirps = 30;  // no data sheet has their duration
+    return sonar.starter->sends_tones ? 1e-3 / toneSeconds(sonar) : of_chirps;
+}
+
+/** Returns the range for which gain and noise are set: a third of that of the bins [m]. */
+double referenceRange(const SonarFigures& sonar) { return starterRange(sonar) / 3; }
+
+double absorptionDb(const SonarFigures& sonar) {
+    return acoustics::francoisGarrison(sonar.modes.front().frequency_khz, water);
+}
+
+/** Returns the level of white [dB], in whole numbers. A white body faces the sonar and scatters all sound by Lambert's
+ *  law, 1 / pi for each square metre of the cell of beam and bin (or pulse, if longer) at that range. By the
+ * exponential law of speckle of one look, exp(-x) = 0.01, it exceeds white in one of a hundred bins. */
+double whiteDb(const SonarFigures& sonar) {
+    const double range = referenceRange(sonar), bin = 1e-6 * sonar.starter->bin_us;
+    const double depth = std::max(bin, toneSeconds(sonar) / 2) * speedOfSound();
+    const double cell = range * sonar.modes.front().beam_width_deg * std::numbers::pi / 180 * depth;
+    return std::round(10 * std::log10(cell / std::numbers::pi * std::log(100)) +
+                      (sonar.device->tvg - 40) * std::log10(range) + sonar.device->headroom_db);
+}
+
+/** Returns the source level with which the noise has the device's median below white at that range [dB], in whole
+ *  numbers. */
+double sourceLevelDb(const SonarFigures& sonar) {
+    const SonarDevice& device = *sonar.device;
+    const double range = referenceRange(sonar), median = 10 * std::log10(std::log(2));
+    const double noise = acoustics::coatesSpectrumDb(sonar.modes.front().frequency_khz, 5, 0.5) +
+                         10 * std::log10(1e3 * noiseBandwidth(sonar)) - device.directivity_index_db + median;
+    const double gain = device.tvg * std::log10(range) + 2 * absorptionDb(sonar) * range;
+    return std::round(noise + gain - whiteDb(sonar) - device.noise_db);
+}
+
 /** Returns the codes of the device; nothing where its samples are none. */
-std::string codeLines(const SonarDevice& device) {
+std::string codeLines(const SonarFigures& sonar) {
+    const SonarDevice& device = *sonar.device;
     if (device.code_bits == 0) return "";
     const std::string law = device.gamma > 0 ? fmt::format("law: sqrt, gamma: {:g}", device.gamma)
                                              : fmt::format("law: log, dynamic_range_db: {:g}", device.dynamic_range_db);
-    return "      output: code\n" + writeLine("code", fmt::format("{{bits: {}, {}, full_scale_db: {:g}}}",
-                                                                  device.code_bits, law, device.full_scale_db));
+    return "      output: code\n" +
+           writeLine("code",
+                     fmt::format("{{bits: {}, {}, full_scale_db: {:g}}}", device.code_bits, law, whiteDb(sonar)),
+                     fmt::format("what an operator's gain sets: white is {}a white body at {:.2g} m",
+                                 device.headroom_db == 0 ? "" : fmt::format("{:g} dB above ", device.headroom_db),
+                                 referenceRange(sonar)));
 }
 
 /** Returns how pictures show the samples. */
 std::string pictureKeys(const SonarFigures& sonar) {
     if (sonar.device->code_bits > 0) return fmt::format("scale: code, code_bits: {}", sonar.device->code_bits);
-    return fmt::format("dynamic_range_db: 45, reference_db: {:g}", sonar.starter->reference_db);
+    return fmt::format("dynamic_range_db: 45, reference_db: {:g}", whiteDb(sonar));
 }
 
 /** Returns a comment for each document, with what it gives. */
@@ -152,17 +196,16 @@ std::string sourceLines(const SonarFigures& sonar) {
     return lines;
 }
 
-/** Returns the bandwidth of the noise behind the matched filter, 1 / duration of the pulse [kHz]. */
-double noiseBandwidth(const SonarFigures& sonar) {
-    constexpr double of_chirps = 30;  // no data sheet has their duration
-    return sonar.starter->sends_tones ? 1e-3 / toneSeconds(sonar) : of_chirps;
-}
-
-/** Returns the sweep, whose pictures show the samples as the device gives them. */
+/** Returns the sweep, which shows samples as the device does, and draws what its operator sets. */
 std::string starterSweep(const SonarFigures& sonar) {
-    const std::string keys = sonar.device->code_bits > 0 ? pictureKeys(sonar) : "dynamic_range_db: 45";
+    const SonarDevice& device = *sonar.device;
+    const double source_level = sourceLevelDb(sonar);
     return fmt::format(fmt::runtime(embedded(insonify_starter_sweep_begin, insonify_starter_sweep_end)),
-                       fmt::arg("height", sonar.starter->picture_height), fmt::arg("picture", keys));
+                       fmt::arg("height", sonar.starter->picture_height), fmt::arg("picture", pictureKeys(sonar)),
+                       fmt::arg("smooth", device.smooth ? ", smooth: true" : ""), fmt::arg("tvg_low", device.tvg - 5),
+                       fmt::arg("tvg_high", device.tvg + 5), fmt::arg("quiet", source_level + 8),
+                       fmt::arg("loud", source_level - 8),
+                       fmt::arg("gamma", device.gamma > 0 ? "  receiver.code.gamma: {uniform: [0.4, 0.6]}\n" : ""));
 }
 
 }  // namespace
@@ -190,7 +233,7 @@ double starterRange(const SonarFigures& sonar) {
 std::string starterDeployment(const SonarFigures& sonar) {
     const SonarMode& mode = sonar.modes.front();
     const SonarStarter& starter = *sonar.starter;
-    const double db_per_m = acoustics::francoisGarrison(mode.frequency_khz, water);
+    const double db_per_m = absorptionDb(sonar);
     const SonarDevice& device = *sonar.device;
     using fmt::arg;
     return aligned(fmt::format(
@@ -200,8 +243,8 @@ std::string starterDeployment(const SonarFigures& sonar) {
         arg("range_min", mode.range_min), arg("range_max", mode.range_max), arg("bins", starter.bin_count),
         arg("bin_us", starter.bin_us), arg("width", mode.beam_width_deg), arg("height", mode.beam_height_deg),
         arg("sidelobe", device.sidelobe_db), arg("speckle", speckleLine(device)), arg("errors", errorBlock(device)),
-        arg("noise", noiseLines(device)), arg("code", codeLines(device)), arg("picture", pictureKeys(sonar)),
-        arg("tvg", device.tvg), arg("source_level", device.source_level_db),
+        arg("noise", noiseLines(device)), arg("code", codeLines(sonar)), arg("picture", pictureKeys(sonar)),
+        arg("tvg", device.tvg), arg("source_level", sourceLevelDb(sonar)),
         arg("directivity", device.directivity_index_db), arg("period", starter.period),
         arg("columns", starter.columns_per_beam), arg("beams", mode.beam_count), arg("fov", mode.field_of_view_deg),
         arg("spacing", mode.field_of_view_deg / mode.beam_count), arg("pitch", starter.pitch_deg),
