@@ -171,17 +171,31 @@ def inputs_hash(files, values):
     return total.hexdigest()[:12]
 
 
+def without_settings(sweep, content, properties, file):
+    """Writes the sweep without settings of these properties and what is in them, which would replace those of --set; returns its file."""
+    kept = {name: law for name, law in (content.get("settings") or {}).items()
+            if not any(name == each or name.startswith(f"{each}.") for each in properties)}
+    if kept == (content.get("settings") or {}):
+        return sweep
+    scenes = [each | {"file": str((sweep.parent / each["file"]).resolve())} if isinstance(each, dict) else str((sweep.parent / each).resolve())
+              for each in content.get("scenes", [])]
+    file.write_text(json.dumps(content | {"settings": kept} | ({"scenes": scenes} if scenes else {})))
+    return file
+
+
 def made(insonify, plan, sweep, effect, cache):
     """Returns the folder of a sweep's set, without the effect if one is named. An existing set is reused."""
     values = plan["effects"][effect] if effect else {}
-    scenes = [sweep.parent / each["file"] if isinstance(each, dict) else sweep.parent / each
-              for each in (yaml.safe_load(sweep.read_text()) or {}).get("scenes", [])]
+    content = yaml.safe_load(sweep.read_text()) or {}
+    scenes = [sweep.parent / each["file"] if isinstance(each, dict) else sweep.parent / each for each in content.get("scenes", [])]
     missing = [file for file in [plan["deployment"], *scenes] if not file.exists()]
     if missing:
         raise Wrong(f"{missing[0]}: there is no such file, which {sweep} needs")
     folder = cache / f"{effect or 'whole'}_{sweep.stem}_{inputs_hash([plan['deployment'], sweep, *scenes], values)}"
     if (folder / "manifest.json").exists():
         return folder
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    sweep = without_settings(sweep, content, values, folder.with_suffix(".yml"))
     command = [insonify, "dataset", plan["deployment"], "--sweep", sweep, "--out", folder, "--format", "coco"]
     for name, value in values.items():
         command += ["--set", f"{name}={json.dumps(value)}"]

@@ -2,8 +2,8 @@
 """Makes scenes of objects that hang in open water, and sweeps to train on them: scripts/scenes/make_hanging_objects.py FOLDER
 Five classes of random shape and material: big and small propellers, cylinders, fishing nets, soft pipelines. Each hangs on a line.
 FOLDER gets scenes of several objects of each class, deployment.yml, sweeps of each scene and set.yml, which scripts/research/sim_to_real
-reads. With --device the deployment is one of `insonify init`, as it is: sweeps set its range and level the sonar, and a picture has up to
-five objects. Needs numpy, and PyYAML for --device."""
+reads. With --device the deployment is one of `insonify init`, as it is: sweeps set its range and level the sonar, draw what the sweep.yml next to
+it draws, and have its pictures, with up to five objects. Needs numpy, and PyYAML for --device."""
 import argparse
 import json
 import os
@@ -209,11 +209,11 @@ poses: {random: {count: %(count)d, z: -8}}  # 8 m deep
 settings:
   sonar.range: [%(range)g]
   scene.mount: [{position: [0, 0, 0], pitch_deg: 0}]
-objects:
+%(settings)sobjects:
   - {names: [%(names)s], count: [1, %(most)d], x: [%(nearest)g, %(farthest)g], y: [-%(side)g, %(side)g], z: [-8.1, -7.9], frame: vehicle, gap: 0,
      roll_deg: [-15, 15], pitch_deg: [-50, 50]}
 classes: {%(classes)s}
-picture: {shape: fan, height: %(height)d, scale: code, code_bits: %(bits)d, smooth: true}
+picture: {shape: fan, height: %(height)d, scale: code, code_bits: %(bits)d, smooth: %(smooth)s}
 annotations: {min_level: 8, min_pixels: 5}
 """
 
@@ -266,30 +266,43 @@ def sweep(rng, options, i, band):
                     "classes": ", ".join(f"{name}: {name}_*" for name in CLASSES)}
 
 
-def device_set(deployment, folder):
-    """Returns set.yml of a deployment that `insonify init` has written, the bits of its codes and its bins of a beam."""
+def value_in(tasks, name):
+    """Returns a property of tasks by its dotted name; 0 where it is absent, as a gain."""
+    value = tasks
+    for key in name.split("."):
+        value = value.get(key, 0)
+    return value
+
+
+def read_device(deployment, folder):
+    """Returns set.yml of a deployment that `insonify init` has written, and of it and the sweep next to it what sweeps need."""
     import yaml
     try:
         tasks = {name: task.get("properties") or {} for name, task in yaml.safe_load(deployment.read_text())["tasks"].items()}
-        bits, bins = tasks["receiver"]["code"]["bits"], tasks["sonar"]["bin_count"]
+        drawn = yaml.safe_load((deployment.parent / "sweep.yml").read_text())
+        device = {"bits": tasks["receiver"]["code"]["bits"], "bins": tasks["sonar"]["bin_count"],
+                  "smooth": json.dumps(drawn["picture"].get("smooth", False)),
+                  "settings": "".join(f"  {name}: {json.dumps(law)}\n" for name, law in drawn["settings"].items())}
     except (OSError, yaml.YAMLError, KeyError, TypeError, AttributeError) as error:
-        raise SystemExit(f"make_hanging_objects: --device {deployment}: is no deployment of a fan with codes by `insonify init` ({error!r})") from None
+        raise SystemExit(f"make_hanging_objects: --device {deployment}: is no deployment of a fan with codes by `insonify init`, next to its sweep.yml "
+                         f"({error!r})") from None
     has = lambda name: name.split(".")[1] in tasks.get(name.split(".")[0], {})  # noqa: E731
     effects = {name: {each: None for each in properties if has(each)} for name, properties in EFFECTS.items() if has(properties[0])}
     if "gamma" in tasks["receiver"]["code"]:
         effects["gamma"] = {"receiver.code.gamma": 1}
+    effects["operator"] = {name: value_in(tasks, name) for name in drawn["settings"]}
     lines = "\n".join(f"  {name}: {json.dumps(values)}" for name, values in effects.items())
-    return DEVICE_SET % {"deployment": os.path.relpath(deployment, folder), "effects": lines}, bits, bins
+    return DEVICE_SET % {"deployment": os.path.relpath(deployment, folder), "effects": lines}, device
 
 
-def device_sweep(rng, options, i, band, bits, bins):
-    bin_metre = 1500e-6  # or a little less: a bin is of whole microseconds
+def device_sweep(rng, options, i, band, device):
+    bins, bin_metre = device["bins"], 1500e-6  # or a little less: a bin is of whole microseconds
     farthest = 0.99 * bins * bin_metre * max(1, round(rng.uniform(*RANGES[band]) / bins / bin_metre))
     most, count = {"near": (2, options.samples), "far": (5, max(1, options.samples * 2 // 5))}[band]  # objects in a picture; pictures
-    return DEVICE_SWEEP % {"nearest": max(1.2, 0.3 * farthest), "farthest": 0.8 * farthest, "side": 0.6 * farthest, "range": farthest, "bits": bits,
+    return DEVICE_SWEEP % ({"nearest": max(1.2, 0.3 * farthest), "farthest": 0.8 * farthest, "side": 0.6 * farthest, "range": farthest,
                            "most": most, "height": int(rng.integers(700, 1200)), "seed": int(rng.integers(1 << 30)), "count": count,
                            "scene": f"objects_{i}.glb", "names": ", ".join(f"{name}_*" for name in CLASSES),
-                           "classes": ", ".join(f"{name}: {name}_*" for name in CLASSES)}
+                           "classes": ", ".join(f"{name}: {name}_*" for name in CLASSES)} | device)
 
 
 def main():
@@ -304,12 +317,12 @@ def main():
     if min(options.scenes, options.objects, options.samples) < 1:
         parser.error("--scenes, --objects and --samples are at least 1")
     options.folder.mkdir(parents=True, exist_ok=True)
-    written, *device = device_set(options.device, options.folder) if options.device else (SET,)
+    written, device = read_device(options.device, options.folder) if options.device else (SET, None)
     rng = np.random.default_rng(options.seed)
     for i in range(options.scenes):
         scene(rng, options.folder / f"objects_{i}.glb", options.objects)
         for band in RANGES:
-            made = device_sweep(rng, options, i, band, *device) if options.device else sweep(rng, options, i, band)
+            made = device_sweep(rng, options, i, band, device) if options.device else sweep(rng, options, i, band)
             (options.folder / f"{band}_{i}.yml").write_text(made)
     if not options.device:
         (options.folder / "deployment.yml").write_text(DEPLOYMENT)

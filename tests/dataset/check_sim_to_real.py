@@ -45,10 +45,16 @@ tasks:
   receiver: {type: receiver::ReceiverTask, properties: {output: code, code: {bits: 16, law: sqrt, gamma: 0.5}}}
 """
 
+DRAWN = """
+settings: {receiver.gain_db: {uniform: [-6, 6]}, receiver.code.gamma: {uniform: [0.4, 0.6]}}
+picture: {shape: fan}
+"""
+
 
 class DeviceSet(unittest.TestCase):
-    def made(self, folder, text):
+    def made(self, folder, text, sweep=DRAWN):
         (folder / "device.yml").write_text(text)
+        (folder / "sweep.yml").write_text(sweep)
         return subprocess.run([sys.executable, ROOT / "scripts/scenes/make_hanging_objects.py", folder / "set", "--scenes", "1", "--objects", "1",
                                "--device", folder / "device.yml"], capture_output=True, text=True)
 
@@ -59,12 +65,14 @@ class DeviceSet(unittest.TestCase):
             plan = sets.read_set(folder / "set")
             self.assertEqual(plan["deployment"].resolve(), (folder / "device.yml").resolve())
             self.assertEqual(plan["effects"], {"beam_pattern": {"sonar.beam_pattern": None}, "pulse": {"sonar.pulse": None},
-                                               "speckle": {"noise.speckle": None}, "gamma": {"receiver.code.gamma": 1}})
+                                               "speckle": {"noise.speckle": None}, "gamma": {"receiver.code.gamma": 1},
+                                               "operator": {"receiver.gain_db": 0, "receiver.code.gamma": 0.5}})
             self.assertEqual([each.name for each in plan["sweeps"]], ["near_0.yml", "far_0.yml"])
             for file in plan["sweeps"]:
                 sweep = yaml.safe_load(file.read_text())
-                self.assertEqual(set(sweep["settings"]), {"sonar.range", "scene.mount"})
-                self.assertEqual((sweep["picture"]["scale"], sweep["picture"]["code_bits"]), ("code", 16))
+                self.assertEqual(set(sweep["settings"]), {"sonar.range", "scene.mount", "receiver.gain_db", "receiver.code.gamma"})
+                self.assertEqual(sweep["settings"]["receiver.gain_db"], {"uniform": [-6, 6]})
+                self.assertEqual((sweep["picture"]["scale"], sweep["picture"]["code_bits"], sweep["picture"]["smooth"]), ("code", 16, False))
                 bins = sweep["settings"]["sonar.range"][0] / 750 / 1497e-6  # of a microsecond; rounded up to a whole one
                 self.assertLess(np.ceil(bins) - bins, 0.1)
 
@@ -74,6 +82,21 @@ class DeviceSet(unittest.TestCase):
                 done = self.made(Path(name), text)
                 self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
                 self.assertIn("device.yml: is no deployment", done.stderr)
+            done = self.made(Path(name), DEVICE, "picture: {}")
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+            self.assertIn("next to its sweep.yml (KeyError('settings'))", done.stderr)
+
+    def test_what_an_effect_sets_is_not_drawn(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            self.assertEqual(self.made(folder, DEVICE).returncode, 0)
+            sweep = sets.read_set(folder / "set")["sweeps"][0]
+            content = yaml.safe_load(sweep.read_text())
+            self.assertEqual(sets.without_settings(sweep, content, ["noise.speckle", "receiver.gain"], folder / "less.yml"), sweep)
+            less = yaml.safe_load(sets.without_settings(sweep, content, ["receiver.code"], folder / "less.yml").read_text())
+            self.assertEqual(set(content["settings"]) - set(less["settings"]), {"receiver.code.gamma"})
+            self.assertEqual(less["scenes"], [str((sweep.parent / content["scenes"][0]).resolve())])
+            self.assertEqual(less["objects"], content["objects"])
 
 
 class Contrast(unittest.TestCase):
