@@ -87,7 +87,7 @@ def main():
                 sheet.paste(Image.fromarray(record(folder, sonar, size, far)), (left, top + LABEL + row * TILE))
     for x in range(TILE, sheet.width, TILE):
         draw.line((x, 0, x, sheet.height), fill=255)
-    sheet.quantize(14).save(options.out, optimize=True)  # speckle packs badly
+    sheet.point(lambda level: round(level / 17) * 17).quantize(16).save(options.out, optimize=True)  # speckle packs badly
 
 
 if __name__ == "__main__":
