@@ -5,8 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <regex>
@@ -290,6 +290,13 @@ std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
     return "";
 }
 
+/** Returns the number at the begin of a text, infinity for one beyond all numbers; 0: there is none. */
+double readNumber(const std::string& text) {
+    double number = 0;
+    const auto read = std::from_chars(text.data() + text.starts_with('+'), text.data() + text.size(), number);
+    return read.ec == std::errc::result_out_of_range ? INFINITY : number;
+}
+
 /** Returns what is wrong with an option's value, in place of the parser's "Could not convert", "At Most 1 required" and
  *  "not in range"; empty: the parser's text is clear. */
 std::string wrongValue(const std::string& text) {
@@ -298,7 +305,7 @@ std::string wrongValue(const std::string& text) {
         return text.substr(0, at) + ": is given more than once; once is allowed";
     static const std::regex outside("(.*): Value (.*) not in range (\\S+) to (\\S+)");
     if (std::smatch found; std::regex_match(text, found, outside)) {
-        const double min = std::atof(found.str(3).c_str()), max = std::atof(found.str(4).c_str());
+        const double min = readNumber(found[3]), max = readNumber(found[4]);
         const std::string bounds = max < 1e100 ? fmt::format("from {:g} to {:g}", min, max) : "above 0";
         return found.str(1) + ": is " + found.str(2) + "; must be a number " + bounds;
     }
@@ -327,7 +334,7 @@ void checkValues(CLI::App& app) {
         option->transform(CLI::Validator(
             [wanted, is_number = type.starts_with("FLOAT")](std::string& text) -> std::string {
                 if (text.empty()) return "is empty; must be " + wanted;
-                const bool is_finite = !is_number || std::isfinite(std::strtod(text.c_str(), nullptr));
+                const bool is_finite = !is_number || std::isfinite(readNumber(text));
                 return is_finite ? "" : "is " + text + "; must be a finite number";
             },
             ""));

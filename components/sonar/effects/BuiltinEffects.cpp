@@ -92,6 +92,19 @@ std::string lengthWords(const Omitted& what, const BinGrid& /*grid*/) {
     return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
 }
 
+/** Checks that the band of a pulse, 1 / duration of a tone, does not reach below 0 Hz. */
+void checkBand(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    if (!config.pulse || !config.frequency_khz) return;
+    const double widest = 2 * *config.frequency_khz;
+    if (const auto band = config.pulse->bandwidth_khz; band && *band > widest)
+        diagnostics.push_back(
+            {"pulse.bandwidth_khz", fmt::format("is {:g} kHz; a band about {:g} kHz may have {:g} kHz", *band,
+                                                *config.frequency_khz, widest)});
+    if (const auto tone = config.pulse->duration_us; tone && *tone * widest < 1e3)
+        diagnostics.push_back({"pulse.duration_us", fmt::format("is {:g} us; half a period of {:g} kHz lasts {:.4g} us",
+                                                                *tone, *config.frequency_khz, 1e3 / widest)});
+}
+
 /** Spread of an echo in range (ACOUSTICS.md 5.10). */
 class PulseInRange final : public Effect {
 public:
@@ -102,6 +115,7 @@ public:
         if (config.pulse->chirp_us && !(config.motion_in_ping && config.frequency_khz))
             diagnostics.push_back(
                 {"pulse.chirp_us", "is given without motion_in_ping: true and frequency_khz, both of which it needs"});
+        checkBand(config, diagnostics);
     }
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         constexpr const char* name = "range point-spread";

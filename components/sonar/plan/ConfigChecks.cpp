@@ -144,19 +144,6 @@ void checkAbsorption(const SonarConfig& config, types::Diagnostics& diagnostics)
                                "is given without water; a law needs the water block"});
 }
 
-/** Checks that the band of a pulse, 1 / duration of a tone, does not reach below 0 Hz. */
-void checkBand(const SonarConfig& config, types::Diagnostics& diagnostics) {
-    if (!config.pulse || !config.frequency_khz) return;
-    const double widest = 2 * *config.frequency_khz;
-    if (const auto band = config.pulse->bandwidth_khz; band && *band > widest)
-        diagnostics.push_back(
-            {"pulse.bandwidth_khz", fmt::format("is {:g} kHz; a band about {:g} kHz may have {:g} kHz", *band,
-                                                *config.frequency_khz, widest)});
-    if (const auto tone = config.pulse->duration_us; tone && *tone * widest < 1e3)
-        diagnostics.push_back({"pulse.duration_us", fmt::format("is {:g} us; half a period of {:g} kHz lasts {:.4g} us",
-                                                                *tone, *config.frequency_khz, 1e3 / widest)});
-}
-
 /** Checks the beams of a straight array: it cannot distinguish echoes from behind abeam from those ahead. */
 void checkCones(const SonarConfig& config, types::Diagnostics& diagnostics) {
     for (int k = 0; k < config.beams(); ++k)
@@ -274,7 +261,6 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     if (range_min >= range)
         diagnostics.push_back({"range_min", fmt::format("is {} m; must be below range, {} m", range_min, range)});
     checkAbsorption(*this, diagnostics);
-    checkBand(*this, diagnostics);
     if (beam_width_deg > 120)
         diagnostics.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
     if (published) checkPublished(*this, diagnostics);
