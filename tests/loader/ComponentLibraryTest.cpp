@@ -169,7 +169,7 @@ TEST_F(ComponentLibraryTest, PagesAreNamedByTheirPathInTheInstallation) {
     }
     EXPECT_THAT(describe(),
                 prints(HasSubstr("focus, clock (" + (folder_ / "share/doc/insonify" / page).string() + ");")));
-    const std::string absent = std::string(" and components/") + "none.md";
+    const std::string absent = std::string(" and components/none.") + "md";
     const std::string in_clone = test::source_dir + ("/" + page);
     EXPECT_EQ(loader::locatePages("see " + page + ", " + page + absent), "see " + in_clone + ", " + in_clone + absent);
 }
