@@ -147,8 +147,8 @@ double absorptionDb(const SonarFigures& sonar) {
 }
 
 /** Returns the level of white [dB], in whole numbers. A white body faces the sonar and scatters all sound by Lambert's
- *  law, 1 / pi for each square metre of the cell of beam and bin (or pulse, if longer) at that range. By the
- * exponential law of speckle of one look, exp(-x) = 0.01, it exceeds white in one of a hundred bins. */
+ *  law, 1 / pi for each square metre of the cell of beam and bin (or tone, if longer) at that range. By the exponential
+ *  law of speckle of one look, exp(-x) = 0.01, it exceeds white in one of a hundred bins. */
 double whiteDb(const SonarFigures& sonar) {
     const double range = referenceRange(sonar), bin = 1e-6 * sonar.starter->bin_us;
     const double depth = std::max(bin, toneSeconds(sonar) / 2) * speedOfSound();
