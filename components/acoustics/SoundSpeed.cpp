@@ -242,7 +242,7 @@ double gaugePressureBar(double z, double latitude_deg) {
 double celsius68(double celsius_90) { return 1.00024 * celsius_90; }
 
 SoundProfile SoundProfile::read(const std::string& file) {
-    return SoundProfile(readCurve(file, {"depth_m", 0, 12000}, {"sound_speed_m_s", min_sound_speed, max_sound_speed}));
+    return SoundProfile(readCurve(file, {"depth_m", 0, 12000}, {"sound_speed_m_s", 100, 20000}));
 }
 
 double SoundProfile::slowest() const { return *std::ranges::min_element(speeds_.y); }

@@ -9,10 +9,6 @@ namespace insonify::acoustics {
 /** Formulas for the speed of sound: ACOUSTICS.md 2.1. */
 enum class SoundSpeedLaw { Leroy, Mackenzie, Medwin, Coppens, ChenMillero, DelGrosso };
 
-/** Bounds of speeds of sound in water and other liquids, and in air [m/s]. Speeds in km/s, ft/s, knots and cm/s are
- *  beyond them. */
-inline constexpr double min_sound_speed = 300, max_sound_speed = 2500;
-
 /** State of the water, which determines the speed of sound and the absorption. */
 struct Water {
     double temperature_celsius = 10;  ///< ITS-90.

@@ -62,10 +62,10 @@ void require(const char* option, double value, double min, double max) {
 
 void check(const BackscatterOptions& options) {
     require("--frequency-khz", options.frequency_khz, 0.001, 1e5);
-    require("--sound-speed", options.sound_speed, acoustics::min_sound_speed, acoustics::max_sound_speed);
+    require("--sound-speed", options.sound_speed, 100, 20000);
     for (const double angle : options.grazing_deg) require("--grazing-deg", angle, 0, 90);
     if (options.grain_size_phi) require("--grain-size-phi", *options.grain_size_phi, -20, 20);
-    if (options.lambert_db) require("--lambert-db", *options.lambert_db, -200, acoustics::max_lambert_db);
+    if (options.lambert_db) require("--lambert-db", *options.lambert_db, -200, 20);
     if (options.shell_mm) require("--shell-mm", *options.shell_mm, 1e-3, 1000);
     if (options.shell_mm && options.material.empty())
         throw types::ConfigError("", "--shell-mm", "is given without --material, the matter of the wall");

@@ -148,8 +148,8 @@ public:
             std::is_same_v<Sample, types::Sonar> && options_.messages.dtype == ros::ImageType::Float32;
         return fmt::format(
             "{}: its messages of {:.0f} kB are larger than Linux's receive buffers ({:.0f} kB), so that readers "
-            "with Fast DDS lose most of them; {}`sysctl net.core.rmem_default=4194304 net.core.rmem_max=4194304` "
-            "on their machine",
+            "with Fast DDS lose most of them; {}raise these on their machine: "
+            "sysctl net.core.rmem_default=4194304 net.core.rmem_max=4194304",
             topic_, static_cast<double>(maximum_) / 1e3, static_cast<double>(usual_buffer) / 1e3,
             can_shrink ? "take dtype: uint8, or " : "");
     }

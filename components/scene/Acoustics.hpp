@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/Matter.hpp"
 #include "components/scene/Scene.hpp"
 #include "types/geometry/Geometry.hpp"
@@ -119,9 +118,7 @@ struct Acoustics {
                "matter of the table: its law at the sonar's frequency, else its reflection and "
                "lambert_db"},
               self.material);
-        visit(
-            {"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, acoustics::max_lambert_db},
-            self.lambert_db);
+        visit({"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, 20}, self.lambert_db);
         visit({"reflection", "1", "signed pressure reflection coefficient at normal incidence", -1, 1},
               self.reflection);
         visit({"roughness_slope", "1", "rms slope of the micro-relief: adds the lobe of a `reflection`", 0, 10},

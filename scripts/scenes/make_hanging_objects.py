@@ -75,7 +75,7 @@ def fishing_net(rng):
     for each in floats:
         each.positions = each.positions * rng.uniform(0.012, 0.045) + points[line, rng.integers(rows)]
     turn = rotation(yaw=rng.uniform(-180, 180))
-    return merged(twine).moved(turn=turn), {"lambert_db": diffuse(rng, -28, -4)}, merged(floats).moved(turn=turn)
+    return merged(twine).moved(turn=turn), {"lambert_db": round(rng.uniform(-28, -4), 2)}, merged(floats).moved(turn=turn)
 
 
 def soft_pipeline(rng):
@@ -105,14 +105,9 @@ def mooring(rng):
     return merged(parts)
 
 
-def diffuse(rng, lowest, highest):
-    """A Lambert parameter [dB], at most that of a surface that returns all that it receives."""
-    return min(round(rng.uniform(lowest, highest), 2), -4.97)
-
-
 def rough(rng, softer=0):
     """A surface from clean and smooth to fouled: a lobe about the normal, and diffuse scattering."""
-    return {"roughness_slope": round(rng.uniform(0.2, 1), 3), "lambert_db": diffuse(rng, -16 - softer, 2 - softer)}
+    return {"roughness_slope": round(rng.uniform(0.2, 1), 3), "lambert_db": round(rng.uniform(-16, 2) - softer, 2)}
 
 
 def metal(rng):
@@ -241,8 +236,8 @@ FREQUENCIES = {750: 20, 1200: 12}  # [kHz], with the vertical opening [deg]
 
 def scene(rng, file, count):
     glb = Glb()
-    line = glb.material("mooring", {"lambert_db": diffuse(rng, -10, 3)}, (0.5, 0.5, 0.4))
-    buoyant = glb.material("float", {"lambert_db": diffuse(rng, -6, 3)}, (0.9, 0.5, 0.2))
+    line = glb.material("mooring", {"lambert_db": round(rng.uniform(-10, 3), 2)}, (0.5, 0.5, 0.4))
+    buoyant = glb.material("float", {"lambert_db": round(rng.uniform(-6, 3), 2)}, (0.9, 0.5, 0.2))
     for i, (name, make) in enumerate(CLASSES.items()):
         for j in range(count):
             body, acoustics, *floats = make(rng)

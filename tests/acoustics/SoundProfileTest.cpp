@@ -135,7 +135,7 @@ TEST(SoundProfileTest, ReportsAnErrorInAFileWithItsPlace) {
     EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,nan\n1,1500\n"),
                 HasSubstr("profile.csv:2:3: sound_speed_m_s: is 'nan'"));
     EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,-1500\n1,1500\n"),
-                HasSubstr("profile.csv:2:3: sound_speed_m_s: is '-1500'; it must be a number from 1 to 20000"));
+                HasSubstr("profile.csv:2:3: sound_speed_m_s: is '-1500'; it must be a number from 100 to 20000"));
     EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,1500\n1\n"),
                 HasSubstr("profile.csv:3:2: sound_speed_m_s: is missing"));
     EXPECT_THAT(findDiagnostic(""), HasSubstr("is empty"));

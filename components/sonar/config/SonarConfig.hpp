@@ -360,9 +360,7 @@ void SonarConfig::describeBeam(auto& self, auto& visit) {
     visit({"beam_height_deg", "deg", "total elevation aperture; at most 150 if rasterised", 0.001, 180},
           self.beam_height_deg);
     visit({"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
-    visit({"speed_of_sound", "m/s", "absent: computed from water, else 1500", acoustics::min_sound_speed,
-           acoustics::max_sound_speed},
-          self.speed_of_sound);
+    visit({"speed_of_sound", "m/s", "absent: computed from water, else 1500", 100, 20000}, self.speed_of_sound);
     visit({"water", "", "state of the water"}, self.water);
     visit({"frequency_khz", "kHz", "of the sonar; absorption uses it unless it has its own", 0.001, 1e5},
           self.frequency_khz);

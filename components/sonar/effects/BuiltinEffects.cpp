@@ -92,7 +92,7 @@ std::string lengthWords(const Omitted& what, const BinGrid& /*grid*/) {
     return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
 }
 
-/** Checks that the band of a pulse, 1 / duration of a tone, does not reach below 0 Hz. */
+/** Checks that the band of a pulse does not reach below 0 Hz. */
 void checkBand(const SonarConfig& config, types::Diagnostics& diagnostics) {
     if (!config.pulse || !config.frequency_khz) return;
     const double widest = 2 * *config.frequency_khz;
@@ -100,9 +100,6 @@ void checkBand(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back(
             {"pulse.bandwidth_khz", fmt::format("is {:g} kHz; a band about {:g} kHz may have {:g} kHz", *band,
                                                 *config.frequency_khz, widest)});
-    if (const auto tone = config.pulse->duration_us; tone && *tone * widest < 1e3)
-        diagnostics.push_back({"pulse.duration_us", fmt::format("is {:g} us; half a period of {:g} kHz lasts {:.4g} us",
-                                                                *tone, *config.frequency_khz, 1e3 / widest)});
 }
 
 /** Spread of an echo in range (ACOUSTICS.md 5.10). */
