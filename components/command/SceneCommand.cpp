@@ -128,8 +128,7 @@ Json getObjects(const types::Geometry& geometry) {
 Json findWarnings(const std::string& file, const types::Geometry& geometry, const types::Extent& extent,
                   const Json& materials) {
     Json warnings = Json::array();
-    if (const std::string side = scene::isGltf(file) ? scene::sideWarning(geometry) : ""; !side.empty())
-        warnings.push_back(side);
+    if (const std::string side = scene::sideWarning(geometry, file); !side.empty()) warnings.push_back(side);
     if (const glm::dvec3 size = extent.size(); std::max({size.x, size.y, size.z}) > 1e5)
         warnings.push_back("the scene is more than 100 km wide; glTF and SDF are in metres");
     const auto plain = std::ranges::count_if(materials, [](const Json& m) { return m["source"] == "default"; });

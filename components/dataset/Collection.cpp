@@ -223,7 +223,7 @@ void Collection::writeYolo() {
         data += getName(part) + ": " + list + "\n";
     }
     if (countEach(Part::Val) == 0 && countEach(Part::Train) > 0)  // trainers require one
-        data += "val: train.txt  # not a part of its own: the sweep's split has no val\n";
+        data += "val: train.txt  # not a part of its own: no pose is drawn for val\n";
     data += "names:\n";
     for (size_t i = 0; i < title_.classes.size(); ++i)
         data += fmt::format("  {}: {}\n", i, toText(Json(title_.classes[i])));

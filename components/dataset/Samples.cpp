@@ -70,8 +70,10 @@ uint64_t word(const Sweep& sweep, uint64_t index, size_t number) {
 
 Selection::Selection(uint64_t total, uint64_t count, uint64_t seed) : size_(count) {
     if (count == 0 || count > total)
-        throw types::ConfigError(
-            "", "--count", fmt::format("is {}; may be 1 to {}, the number of samples of the sweep", count, total));
+        throw types::ConfigError("", "--count",
+                                 fmt::format("is {}; may be 1 to {}, the number of samples of the sweep (for more "
+                                             "raise its poses, or the count of random ones)",
+                                             count, total));
     if (count > max_drawn)
         throw types::ConfigError("", "--count", fmt::format("is {}; at most {} are drawn", count, max_drawn));
     // Fisher-Yates: the numbers that a step has moved, by place

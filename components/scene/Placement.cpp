@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
+#include <vector>
 
 #include "components/scene/gltf/Gltf.hpp"
 #include "components/scene/motion/Animator.hpp"
@@ -63,6 +64,10 @@ Scene placed(const Scene& scene, const Placement& placement) {
             if (scene.nodes[static_cast<size_t>(node.node)].parent < 0) node.before = placed_from_scene * node.before;
         result.animations = std::make_shared<const Animations>(std::move(animations));
     }
+    if (placement.scale != 1)  // it answers the question of the reader whether the file is in metres
+        std::erase_if(geometry->notices, [](const types::Notice& notice) {
+            return notice.text.find("placement.scale") != notice.text.npos;
+        });
     result.geometry = std::move(geometry);
     result.z_up_from_file = z_up_from_file;
     return result;
@@ -127,7 +132,10 @@ std::string describeLay(const Scene& scene, const Placement& placement, types::W
                               name(types::Axes{poses}.rockFromWorld({0, 1, 0})));
 }
 
-std::string sideWarning(const types::Geometry& geometry) {
+std::string sideWarning(const types::Geometry& geometry, const std::filesystem::path& file) {
+    const std::string extension = getExtension(file);
+    const bool is_gltf = isGltf(file);
+    if (!is_gltf && extension != ".obj" && extension != ".stl" && extension != ".ply") return "";
     constexpr double suspicious = 0.6;  // share of the surface
     constexpr size_t enough = 20'000;   // triangles of an object that are added
     glm::dvec3 facing(0);               // [m2]
@@ -146,9 +154,10 @@ std::string sideWarning(const types::Geometry& geometry) {
     if (facing.y <= suspicious * all || size.z <= 2 * size.y) return "";
     return fmt::format(
         "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and {:.3g} m "
-        "wide in y. glTF is y-up; a file written with z up looks like this: export it with +Y up, or set "
-        "placement.up: z of its task",
-        100 * facing.y / all, size.z, size.y);
+        "wide in y. {}; a file written with {} up looks like this: export it with {} up, or set placement.up: {} of "
+        "its task",
+        100 * facing.y / all, size.z, size.y, is_gltf ? "glTF is y-up" : "OBJ, STL and PLY are taken as z-up",
+        is_gltf ? 'z' : 'y', is_gltf ? "+Y" : "Z", is_gltf ? 'z' : 'y');
 }
 
 }  // namespace insonify::scene

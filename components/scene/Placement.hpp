@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <glm/vec3.hpp>
 #include <map>
 #include <optional>
@@ -52,9 +53,9 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
  *  they are sent; the direction of their x is added if these axes are not the world's. */
 std::string describeLay(const Scene& scene, const Placement& placement, types::WorldFrame poses);
 
-/** Returns a warning if most of the surface of a scene of glTF faces along y and it is higher than it is wide in y: a
- *  file written with z up, of which y was taken as up, has its sea floor as a wall. Empty: it does not. */
-std::string sideWarning(const types::Geometry& geometry);
+/** Returns a warning if most of the surface of a file's scene faces along y and it is higher than it is wide in y: glTF
+ *  that was written with z up, or OBJ, STL or PLY with y up, has its sea floor as a wall. Empty: it does not. */
+std::string sideWarning(const types::Geometry& geometry, const std::filesystem::path& file);
 
 }  // namespace insonify::scene
 

@@ -325,7 +325,7 @@ bool SceneTask::configureHook() {
     if (!diagnostics.empty())
         throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
     lay_ = layText(*scene);
-    side_ = isGltf(config->file) ? sideWarning(*scene->geometry) : "";
+    side_ = sideWarning(*scene->geometry, config->file);
     std::ranges::sort(movables_, {}, &Movable::node);
     movable_objects_ = getMovableObjects();
     mover_.assign(geometry_->objects.size(), nullptr);

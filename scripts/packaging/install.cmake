@@ -31,8 +31,9 @@ foreach(package IN LISTS packages)
 endforeach()
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/installed-$<CONFIG> CONTENT "${files}")
 
-# The shaders are in the command; only the shader that a header includes is installed.
-install(FILES shaders/interface.glsl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/insonify/shaders COMPONENT development)
+# The command has the shaders in it; installed headers include some.
+file(GLOB shaders CONFIGURE_DEPENDS shaders/*.glsl)
+install(FILES ${shaders} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/insonify/shaders COMPONENT development)
 install(DIRECTORY deploy DESTINATION ${CMAKE_INSTALL_DATADIR}/insonify COMPONENT runtime PATTERN pictures EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION ${documents} COMPONENT runtime)
 # The folder that systemd searches, below /usr or /usr/local; independent of the name of the libraries' folder.

@@ -148,6 +148,14 @@ TEST_F(DatasetCommandTest, DrawnSettingsAreInTheRecordAndChangeThePicture) {
     EXPECT_TRUE(*strengths.begin() >= -30 && *strengths.rbegin() <= -15);
 }
 
+TEST_F(DatasetCommandTest, PicturesOfCodesAsIntensitiesAreWarnedOf) {
+    const std::vector<std::string> codes{"--count", "1",
+                                         "--set",   "receiver.output=code",
+                                         "--set",   "receiver.code={bits: 8, law: sqrt, full_scale_db: -40}"};
+    EXPECT_THAT(make("codes", codes), prints(HasSubstr("picture: shows the codes of the receiver as intensities")));
+    EXPECT_THAT(make("plain", {"--count", "1"}), prints(testing::Not(HasSubstr("codes of the receiver"))));
+}
+
 TEST_F(DatasetCommandTest, SettingsOfTheSweepAndTheSeedOfTheCommandTakePrecedence) {
     writeFile(folder_ / "sweep.yml",
               "poses: {random: {count: 1, x: {uniform: [0, 20]}, y: -4, z: -5.5}}\nsettings: {sonar.range: [20]}\n");

@@ -87,6 +87,17 @@ TEST(SceneCommandTest, WarnsOfASceneOnItsSideForAFileWithZUpOnly) {
     EXPECT_THAT(makeScene(folder, "y_up.gltf")["bounds"]["max"], ElementsAre(20, 15, -1));
 }
 
+TEST(SceneCommandTest, WarnsOfAMeshOnItsSideThatWasWrittenWithYUp) {
+    const TestFolder folder;
+    const std::string faces = "f 1 2 3\nf 1 3 4\n";
+    writeFile(folder / "y_up.obj", "v -20 0 -15\nv 20 0 -15\nv 20 0 15\nv -20 0 15\n" + faces);
+    writeFile(folder / "z_up.obj", "v -20 -15 0\nv 20 -15 0\nv 20 15 0\nv -20 15 0\n" + faces);
+    EXPECT_THAT(callInsonify(folder, {"scene", "y_up.obj"}).out,
+                HasSubstr("are taken as z-up; a file written with y up looks like this: export it with Z up, or set "
+                          "placement.up: y"));
+    EXPECT_THAT(callInsonify(folder, {"scene", "z_up.obj"}).out, Not(HasSubstr("on its side")));
+}
+
 TEST(SceneCommandTest, ARunWarnsOfASceneOnItsSideUnlessItIsPlacedUpright) {
     const TestFolder folder;
     writeFile(folder / "z_up.gltf", floorGltf(true));

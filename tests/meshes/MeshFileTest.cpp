@@ -182,6 +182,8 @@ TEST_F(MeshFileTest, ABodyLargerThanAnyShipWhoseFileStatesNoUnitIsAsked) {
     };
     const auto warns = [&](const Scene& scene) { return hasNotice(*scene.geometry, "if it is in millimetres"); };
     EXPECT_TRUE(warns(readScene(obj(5000, 2000, 1000))));
+    EXPECT_TRUE(warns(placed(readScene(obj(5000, 2000, 1000)), {.up = UpAxis::Y})));
+    EXPECT_FALSE(warns(placed(readScene(obj(5000, 2000, 1000)), {.scale = 0.001}))) << "it is answered";
     EXPECT_FALSE(warns(readScene(obj(300, 50, 60)))) << "a ship";
     EXPECT_FALSE(warns(readScene(obj(5000, 2000, 40)))) << "ground";
     obj(5000, 2000, 1000);

@@ -1,5 +1,6 @@
 """Stepping a deployment from Python, compared with the command at the same poses."""
 
+import collections.abc
 import copy
 import pickle
 import subprocess
@@ -356,8 +357,10 @@ def test_threads_read_one_log(deploy, tmp_path):
         thread.join()
     assert len(differ) == 160 and not any(differ)
     for none in (4, -5):
-        with pytest.raises(IndexError):
+        with pytest.raises(IndexError, match=f"{none}: receiver.ping has 4 samples"):
             pings[none]
+    assert isinstance(pings, collections.abc.Sequence)
+    assert [each.time for each in pings[1:3]] == [pings[1].time, pings[2].time] and pings[9:] == []
 
 
 def test_a_log_in_several_files_is_one(deploy, tmp_path):

@@ -503,6 +503,13 @@ void DatasetRun::simulate(const Sample& sample) {
 
 /** Collects the warnings of a new simulation, whose plans have theirs from the first ping on. */
 void DatasetRun::collectWarnings() {
+    const auto sends_codes = [](const framework::TaskSpec& task) {
+        const YAML::Node output = child(task.properties, "output");
+        return task.type == "receiver::ReceiverTask" && output.IsScalar() && output.Scalar() == "code";
+    };
+    if (warned_.empty() && sweep_.picture.scale != output::BinScale::Code &&
+        std::ranges::any_of(spec_.tasks, sends_codes) && warned_.insert("codes").second)
+        warnings_.push_back("picture: shows the codes of the receiver as intensities; give scale: code, and code_bits");
     for (const types::Notice& notice : simulation_->notices())
         if (notice.kind == types::Notice::Kind::Warning && warned_.insert(notice.text).second)
             warnings_.push_back(notice.text);

@@ -478,7 +478,7 @@ class Log(Mapping):
         return f"Log({self.path}: {', '.join(f'{name} ({len(samples)})' for name, samples in self.items())})"
 
 
-class _Samples:
+class _Samples(Sequence):
     """One stream; samples are read on access. Pings are Ping, poses Pose, pictures arrays."""
 
     def __init__(self, log: native.Handle, index: int, stream: dict, times: NDArray[np.float64]) -> None:
@@ -488,7 +488,11 @@ class _Samples:
     def __len__(self) -> int:
         return len(self.times)
 
-    def __getitem__(self, index: int):
+    def __getitem__(self, index):
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"{index}: {self.name} has {len(self)} samples")
         sample = native.sample(self._log, self._index, index + len(self) if index < 0 else index)
         facts = sample.facts()
         if facts["kind"] == "ping":

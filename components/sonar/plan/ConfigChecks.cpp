@@ -183,7 +183,8 @@ void BeamPatternConfig::check(types::Diagnostics& diagnostics) const {
 
 void QualityConfig::check(types::Diagnostics& diagnostics) const {
     const char* const choices =
-        "is given with another choice; give rows and columns_per_beam, or target_error and max_samples, or budget_ms";
+        "is given with another choice; give rows and columns_per_beam, or target_error and max_samples, or budget_ms "
+        "(a block in a file is replaced as a whole by --set 'SONAR.quality={rows: 64, columns_per_beam: 2}')";
     const auto refuse = [&](const char* name, bool given, bool other) {
         if (given && (isGiven() || other)) diagnostics.push_back({name, choices});
     };
