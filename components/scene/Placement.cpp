@@ -152,17 +152,17 @@ std::string sideWarning(const types::Geometry& geometry, const std::filesystem::
     const double all = facing.x + facing.y + facing.z;
     const glm::dvec3 size = types::getExtent(geometry).size();
     if (facing.y <= suspicious * all || size.z <= 2 * size.y) return "";
-    const std::string lay = fmt::format(
-        "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is "
-        "{:.3g} m high and {:.3g} m wide in y. ",
-        100 * facing.y / all, size.z, size.y);
-    if (is_gltf)
-        return lay +
-               "glTF is y-up; a file written with z up looks like this: export it with +Y up, or set "
-               "placement.up: z of its task";
-    return lay +
-           "OBJ, STL and PLY are taken as z-up; a file written with y up looks like this: export it with Z up, or "
-           "set placement.up: y of its task";
+    const char* const text =
+        is_gltf
+            ? "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and "
+              "{:.3g} "
+              "m wide in y. glTF is y-up; a file written with z up looks like this: export it with +Y up, or set "
+              "placement.up: z of its task"
+            : "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and "
+              "{:.3g} "
+              "m wide in y. OBJ, STL and PLY are taken as z-up; a file written with y up looks like this: export it "
+              "with Z up, or set placement.up: y of its task";
+    return fmt::format(fmt::runtime(text), 100 * facing.y / all, size.z, size.y);
 }
 
 }  // namespace insonify::scene
