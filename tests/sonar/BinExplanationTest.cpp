@@ -210,6 +210,19 @@ TEST_P(BinExplanationOfAPlate, SaysThatAnEchoCameThroughSidelobes) {
     EXPECT_THAT(text(explained), HasSubstr("through a sidelobe; its strongest echo is at 2"));
 }
 
+/** Beams that are eight times as wide as their spacing: an echo in the main lobe came through no sidelobe. */
+TEST_P(BinExplanationOfAPlate, AnEchoInTheMainLobeCameThroughNoSidelobe) {
+    acoustics::BeamLaw law;
+    law.width_deg = 8 * config.fieldOfViewDeg() / config.beam_count;
+    config.beam_pattern.emplace().receive.azimuth = law;
+    for (size_t beam = 7; beam < 10; ++beam) {
+        const BinExplanation explained = at(5.25, beam);
+        ASSERT_FALSE(explained.parts.empty()) << beam;
+        EXPECT_TRUE(explained.parts[0].of_surface->is_in_beam) << text(explained);
+        EXPECT_EQ(explained.why_no_surface, "");
+    }
+}
+
 TEST_P(BinExplanationOfAPlate, RefusesABeamOrABinThatIsNotThere) {
     EXPECT_THROW(at(5.25, 16), std::out_of_range);
     EXPECT_THROW(at(20.05), std::out_of_range);

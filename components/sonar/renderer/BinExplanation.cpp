@@ -183,9 +183,12 @@ private:
             if (plan().beams.row(k) == *beam_) sorted_beam_ = k;
         const std::vector<int32_t> beams_of_cells = beamsOfCells(plan());
         if (!beams_of_cells.empty()) weights_ = beamformer(plan()).weights(sorted_beam_);
+        // Beams may be wider than their spacing: the beam shows the cells of its main lobe.
+        const double main_lobe = 0.1 * *std::ranges::max_element(weights_);
         for (size_t cell = 0; cell < cells; ++cell)
             shown_[cell] = beams_of_cells.empty() ? cell == sorted_beam_
-                                                  : beams_of_cells[cell] == static_cast<int32_t>(sorted_beam_);
+                                                  : beams_of_cells[cell] == static_cast<int32_t>(sorted_beam_) ||
+                                                        weights_[cell] >= main_lobe;
         if (beams_of_cells.empty()) weights_[sorted_beam_] = 1;
     }
     void record(const EchoPart& echo) {
@@ -256,6 +259,9 @@ private:
             return fmt::format("{} at {:.2f} m", scene_.geometry->objects[echo.object].name,
                                grid.centre(static_cast<int>(echo.bin)));
         };
+        if (in_beam_ &&
+            std::ranges::any_of(explained_.parts, [](const BinPart& part) { return part.of_surface.has_value(); }))
+            return "echoes of surfaces in the beam are weaker than those from elsewhere";
         if (in_beam_) return "echoes of surfaces are there, too weak for a number in single precision";
         if (!before_ && !behind_) return "no surface in the beam has an echo within the range";
         if (!before_) return "it is before the first surface of the beam, " + place(*behind_);
