@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "components/acoustics/Backscatter.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "tests/support/Paths.hpp"
 
