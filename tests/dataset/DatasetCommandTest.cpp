@@ -152,8 +152,10 @@ TEST_F(DatasetCommandTest, PicturesOfCodesAsIntensitiesAreWarnedOf) {
     const std::vector<std::string> codes{"--count", "1",
                                          "--set",   "receiver.output=code",
                                          "--set",   "receiver.code={bits: 8, law: sqrt, full_scale_db: -40}"};
-    EXPECT_THAT(make("codes", codes), prints(HasSubstr("picture: shows the codes of the receiver as intensities")));
-    EXPECT_THAT(make("plain", {"--count", "1"}), prints(testing::Not(HasSubstr("codes of the receiver"))));
+    const Outcome shown = make("codes", codes), plain = make("plain", {"--count", "1"});
+    EXPECT_THAT(shown, succeeds());
+    EXPECT_THAT(shown.err, HasSubstr("warning: picture: shows the codes of the receiver as intensities; give scale"));
+    EXPECT_THAT(plain.err, testing::Not(HasSubstr("codes of the receiver")));
 }
 
 TEST_F(DatasetCommandTest, SettingsOfTheSweepAndTheSeedOfTheCommandTakePrecedence) {
