@@ -15,7 +15,6 @@
 #include "components/acoustics/Plate.hpp"
 #include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/Seabed.hpp"
-#include "components/acoustics/Water.hpp"
 #include "components/command/CommandLine.hpp"
 #include "components/console/Console.hpp"
 #include "components/deployer/Json.hpp"

@@ -19,9 +19,15 @@ def run(*command: str | pathlib.Path) -> str:
     return subprocess.run(command, check=True, text=True, stdout=subprocess.PIPE).stdout
 
 
+def copyright_of(package: str) -> str:
+    """The package's copyright file; a sentence where the system leaves such files out."""
+    file = pathlib.Path(f"/usr/share/doc/{package}/copyright")
+    return file.read_text(errors="replace") if file.exists() else f"{package}: its Debian package has the copyright, this machine left it out\n"
+
+
 def licences(package: str) -> list[dict]:
     """Those that the package's copyright file names, also of single files; the text of one that names none."""
-    text = pathlib.Path(f"/usr/share/doc/{package}/copyright").read_text(errors="replace")
+    text = copyright_of(package)
     names = dict.fromkeys(re.findall(r"^License:[ \t]*(\S.*?)[ \t]*$", text, re.MULTILINE))
     if names:
         return [{"license": {"name": name}} for name in names]
@@ -70,8 +76,7 @@ def copyright() -> str:
     """Our licence, and the copyright file of each package that is compiled in."""
     parts = [f"Insonify\n\n{pathlib.Path('LICENSE').read_text()}"]
     for each in compiled_in():
-        text = pathlib.Path(f"/usr/share/doc/{each['name']}/copyright").read_text(errors="replace")
-        parts.append(f"{each['name']} {each['version']}, which is compiled in\n\n{text}")
+        parts.append(f"{each['name']} {each['version']}, which is compiled in\n\n{copyright_of(each['name'])}")
     return f"\n{'=' * 80}\n\n".join(parts)
 
 

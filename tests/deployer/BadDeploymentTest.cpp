@@ -93,7 +93,7 @@ const BadDeployment cases[] = {
      receiverBeforeNoise(),
      {"wall.yml:34:5: connections[3]: receiver.ping gives what a receiver has amplified, noise.clean takes intensities "
       "that reach a receiver"}},
-    edited("SurfaceBeyondAllLoudness", "{file: wall.gltf}", "{file: wall.gltf, materials: {wall: {lambert_db: 21}}}",
+    edited("SurfaceAbove20Decibels", "{file: wall.gltf}", "{file: wall.gltf, materials: {wall: {lambert_db: 21}}}",
            {"wall.yml:11:", "tasks.scene.properties.materials.wall.lambert_db: is 21 dB; ", "-200 to 20"}),
     edited("WallOfGramsPerCubicCentimetre", "{file: wall.gltf}",
            "{file: wall.gltf, materials: {wall: {shell: {thickness_mm: 2, density: 7.85, sound_speed: 5900}}}}",
@@ -113,7 +113,7 @@ const BadDeployment cases[] = {
     edited("NoiseOfABandBelowZero", "law: rayleigh}",
            "law: rayleigh}, ambient: {wind_m_s: 5, frequency_khz: 20, bandwidth_khz: 50, source_level_db: 200}",
            {"wall.yml:", "tasks.noise.properties.ambient.bandwidth_khz: is 50 kHz; a band about 20 kHz may have 40"}),
-    edited("SourceOfAThousandSuns", "law: rayleigh}",
+    edited("SourceAbove300Decibels", "law: rayleigh}",
            "law: rayleigh}, ambient: {wind_m_s: 5, bandwidth_khz: 50, source_level_db: 390}",
            {"wall.yml:", "tasks.noise.properties.ambient.source_level_db: is 390 dB re 1 uPa m; ", "300"}),
     edited("LibraryMissing", "tasks:\n", "libraries: [here.so, /nowhere/mine.so]\ntasks:\n",

@@ -82,7 +82,7 @@ struct LobeCells {
     }
 };
 
-/** Computes cosines, and sections without lobes. */
+/** Computes the cosine of each cell, and its section without a lobe. */
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void followTables(const double* tables, const Cells& cells,
                                                                   const Covered& covered, CellLaws& __restrict laws) {
     BackscatterCode code{tables};
@@ -98,6 +98,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void followTables(const double* 
     }
 }
 
+/** Computes the lobe's part of the section of each cell. */
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void followLobes(LobeCells& __restrict cells) {
     BackscatterCode code{nullptr};
     for (int k = 0; k < cells.count; ++k) {
