@@ -200,6 +200,16 @@ void addFiles(const Sweep& sweep, const fs::path& folder, std::string& text) {
     }
 }
 
+/** Returns whether a task is a receiver whose output is codes. */
+bool sendsCodes(const std::unique_ptr<framework::TaskContext>& task) {
+    return std::ranges::any_of(task->properties(), [](const framework::PropertiesBase* properties) {
+        const auto values = properties->values();
+        const auto output = values.find("output");
+        const std::string* const name = output == values.end() ? nullptr : std::get_if<std::string>(&output->second);
+        return name && *name == "code";
+    });
+}
+
 YAML::Node findBudget(const framework::TaskSpec& task) { return child(child(task.properties, "quality"), "budget_ms"); }
 
 /** Returns the only name; throws if there are several or none. */
@@ -234,6 +244,8 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
     samples_.emplace(sweep_, getRuns(sweep_), std::move(parts));
     classes_.emplace(sweep_, objects, nodes);
     warnings_ = classes_->notices();
+    if (sweep_.picture.scale != output::BinScale::Code && std::ranges::any_of(checked.tasks(), sendsCodes))
+        warnings_.push_back("picture: shows the codes of the receiver as intensities; give scale: code, and code_bits");
     for (const SceneFile& scene : scenes_) instances_.emplace_back(*classes_, scene.objects);
     selection_ =
         changes_.count ? Selection(samples_->count(), *changes_.count, sweep_.seed) : Selection(samples_->count());
@@ -503,13 +515,6 @@ void DatasetRun::simulate(const Sample& sample) {
 
 /** Collects the warnings of a new simulation, whose plans have theirs from the first ping on. */
 void DatasetRun::collectWarnings() {
-    const auto sends_codes = [](const framework::TaskSpec& task) {
-        const YAML::Node output = child(task.properties, "output");
-        return task.type == "receiver::ReceiverTask" && output.IsScalar() && output.Scalar() == "code";
-    };
-    if (warned_.empty() && sweep_.picture.scale != output::BinScale::Code &&
-        std::ranges::any_of(spec_.tasks, sends_codes) && warned_.insert("codes").second)
-        warnings_.push_back("picture: shows the codes of the receiver as intensities; give scale: code, and code_bits");
     for (const types::Notice& notice : simulation_->notices())
         if (notice.kind == types::Notice::Kind::Warning && warned_.insert(notice.text).second)
             warnings_.push_back(notice.text);
