@@ -310,5 +310,40 @@ TEST(FanPingTest, CoherentSpeckleKeepsTheEnergyOfEveryTable) {
     }
 }
 
+/** Scatterers have places on surfaces: a bin has the same, to the bit, whatever bins and blanking are about it. Patches
+ *  that the first or the last bin cuts off have a corner off their plane. */
+TEST(FanPingTest, ABinHasItsScatterersWhateverBinsAreAboutIt) {
+    std::mt19937 random(11);
+    const auto upTo = [&](double end) { return std::uniform_real_distribution<double>(0, end)(random); };
+    size_t echoes = 0;
+    for (int drawn = 0; drawn < 24; ++drawn) {
+        SonarConfig config = test::getSonar({.beams = 2 + static_cast<int>(upTo(30)),
+                                             .width_deg = 20 + upTo(100),
+                                             .height_deg = 10 + upTo(50),
+                                             .bins = 280,
+                                             .rows = 1 << (3 + drawn % 5),
+                                             .columns = 1 + static_cast<int>(upTo(4))});
+        config.visibility = Visibility::Cpu;
+        config.frequency_khz = 300;
+        config.speckle = SpeckleConfig{true, 5, {}};
+        if (drawn % 3 == 0) config.beam_geometry = BeamGeometry::Conical;
+        const glm::dvec3 place(upTo(6), upTo(4) - 2, upTo(2));
+        const types::Snapshot scene = test::makeSnapshot(test::surfaces(), place, upTo(6.28), upTo(0.6));
+        const types::Sonar whole = test::makePing(config, scene);
+        const int bins = 40 + static_cast<int>(upTo(200));
+        SonarConfig part = config;
+        part.range *= bins / 280.0;
+        part.bin_count = bins;
+        const types::Sonar ping = test::makePing(part, scene);
+        for (size_t beam = 0; beam < ping.beam_count; ++beam)
+            for (int bin = 0; bin < bins; ++bin) {
+                const float got = ping.bins[beam * bins + bin], expected = whole.bins[beam * 280 + bin];
+                ASSERT_EQ(got, expected) << "sonar " << drawn << ", beam " << beam << ", bin " << bin << " of " << bins;
+                echoes += got > 0;
+            }
+    }
+    EXPECT_GT(echoes, 5000u);
+}
+
 }  // namespace
 }  // namespace insonify::sonar

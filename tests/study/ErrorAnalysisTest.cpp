@@ -143,6 +143,10 @@ TEST(ErrorAnalysisTest, AReferenceTooCoarseToDecideLeavesClaimsOpen) {
     }
     result.references[0].error_tvg = 0.001;
     EXPECT_STREQ(claims(result)[1].verdict(), "FAIL") << "now it can decide";
+    result.predictions[0].predicted_error = 0.05;
+    EXPECT_STREQ(claims(result)[1].verdict(), "FAIL") << "more than the sonar reports";
+    result.predictions[0].predicted_error = 0.07;
+    EXPECT_STREQ(claims(result)[1].verdict(), "pass") << "the sonar reports that it misses the target";
 }
 
 }  // namespace
