@@ -7,8 +7,9 @@
 namespace insonify::output {
 namespace {
 
-struct PictureTaskTest : ::testing::Test {
-    PictureTaskTest() {
+template <class Task>
+struct TaskBench : ::testing::Test {
+    TaskBench() {
         auto environment = std::make_shared<framework::Environment>(task_.environment());
         environment->output_folder = folder_.path();
         task_.setEnvironment(environment);
@@ -32,11 +33,13 @@ struct PictureTaskTest : ::testing::Test {
     }
 
     Folder folder_;
-    FanImageTask task_{"fan"};
+    Task task_{"fan"};
     test::Writer<types::SonarPtr> in_;
     test::Reader<types::ImagePtr> out_;
     PictureConfig config_;
 };
+using PictureTaskTest = TaskBench<FanImageTask>;
+using DiscTaskTest = TaskBench<DiscImageTask>;
 
 TEST_F(PictureTaskTest, APictureHasThePingsTime) {
     task_.image.connectTo(out_.port, {});
@@ -64,6 +67,29 @@ TEST_F(PictureTaskTest, WritesAFileForEveryThirdPing) {
     ASSERT_TRUE(task_.stop());
     EXPECT_EQ(filesWritten(), 3u);
     EXPECT_TRUE(std::filesystem::exists(folder_.path() / "fan_000002.png"));
+}
+
+TEST_F(DiscTaskTest, WritesAFileAfterEveryThirdPing) {
+    config_.file = "disc_%06d.png";
+    config_.every = 3;
+    start();
+    for (int64_t time = 1; time <= 2; ++time) give(time);
+    EXPECT_EQ(task_.stages().count("paint"), 0u);
+    for (int64_t time = 3; time <= 8; ++time) give(time);
+    ASSERT_TRUE(task_.stop());
+    EXPECT_EQ(filesWritten(), 2u);
+}
+
+TEST_F(DiscTaskTest, ARunThatEndsBeforeATurnShowsItsLastPing) {
+    config_.every = 3;
+    task_.image.connectTo(out_.port, {});
+    start();
+    for (const int64_t time : {1, 2}) give(time);
+    types::ImagePtr picture;
+    EXPECT_FALSE(out_.port.readNew(picture));
+    ASSERT_TRUE(task_.stop());
+    ASSERT_TRUE(out_.port.readNew(picture));
+    EXPECT_EQ(picture->time.microseconds, 2);
 }
 
 TEST_F(PictureTaskTest, AFileThatCannotBeWrittenEndsInException) {

@@ -196,12 +196,56 @@ std::string sourceLines(const SonarFigures& sonar) {
     return lines;
 }
 
+constexpr double floor_z = -8, pass_z = -4.4;    // of the scene and of pass.csv [m]
+constexpr double mount_x = 0.4, mount_z = -0.2;  // of the templates [m]
+constexpr double degree = std::numbers::pi / 180;
+
+/** The floor that a fan sees from a height: slant range where it begins, and from where to where it is ahead [m]. */
+struct FloorInView {
+    double begins, from, to;
+};
+FloorInView seeFloor(const SonarFigures& sonar, double height) {
+    const SonarMode& mode = sonar.modes.front();
+    const double half = std::max(mode.beam_height_deg, mode.rows_field_of_view_deg) / 2;
+    const double lower = (sonar.starter->pitch_deg + half) * degree, upper = (sonar.starter->pitch_deg - half) * degree;
+    return {height / std::sin(lower), height / std::tan(lower), height / std::tan(upper)};
+}
+
+/** Where the vehicle flies, and which objects the sweep places in its view; in YAML. */
+struct Course {
+    std::string vehicle, heights, objects;
+};
+
+/** Returns the course for a sonar: that of pass.csv, or, where the floor then begins beyond half of its range, one so
+ *  near the floor that it begins at 0.6 of it. */
+Course planCourse(const SonarFigures& sonar) {
+    constexpr double too_far = 0.5, near = 0.6, spread = 0.12;  // shares of the range, and of the height
+    const double range = starterRange(sonar), pass = pass_z + mount_z - floor_z, begins = seeFloor(sonar, pass).begins;
+    if (begins <= too_far * range)
+        return {"{file: pass.csv}  # north at 0.6 m/s, 3.5 m above the floor", "[-5.5, -4]",
+                "names: [tire_*], count: [1, 3], x: [4, 18], y: [-8, 6]"};
+    const double height = near * range / begins * pass, z = floor_z - mount_z + height, drawn = spread * height;
+    const double from = seeFloor(sonar, height - drawn).from, to = seeFloor(sonar, height + drawn).to;
+    const double across = to * std::tan(sonar.modes.front().field_of_view_deg / 2 * degree);
+    return {
+        fmt::format(" # from pass.csv the floor begins at {:.2g} m, of {:.2g} m\n"
+                    "      waypoints:  # over the pipeline, stones and a pile at 0.4 m/s, {:.2g} m above the floor\n"
+                    "        - {{time: 0, position: [21, 8.2, {:.2f}], yaw_deg: 8}}\n"
+                    "        - {{time: 12, position: [25.75, 8.87, {:.2f}], yaw_deg: 8}}",
+                    begins, range, height - mount_z, z, z),
+        fmt::format("[{:.3g}, {:.3g}]", z - drawn, z + drawn),
+        fmt::format("names: [tire_*, stone_7*], count: [1, 2], x: [{:.2f}, {:.2f}], y: [{:.2f}, {:.2f}]",
+                    mount_x + from, mount_x + to, -across, across)};
+}
+
 /** Returns the sweep, which shows samples as the device does, and draws what its operator sets. */
 std::string starterSweep(const SonarFigures& sonar) {
     const SonarDevice& device = *sonar.device;
     const double source_level = sourceLevelDb(sonar);
+    const Course course = planCourse(sonar);
     return fmt::format(fmt::runtime(embedded(insonify_starter_sweep_begin, insonify_starter_sweep_end)),
                        fmt::arg("height", sonar.starter->picture_height), fmt::arg("picture", pictureKeys(sonar)),
+                       fmt::arg("heights", course.heights), fmt::arg("objects", course.objects),
                        fmt::arg("smooth", device.smooth ? ", smooth: true" : ""), fmt::arg("tvg_low", device.tvg - 5),
                        fmt::arg("tvg_high", device.tvg + 5), fmt::arg("quiet", source_level + 8),
                        fmt::arg("loud", source_level - 8),
@@ -240,18 +284,18 @@ std::string starterDeployment(const SonarFigures& sonar) {
         fmt::runtime(templateFor(sonar)), arg("name", sonar.name), arg("title", sonar.title),
         arg("source", starter.note), arg("sources", sourceLines(sonar)), arg("summary", starter.summary),
         arg("frequency", mode.frequency_khz), arg("range", fmt::format("{:.10g}", starterRange(sonar))),
-        arg("range_min", mode.range_min), arg("range_max", mode.range_max), arg("bins", starter.bin_count),
-        arg("bin_us", starter.bin_us), arg("width", mode.beam_width_deg), arg("height", mode.beam_height_deg),
-        arg("sidelobe", device.sidelobe_db), arg("speckle", speckleLine(device)), arg("errors", errorBlock(device)),
-        arg("noise", noiseLines(device)), arg("code", codeLines(sonar)), arg("picture", pictureKeys(sonar)),
-        arg("tvg", device.tvg), arg("source_level", sourceLevelDb(sonar)),
+        arg("vehicle", planCourse(sonar).vehicle), arg("range_min", mode.range_min), arg("range_max", mode.range_max),
+        arg("bins", starter.bin_count), arg("bin_us", starter.bin_us), arg("width", mode.beam_width_deg),
+        arg("height", mode.beam_height_deg), arg("sidelobe", device.sidelobe_db), arg("speckle", speckleLine(device)),
+        arg("errors", errorBlock(device)), arg("noise", noiseLines(device)), arg("code", codeLines(sonar)),
+        arg("picture", pictureKeys(sonar)), arg("tvg", device.tvg), arg("source_level", sourceLevelDb(sonar)),
         arg("directivity", device.directivity_index_db), arg("period", starter.period),
         arg("columns", starter.columns_per_beam), arg("beams", mode.beam_count), arg("fov", mode.field_of_view_deg),
         arg("spacing", mode.field_of_view_deg / mode.beam_count), arg("pitch", starter.pitch_deg),
         arg("step", mode.step_deg), arg("speed", mode.step_deg / starter.period),
-        arg("step_error", device.step_error_deg),
-        arg("turn", mode.step_deg > 0 ? static_cast<int>(90 / mode.step_deg) : 0), arg("rows", mode.row_count),
-        arg("rows_fov", mode.rows_field_of_view_deg), arg("absorption", fmt::format("{:.2f}", db_per_m)),
+        arg("step_error", device.step_error_deg), arg("turn", mode.step_deg > 0 ? std::lround(360 / mode.step_deg) : 0),
+        arg("rows", mode.row_count), arg("rows_fov", mode.rows_field_of_view_deg),
+        arg("absorption", fmt::format("{:.2f}", db_per_m)),
         arg("absorption_block", absorptionBlock(mode.frequency_khz, db_per_m)), arg("pulse", pulseBlock(sonar)),
         arg("noise_note",
             starter.sends_tones ? "" : ", 33 us as a guess: a matched filter passes no more noise of a chirp"),

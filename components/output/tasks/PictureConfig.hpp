@@ -67,7 +67,9 @@ struct PictureConfig : DisplayConfig, RecordingConfig {
 
     static void describe(auto& self, auto& visit) {
         RecordingConfig::describe(self, visit);
-        visit({"every", "1", "pings from one picture to the next; the first ping has one", 1, 1e6}, self.every);
+        visit({"every", "1", "pings from one picture to the next: the first of so many has one, of a disc the last", 1,
+               1e6},
+              self.every);
         DisplayConfig::describe(self, visit);
     }
     void check(types::Diagnostics& diagnostics) const {

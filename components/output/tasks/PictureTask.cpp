@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
 #include "components/framework/Graph.hpp"
 #include "components/output/tasks/PairPictureTask.hpp"
@@ -21,22 +22,31 @@ bool PictureTask::configureHook() {
 
 bool PictureTask::startHook() {
     pings_ = 0;
+    last_.reset();
     openFiles(pictureConfig());
     return true;
 }
 
 void PictureTask::updateHook() {
     types::SonarPtr sample;
-    if (ping.readNew(sample)) take(*sample);
+    if (!ping.readNew(sample)) return;
+    take(*sample);
+    last_ = showsTurns() && pings_ < pictureConfig().every ? std::move(sample) : nullptr;
+}
+
+void PictureTask::stopHook() {
+    if (const types::SonarPtr last = std::move(last_); last && isWanted() && !environment().rehearsing) show(*last);
+    RecordingTask::stopHook();
 }
 
 void PictureTask::take(const types::Sonar& sample) {
-    const bool due = pings_++ % pictureConfig().every == 0;
+    const uint32_t every = pictureConfig().every;
+    const bool due = pings_++ % every == (showsTurns() ? every - 1 : 0);
     if (environment().rehearsing) {
         if (due) skipFile();
         return;
     }
-    if (due && (image.connected() || hasFiles()))
+    if (due && isWanted())
         show(sample);
     else
         painter_->skip(sample);

@@ -20,7 +20,8 @@ namespace insonify::output {
 
 /** Base of tasks that show pings: ping in, picture out, on a port and in files.
  *
- *  A picture is made only if `image` is connected or a file is configured, and for one ping in `every`. It has the
+ *  A picture is made only if `image` is connected or a file is configured, and for one ping in `every`: the first, or
+ *  for a disc the last, when the head has turned. A run that ends before has a picture of its last ping. It has the
  *  ping's time. */
 class PictureTask : public RecordingTask, public framework::Divisible {
 public:
@@ -36,6 +37,7 @@ protected:
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
+    void stopHook() override;
     void cleanupHook() override;
     /** Makes the picture of a ping, or lets the painter skip it. */
     void take(const types::Sonar& sample);
@@ -45,11 +47,16 @@ private:
     virtual std::unique_ptr<Painter> makePainter() = 0;
     /** Returns whether a picture shows only its own ping. */
     virtual bool showsOne() const { return false; }
+    /** Returns whether pictures show what a head hears while it turns. */
+    virtual bool showsTurns() const { return false; }
+    /** Returns whether pictures are received or written. */
+    bool isWanted() const { return image.connected() || hasFiles(); }
     void show(const types::Sonar& sample);
     void paint(const types::Sonar& sample, types::Image& picture);
 
     std::unique_ptr<Painter> painter_;
     framework::SamplePool<types::Image> pool_;
+    types::SonarPtr last_;  ///< Of a turn that has no picture yet.
     uint64_t pings_ = 0;
 };
 
@@ -64,6 +71,7 @@ private:
     const PictureConfig& pictureConfig() const override { return *config; }
     std::unique_ptr<Painter> makePainter() override { return std::make_unique<Picture>(*config); }
     bool showsOne() const override { return std::is_same_v<Picture, FanImage>; }
+    bool showsTurns() const override { return std::is_same_v<Picture, DiscImage>; }
 };
 
 using FanImageTask = PingPictureTask<FanImage>;
