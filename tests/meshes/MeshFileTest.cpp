@@ -114,7 +114,8 @@ TEST_F(MeshFileTest, AGltfInAWorldIsNotTurnedAndBringsItsAcoustics) {
 TEST_F(MeshFileTest, MaterialsOutsideOfTheFolderOfAMeshAreNotRead) {
     const auto materials = [&](const std::string& library) {
         write("m/meshes/part.obj",
-              "mtllib " + library + "\nv 0 0 0\nv 1 0 0\nv 1 2 3\no hull\nusemtl steel_grey\nf 1 2 3\n");
+              "mtllib " + library + "\nv 0 0 0\nv 1 0 0\nv 1 2 3\no hull\nf 1 2 3\n");  // whose material is the last of
+                                                                                        // a library that is read
         std::vector<std::string> names;
         const types::GeometryPtr geometry = readMeshFile(folder_ / "m/meshes/part.obj", MeshAxes::AsStored);
         for (const types::Material& each : geometry->materials) names.push_back(each.name);
@@ -181,18 +182,33 @@ TEST_F(MeshFileTest, ABodyLargerThanAnyShipWhoseFileStatesNoUnitIsAsked) {
         return write("big.obj", fmt::format("v 0 0 0\nv {} 0 0\nv 0 {} {}\nf 1 2 3\n", x, y, z));
     };
     const auto warns = [&](const Scene& scene) { return hasNotice(*scene.geometry, "if it is in millimetres"); };
-    EXPECT_TRUE(warns(readScene(obj(5000, 2000, 1000))));
-    EXPECT_TRUE(warns(placed(readScene(obj(5000, 2000, 1000)), {.up = UpAxis::Y})));
-    EXPECT_FALSE(warns(placed(readScene(obj(5000, 2000, 1000)), {.scale = 0.001}))) << "it is answered";
-    EXPECT_FALSE(warns(readScene(obj(300, 50, 60)))) << "a ship";
-    EXPECT_FALSE(warns(readScene(obj(5000, 2000, 40)))) << "ground";
     obj(5000, 2000, 1000);
     const std::string uri = "<mesh><uri>big.obj</uri>";
     const Scene twice = world("<model name='m'><link name='l'>" + visual("a", uri + "</mesh>") +
                               visual("b", uri + "</mesh>") + "</link></model>");
     EXPECT_TRUE(warns(twice));
     EXPECT_EQ(twice.geometry->notices.size(), 1u);
+    EXPECT_EQ(twice.geometry->notices.front().kind, types::Notice::Kind::Warning);
     EXPECT_FALSE(warns(world(model("m", uri + "<scale>0.001 0.001 0.001</scale></mesh>"))));
+}
+
+TEST_F(MeshFileTest, HasOnlyTheMaterialsOfItsSurfaces) {
+    write("own.mtl", "newmtl unused\nKd 1 1 1\nnewmtl steel\nKd 1 0 0\nnewmtl concrete\nKd 0 1 0\n");
+    const auto getNames = [&](const std::string& faces) {
+        write("part.obj", "mtllib own.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\n" + faces);
+        const Scene scene = readScene(folder_ / "part.obj");
+        std::vector<std::string> names;
+        for (const types::Material& material : scene.geometry->materials) names.push_back(material.name);
+        for (const types::Mesh& mesh : scene.geometry->meshes)
+            for (const types::Cluster& cluster : mesh.clusters)
+                EXPECT_LT(static_cast<size_t>(cluster.material), names.size());
+        return names;
+    };
+    using testing::UnorderedElementsAre;
+    EXPECT_THAT(getNames("usemtl concrete\nf 1 2 3\nusemtl steel\nf 1 3 4\n"),
+                UnorderedElementsAre("steel", "concrete"));
+    EXPECT_THAT(getNames("usemtl rubber\nf 1 2 3\nusemtl steel\nf 1 3 4\n"), UnorderedElementsAre("steel", "rubber"))
+        << "which the .mtl lacks";
 }
 
 TEST_F(MeshFileTest, AMeshFileWithoutTrianglesOrThatIsNoMeshIsNoScene) {
