@@ -150,7 +150,7 @@ std::vector<types::Mesh> getMeshes(FileMeshes& from, types::Notices& notices) {
     return meshes;
 }
 
-/** Removes the materials of no mesh: assimp makes one for surfaces that name none, and keeps all of an .mtl. */
+/** Removes the materials of no mesh: assimp makes one for surfaces that name none. */
 void dropUnused(types::Geometry& geometry) {
     std::vector<int> numbers(geometry.materials.size(), -1);
     const auto forEach = [&](auto&& visit) {
