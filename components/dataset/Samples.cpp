@@ -225,20 +225,21 @@ Part Samples::getPart(uint64_t index) const {
     return sweep_.split.of(sweep_.seed, scene * poses_ + index % poses_);
 }
 
-std::vector<std::string> describeEmptyParts(const Sweep& sweep, const Selection& selection, const Samples& samples) {
+std::string describeEmptyParts(const Sweep& sweep, const Selection& selection, const Samples& samples) {
     const double shares[] = {sweep.split.train, sweep.split.val, sweep.split.test};
     uint64_t counts[] = {0, 0, 0};
     const auto isMissing = [&](size_t part) { return shares[part] > 0 && counts[part] == 0; };
     for (uint64_t i = 0; i < selection.size() && (isMissing(0) || isMissing(1) || isMissing(2)); ++i)
         ++counts[static_cast<size_t>(samples.getPart(selection[i]))];
-    std::vector<std::string> all;
+    std::string missing;
     for (size_t part = 0; part < 3; ++part)
         if (isMissing(part))
-            all.push_back(
-                fmt::format("split.{}: is {:g}, but none of the {} samples is in this part: the poses are few, "
-                            "and each is drawn into a part; give more poses, or another seed",
-                            types::EnumNames<Part>::names[part], shares[part], selection.size()));
-    return all;
+            missing += fmt::format("{}{} (share {:g})", missing.empty() ? "" : ", nor in ",
+                                   types::EnumNames<Part>::names[part], shares[part]);
+    if (missing.empty()) return "";
+    return fmt::format(
+        "split: none of {} samples is in {}: few may miss a part, which is drawn; take more, or another seed",
+        selection.size(), missing);
 }
 
 namespace {

@@ -139,8 +139,8 @@ struct Surroundings {
  *  the floor or inside of a body, and for those farther from the scene's box than the sonar's range [m]. */
 std::vector<std::string> describeOddPoses(const std::vector<glm::dvec3>& positions, const Surroundings& around);
 
-/** Returns a sentence if a part whose share is not 0 has none of these samples. */
-std::vector<std::string> describeEmptyParts(const Sweep& sweep, const Selection& selection, const Samples& samples);
+/** Returns a sentence if a part whose share is not 0 has none of these samples; empty: all have. */
+std::string describeEmptyParts(const Sweep& sweep, const Selection& selection, const Samples& samples);
 
 /** Returns the random word with which a sample draws the setting `number` of Sweep::drawn. */
 uint64_t word(const Sweep& sweep, uint64_t index, size_t number);

@@ -319,7 +319,7 @@ TEST_F(DatasetCommandTest, WarnsOnceOfOddPosesOfClassesAndOfEmptyParts) {
           "warning: 1 of 4 poses: the sonar is below the floor or inside of a body",
           "warning: 2 of 4 poses: the sonar is farther from the scene than its range of 30 m",
           "match several classes, of which the first of the sweep counts: pile_", " matches pile, all and is a pile\n",
-          "warning: split.val: is 0.001, but none of the 4 samples is in this part"})
+          "warning: split: none of 4 samples is in val (share 0.001): "})
         EXPECT_THAT(outcome.err, HasSubstr(text));
     EXPECT_THAT(make("none").err, testing::Not(HasSubstr("above the water"))) << "there is no water surface";
 }

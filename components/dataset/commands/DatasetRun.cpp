@@ -250,7 +250,8 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
     for (const SceneFile& scene : scenes_) instances_.emplace_back(*classes_, scene.objects);
     selection_ =
         changes_.count ? Selection(samples_->count(), *changes_.count, sweep_.seed) : Selection(samples_->count());
-    std::ranges::copy(describeEmptyParts(sweep_, selection_, *samples_), std::back_inserter(warnings_));
+    if (const std::string empty = describeEmptyParts(sweep_, selection_, *samples_); !empty.empty())
+        warnings_.push_back(empty);
     checkDrawn();
     computeDigests();
 }
