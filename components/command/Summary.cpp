@@ -145,8 +145,8 @@ std::string omittedText(const std::vector<types::Omission>& omitted) {
 }  // namespace
 
 Summary::Summary(const framework::Deployment& deployment, const framework::RunResult& result)
-    : pings(result.most),
-      pings_by_port(result.most > result.samples ? result.by_port : decltype(pings_by_port)()),
+    : pings(result.rehearsed > 0 ? result.samples : result.most),
+      pings_by_port(pings > result.samples ? result.by_port : decltype(pings_by_port)()),
       wall_s(result.wall_s),
       realtime(!deployment.spec().lockstep),
       losses(deployment.losses()),
