@@ -2,13 +2,16 @@
 #include <fmt/core.h>
 
 #include <memory>
+#include <set>
 
 #include "components/command/CommandLine.hpp"
 #include "components/command/RunCommand.hpp"
 #include "components/console/Console.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
+#include "components/deployer/Pipeline.hpp"
 #include "components/framework/Deployment.hpp"
+#include "components/framework/Offers.hpp"
 
 namespace insonify::command {
 
@@ -43,10 +46,31 @@ Json connectionJson(const framework::Connection& connection) {
             {"policy", policy}};
 }
 
-Json validJson(const framework::Deployment& deployment) {
+/** Configures the tasks that lead to pings and touch nothing outside of the process, and returns what all tasks report
+ *  at the start of a run. */
+types::Notices findNotices(framework::Deployment& deployment) {
+    std::set<std::string> names;
+    for (const auto& task : deployment.tasks())
+        for (const framework::OutputPortBase* port : task->outputs())
+            if (port->typeName() == types::Sonar::type_name) names.insert(task->name());
+    names = upstream(std::move(names), deployment);
+    deployment.configure([&](const framework::TaskContext& task) {
+        return names.contains(task.name()) && dynamic_cast<const framework::Divisible*>(&task);
+    });
+    types::Notices all;
+    for (const std::string& line : deployment.spec().unused()) all.push_back(types::warning(line));
+    for (const auto& task : deployment.tasks())
+        for (const types::Notice& notice : task->notices())
+            all.emplace_back(task->name() + ": " + notice.text, notice.kind);
+    return all;
+}
+
+Json validJson(const framework::Deployment& deployment, const types::Notices& notices) {
     Json json = {{"valid", true}, {"errors", Json::array()}, {"tasks", Json::array()}, {"connections", Json::array()}};
     if (const auto& datum = deployment.spec().datum) json["datum"] = Json::parse(framework::flowYaml(*datum));
-    json["warnings"] = deployment.spec().unused();
+    json["warnings"] = json["notices"] = Json::array();
+    for (const types::Notice& notice : notices)
+        json[notice.kind == types::Notice::Kind::Warning ? "warnings" : "notices"].push_back(notice.text);
     for (const auto& task : deployment.spec().tasks) json["tasks"].push_back(taskJson(task));
     for (const auto& connection : deployment.connections()) json["connections"].push_back(connectionJson(connection));
     return json;
@@ -63,13 +87,13 @@ std::string activityText(const framework::ActivitySettings& activity) {
 }
 
 /** Prints each task with its outgoing connections, writers before readers. */
-void printGraph(framework::Deployment& deployment) {
+void printGraph(framework::Deployment& deployment, const types::Notices& notices) {
     const framework::DeploymentSpec& spec = deployment.spec();
     console::printResult("{}: valid, {}, {} tasks, {} connections\n", spec.file,
                          spec.lockstep ? "lockstep" : "realtime", deployment.tasks().size(),
                          deployment.connections().size());
     if (spec.datum) console::printResult("datum: {}\n", text(*spec.datum));
-    for (const std::string& line : spec.unused()) console::printResult("warning: {}\n", line);
+    for (const types::Notice& notice : notices) console::printResult("{}\n", labelled(notice));
     for (const framework::TaskContext* task : deployment.order()) {
         const framework::TaskSpec written = *framework::DeploymentSpec(spec).task(task->name());
         console::printResult("{} ({}, {})\n", written.name, written.type, activityText(written.activity));
@@ -87,7 +111,8 @@ int check(const RunOptions& options, bool json) {
     framework::Registry registry = coreTasks();
     try {
         framework::Deployment deployment(loadSpec(options), registry);
-        json ? print(validJson(deployment)) : printGraph(deployment);
+        const types::Notices notices = findNotices(deployment);
+        json ? print(validJson(deployment, notices)) : printGraph(deployment, notices);
         return 0;
     } catch (const types::ConfigError& error) {
         if (json) print(invalidJson(error));

@@ -144,12 +144,13 @@ public:
         if (pings_ == 0 && seconds_ == 0 && std::isfinite(end)) seconds_ = end;
     }
     void operator()(const framework::Progress& progress) {
-        const double made = static_cast<double>(progress.samples);
+        const uint64_t pings = pings_ > 0 ? progress.samples : progress.most;
+        const double made = static_cast<double>(pings);
         const double share = pings_ > 0     ? made / static_cast<double>(pings_)
                              : seconds_ > 0 ? progress.elapsed_s / seconds_
                                             : 0;
         line_.show(progress.wall_s,
-                   fmt::format("{}{} pings, {:.1f} per second, {:.1f}{} s simulated{}", progress.samples,
+                   fmt::format("{}{} pings, {:.1f} per second, {:.1f}{} s simulated{}", pings,
                                pings_ > 0 ? fmt::format(" of {}", pings_) : "", made / progress.wall_s,
                                progress.elapsed_s, seconds_ > 0 ? fmt::format(" of {:.1f}", seconds_) : "",
                                console::timeLeft(share, progress.wall_s)));

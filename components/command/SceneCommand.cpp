@@ -18,7 +18,6 @@
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
-#include "components/scene/Placement.hpp"
 #include "components/scene/Scene.hpp"
 #include "types/geometry/Extent.hpp"
 
@@ -126,8 +125,12 @@ Json getObjects(const types::Geometry& geometry) {
 }
 
 Json findWarnings(const std::string& file, const types::Geometry& geometry, const types::Extent& extent,
-                  const Json& materials) {
+                  const Json& materials, const scene::Placement& placement) {
     Json warnings = Json::array();
+    if (const auto unit = scene::askUnit(
+            file, extent.size(), "set placement.scale: 0.001 (--scale 0.001 shows it), else placement.scale: 1");
+        unit && !placement.scale)
+        warnings.push_back(unit->text);
     if (const std::string side = scene::sideWarning(geometry, file); !side.empty()) warnings.push_back(side);
     if (const glm::dvec3 size = extent.size(); std::max({size.x, size.y, size.z}) > 1e5)
         warnings.push_back("the scene is more than 100 km wide; glTF and SDF are in metres");
@@ -141,11 +144,12 @@ Json findWarnings(const std::string& file, const types::Geometry& geometry, cons
     return warnings;
 }
 
-std::string getAxes(const std::string& file, const scene::Scene& scene) {
+std::string getAxes(const std::string& file, const scene::Scene& scene, const scene::Placement& placement) {
     const scene::SceneFormat& format = *scene::findSceneFormat(file);
-    return fmt::format("{}{}: {}", format.name,
-                       format.component == "meshes" ? ", unless placement.up and scale say otherwise" : "",
-                       scene::describeLay(scene, {}, types::WorldFrame::AsIs));
+    std::string placed = format.component == "meshes" ? ", unless placement.up and scale say otherwise" : "";
+    if (placement.up || placement.scale)
+        placed = placement.scale ? fmt::format(", scaled by {}", *placement.scale) : "";
+    return fmt::format("{}{}: {}", format.name, placed, scene::describeLay(scene, placement, types::WorldFrame::AsIs));
 }
 
 /** Returns the animations of a scene: [{name, duration_s, channels}]. */
@@ -165,8 +169,9 @@ Json describeAnimations(const scene::Scene& scene) {
  *  connection may move], animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets,
  *  omitted: [{name, reason}] of what is omitted, not_understood: [], warnings: []}. Throws types::ConfigError for a
  * file that cannot be read. */
-Json sceneReport(const std::string& file, const scene::OmitRules& rules, std::optional<double> frequency_khz) {
-    const scene::Scene scene = scene::withoutOmitted(scene::readScene(file), rules);
+Json sceneReport(const std::string& file, const scene::OmitRules& rules, std::optional<double> frequency_khz,
+                 const scene::Placement& placement) {
+    const scene::Scene scene = scene::withoutOmitted(scene::placed(scene::readScene(file), placement), rules);
     const types::GeometryPtr named = scene::applyMaterialNames(scene.geometry);
     const types::Geometry& geometry = *named;
     const types::Extent extent = types::getExtent(geometry);
@@ -177,12 +182,12 @@ Json sceneReport(const std::string& file, const scene::OmitRules& rules, std::op
             materials.push_back(
                 makeJson(geometry.materials[i], surfaces.triangles[i], surfaces.areas[i], frequency_khz));
     for (const scene::Node& node : scene.nodes) nodes.push_back(node.name);
-    Json omitted = Json::array(), warnings = findWarnings(file, geometry, extent, materials);
+    Json omitted = Json::array(), warnings = findWarnings(file, geometry, extent, materials, placement);
     for (const types::Omission& omission : scene.omitted)
         omitted.push_back({{"name", omission.name}, {"reason", omission.reason}});
     for (const std::string& warning : scene.warnings) warnings.push_back(warning);
     return {{"file", file},
-            {"axes", getAxes(file, scene)},
+            {"axes", getAxes(file, scene, placement)},
             {"bounds", makeJson(extent)},
             {"triangles", geometry.triangleCount()},
             {"materials", materials},
@@ -321,14 +326,16 @@ void printScene(const Json& scene) {
 
 }  // namespace
 
-int showScene(const std::string& file, bool json, const scene::OmitRules& rules, std::optional<double> frequency_khz) {
+int showScene(const std::string& file, bool json, const scene::OmitRules& rules, std::optional<double> frequency_khz,
+              const scene::Placement& placement) {
     const auto require = [](const char* option, const std::optional<double>& value, double min, double max) {
         if (value && !(*value >= min && *value <= max))
             throw types::ConfigError("", option, fmt::format("is {:g}; must be from {} to {}", *value, min, max));
     };
     require("--frequency-khz", frequency_khz, 0.001, 1e5);
     require("--water-surface", rules.water_surface, -1e5, 1e5);
-    const Json scene = sceneReport(file, rules, frequency_khz);
+    require("--scale", placement.scale, 1e-6, 1e6);
+    const Json scene = sceneReport(file, rules, frequency_khz, placement);
     json ? print(scene) : printScene(scene);
     return 0;
 }
@@ -395,6 +402,7 @@ void addSceneCommand(CLI::App& app, Action& action) {
         bool json = false;
         scene::OmitRules rules;
         std::optional<double> frequency_khz;
+        scene::Placement placement;
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command =
@@ -410,12 +418,23 @@ void addSceneCommand(CLI::App& app, Action& action) {
         ->type_name("Z");
     command->add_option("--frequency-khz", options->frequency_khz, "at which thin walls reflect and pass sound [kHz]")
         ->type_name("F");
+    command
+        ->add_option_function<std::string>(
+            "--up",
+            [options](const std::string& axis) { options->placement.up = static_cast<scene::UpAxis>(axis[0] - 'x'); },
+            "as `placement.up` of scene::SceneTask: the axis of the file that points up")
+        ->check(CLI::IsMember({"x", "y", "z"}));
+    command
+        ->add_option("--scale", options->placement.scale,
+                     "as `placement.scale` of scene::SceneTask: factor of all lengths, 0.001 for a file in millimetres")
+        ->type_name("F");
     addMakeCommand(*command, action);
     command->callback([options, command, &action] {
         if (!command->get_subcommands().empty()) return;
         if (options->file.empty()) throw CLI::RequiredError("FILE");
         action = [options] {
-            return showScene(exampleAt(options->file), options->json, options->rules, options->frequency_khz);
+            return showScene(exampleAt(options->file), options->json, options->rules, options->frequency_khz,
+                             options->placement);
         };
     });
 }

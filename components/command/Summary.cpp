@@ -145,7 +145,8 @@ std::string omittedText(const std::vector<types::Omission>& omitted) {
 }  // namespace
 
 Summary::Summary(const framework::Deployment& deployment, const framework::RunResult& result)
-    : pings(result.samples),
+    : pings(result.rehearsed > 0 ? result.samples : result.most),
+      pings_by_port(pings > result.samples ? result.by_port : decltype(pings_by_port)()),
       wall_s(result.wall_s),
       realtime(!deployment.spec().lockstep),
       losses(deployment.losses()),
@@ -171,13 +172,16 @@ Json Summary::json() const {
     Json json = {{"pings", pings},     {"wall_s", wall_s},           {"tasks", by_name},
                  {"losses", losses},   {"passed_over", passed_over}, {"omitted", toJson(omitted)},
                  {"quality", quality}, {"devices", devices}};
+    if (!pings_by_port.empty()) json["pings_by_port"] = pings_by_port;
     if (realtime) json["warnings"] = warnings;
     return json;
 }
 
 std::string Summary::text() const {
-    std::string text = fmt::format("{} pings in {:.2f} s: {:.1f} per second\n", pings, wall_s,
+    std::string text = fmt::format("{} pings in {:.2f} s: {:.1f} per second", pings, wall_s,
                                    wall_s > 0 ? static_cast<double>(pings) / wall_s : 0.0);
+    for (const auto& [port, count] : pings_by_port) text += fmt::format(", {} {}", port, count);
+    text += "\n";
     for (const Task& task : tasks) {
         if (plans.contains(task.name) && task.update.cycles > 0)
             text += fmt::format("{}: {:.1f} ms per ping, the median; {:.1f} ms at most\n", task.name,

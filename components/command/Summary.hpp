@@ -24,7 +24,8 @@ struct Summary {
         Times latency;                        ///< In realtime: from a sample's stamp to its writing.
         uint64_t overruns = 0, late = 0, errors = 0, hangs = 0;  ///< As in framework::Timing.
     };
-    uint64_t pings = 0;
+    uint64_t pings = 0;                             ///< Of the sonar that has sent most.
+    std::map<std::string, uint64_t> pings_by_port;  ///< Empty if all sonars have sent as many.
     double wall_s = 0;
     bool realtime = false;
     std::vector<Task> tasks;                      ///< In file order.

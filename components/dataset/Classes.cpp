@@ -1,5 +1,7 @@
 #include "components/dataset/Classes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -31,6 +33,7 @@ Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects, co
     }
     if (patterns > 0 && unmatched.size() == patterns) throw types::ConfigError(unmatched);
     for (const types::Diagnostic& each : unmatched) notices_.push_back(each.text());
+    noteSeveral(known);
     std::set<std::string> bare;
     for (const std::string& object : objects) bare.insert(withoutNumber(object));
     if (rules_.empty()) names_.assign(bare.begin(), bare.end());
@@ -43,6 +46,24 @@ Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects, co
         ghost_ = static_cast<uint32_t>(names_.size());
     }
     refuseTwice(sweep);
+}
+
+void Classes::noteSeveral(const std::vector<std::string>& names) {
+    std::set<std::string> doubtful;
+    std::string first;
+    for (const std::string& name : names) {
+        std::string classes;
+        for (const ClassRule& rule : rules_)
+            if (std::ranges::any_of(rule.patterns, [&](const std::string& each) { return matches(each, name); }))
+                classes += (classes.empty() ? "" : ", ") + rule.name;
+        if (classes.find(',') == classes.npos || !doubtful.insert(name).second || doubtful.size() > 1) continue;
+        first = fmt::format("{} matches {} and is a {}", name, classes, rules_[of(name) - 1].name);
+    }
+    if (!doubtful.empty())
+        notices_.push_back(
+            fmt::format("classes: {} of the scene's names match several classes, of which the first of "
+                        "the sweep counts: {}",
+                        doubtful.size(), first));
 }
 
 void Classes::refuseTwice(const Sweep& sweep) const {

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <numeric>
 #include <unordered_map>
 
 #include "components/dataset/Placement.hpp"
@@ -92,7 +96,7 @@ Selection::Selection(uint64_t total, uint64_t count, uint64_t seed) : size_(coun
 
 Samples::Samples(const Sweep& sweep, std::vector<std::vector<TimedPose>> trajectory, std::vector<SceneParts> scenes)
     : sweep_(sweep), trajectory_(std::move(trajectory)), scenes_(std::move(scenes)) {
-    poses_ = sweep.grid ? sweep.grid->gridSize() : sweep.random ? sweep.random_count : trajectory_.size();
+    poses_ = countPoses(sweep, trajectory_);
     for (const Setting& setting : sweep.settings)
         settings_ = std::min<uint64_t>(settings_ * setting.values.size(), 1'000'000'000'000);
     const double all = static_cast<double>(poses_) * static_cast<double>(settings_) * double(sweep.scenes.size());
@@ -162,10 +166,14 @@ std::vector<std::pair<std::string, std::string>> Samples::getSettings(size_t set
     return chosen;
 }
 
-std::vector<TimedPose> Samples::getRun(uint64_t pose) const {
-    if (sweep_.trajectory) return trajectory_[pose];
-    const std::vector<double> values =
-        sweep_.grid ? gridded(*sweep_.grid, pose) : drawn(*sweep_.random, sweep_.seed, pose);
+uint64_t countPoses(const Sweep& sweep, const std::vector<std::vector<TimedPose>>& trajectory) {
+    return sweep.grid ? sweep.grid->gridSize() : sweep.random ? sweep.random_count : trajectory.size();
+}
+
+std::vector<TimedPose> makeRun(const Sweep& sweep, const std::vector<std::vector<TimedPose>>& trajectory,
+                               uint64_t pose) {
+    if (sweep.trajectory) return trajectory[pose];
+    const std::vector<double> values = sweep.grid ? gridded(*sweep.grid, pose) : drawn(*sweep.random, sweep.seed, pose);
     const types::Mount mount{{values[0], values[1], values[2]}, values[3], values[4], values[5]};
     types::Pose at;
     at.source_frame = "body";
@@ -173,11 +181,11 @@ std::vector<TimedPose> Samples::getRun(uint64_t pose) const {
     at.position = mount.position;
     at.orientation = mount.orientation();
     std::vector<TimedPose> run{{0, at}};
-    if (!sweep_.lines) return run;
-    const LinesConfig& lines = *sweep_.lines;
+    if (!sweep.lines) return run;
+    const LinesConfig& lines = *sweep.lines;
     std::optional<pose::SeaMotion> motion;
     if (pose::SeaMotionConfig own = lines.motion.value_or(pose::SeaMotionConfig{}); lines.motion) {
-        own.seed = static_cast<uint32_t>(types::hashed(sweep_.seed, pose, motion_stream + own.seed));
+        own.seed = static_cast<uint32_t>(types::hashed(sweep.seed, pose, motion_stream + own.seed));
         motion.emplace(own);
     }
     const double heading = types::radians(mount.yaw_deg);
@@ -202,14 +210,109 @@ Sample Samples::at(uint64_t index) const {
     sample.pose = index % poses_;
     sample.setting = index / poses_ % settings_;
     sample.scene = index / poses_ / settings_;
-    sample.run = getRun(sample.pose);
+    sample.run = makeRun(sweep_, trajectory_, sample.pose);
     sample.objects = place(sample.scene, sample.pose, sample.run.front().at);
     sample.settings = getSettings(sample.setting);
     for (size_t i = 0; i < sweep_.drawn.size(); ++i)
         sample.settings.emplace_back(sweep_.drawn[i].property, sweep_.drawn[i].draw(word(sweep_, index, i)));
     sample.seed = types::hashed(sweep_.seed, index, noise_stream) | 1;
-    sample.part = sweep_.split.of(sweep_.seed, sample.scene * poses_ + sample.pose);
+    sample.part = getPart(index);
     return sample;
+}
+
+Part Samples::getPart(uint64_t index) const {
+    const uint64_t scene = index / poses_ / settings_;
+    return sweep_.split.of(sweep_.seed, scene * poses_ + index % poses_);
+}
+
+std::string describeEmptyParts(const Sweep& sweep, const Selection& selection, const Samples& samples) {
+    const double shares[] = {sweep.split.train, sweep.split.val, sweep.split.test};
+    uint64_t counts[] = {0, 0, 0};
+    const auto isMissing = [&](size_t part) { return shares[part] > 0 && counts[part] == 0; };
+    for (uint64_t i = 0; i < selection.size() && (isMissing(0) || isMissing(1) || isMissing(2)); ++i)
+        ++counts[static_cast<size_t>(samples.getPart(selection[i]))];
+    std::string missing;
+    for (size_t part = 0; part < 3; ++part)
+        if (isMissing(part))
+            missing += fmt::format("{}{} (share {:g})", missing.empty() ? "" : ", nor in ",
+                                   types::EnumNames<Part>::names[part], shares[part]);
+    if (missing.empty()) return "";
+    return fmt::format(
+        "split: none of {} samples is in {}: few may miss a part, which is drawn; take more, or another seed",
+        selection.size(), missing);
+}
+
+namespace {
+
+/** The nearest surfaces straight above and below a position. */
+struct Column {
+    double above = std::numeric_limits<double>::infinity(), below = -above;  ///< Heights [m].
+    bool above_faces_up = false, below_faces_up = false;
+
+    /** Whether the position is behind the surface above it, with none in front of it below. */
+    bool isBuried() const { return above_faces_up && !below_faces_up; }
+    void add(double height, double at, bool faces_up) {
+        if (height > at && height < above) above = height, above_faces_up = faces_up;
+        if (height <= at && height > below) below = height, below_faces_up = faces_up;
+    }
+};
+
+/** Returns the column of each position. Each triangle visits the positions in its span of x. */
+std::vector<Column> findColumns(const std::vector<glm::dvec3>& positions, const types::Geometry& geometry) {
+    std::vector<size_t> order(positions.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    const auto byX = [&](size_t i) { return positions[i].x; };
+    std::ranges::sort(order, {}, byX);
+    std::vector<Column> columns(positions.size());
+    for (const types::Object& object : geometry.objects) {
+        const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
+        const double hand = glm::determinant(glm::dmat3(object.world_from_object));
+        for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
+            std::array<glm::dvec3, 3> corners;
+            for (size_t i = 0; i < 3; ++i)
+                corners[i] = object.world_from_object * glm::dvec4(mesh.positions[mesh.indices[k + i]], 1);
+            const auto& [a, b, c] = corners;
+            const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+            const double high = std::max({a.x, b.x, c.x});
+            auto at = std::ranges::lower_bound(order, std::min({a.x, b.x, c.x}), {}, byX);
+            for (; area != 0 && at != order.end() && positions[*at].x <= high; ++at)
+                if (const auto height = highestAt({corners}, positions[*at].x, positions[*at].y))
+                    columns[*at].add(*height, positions[*at].z, (area > 0) == (hand > 0));
+        }
+    }
+    return columns;
+}
+
+double computeDistance(const types::Extent& box, const glm::dvec3& at) {
+    return glm::length(glm::max(glm::max(box.low - at, at - box.high), glm::dvec3(0)));
+}
+
+}  // namespace
+
+std::vector<std::string> describeOddPoses(const std::vector<glm::dvec3>& positions, const Surroundings& around) {
+    std::vector<std::string> all;
+    const auto describe = [&](const std::string& what, auto&& isOdd) {
+        size_t count = 0, first = 0;
+        for (size_t i = 0; i < positions.size(); ++i)
+            if (isOdd(i) && count++ == 0) first = i;
+        const glm::dvec3 at = positions.empty() ? glm::dvec3(0) : positions[first];
+        if (count == 0) return;
+        const std::string each = around.step > 1 ? fmt::format(" (each {}th of the sweep)", around.step) : "";
+        all.push_back(
+            fmt::format("{} of {} poses{}: the sonar is {}; the first is pose {}, at [{:.4g}, {:.4g}, {:.4g}]", count,
+                        positions.size(), each, what, first * around.step, at.x, at.y, at.z));
+    };
+    if (const auto surface = around.water_surface)
+        describe(fmt::format("above the water surface, at z {:g} m (z is up: depths are negative)", *surface),
+                 [&](size_t i) { return positions[i].z > *surface; });
+    if (!around.geometry || around.geometry->objects.empty()) return all;
+    const types::Extent box = types::getExtent(*around.geometry);
+    describe(fmt::format("farther from the scene than its range of {:g} m, and shows nothing of it", around.range),
+             [&](size_t i) { return computeDistance(box, positions[i]) > around.range; });
+    const std::vector<Column> columns = findColumns(positions, *around.geometry);
+    describe("below the floor or inside of a body: the surface above it faces up, and none below it does",
+             [&](size_t i) { return columns[i].isBuried(); });
+    return all;
 }
 
 }  // namespace insonify::dataset

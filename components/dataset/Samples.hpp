@@ -1,12 +1,15 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "components/dataset/Sweep.hpp"
 #include "types/geometry/Extent.hpp"
+#include "types/geometry/Geometry.hpp"
 #include "types/samples/Pose.hpp"
 #include "types/text/ConfigError.hpp"
 
@@ -95,13 +98,14 @@ public:
     uint64_t settings() const { return settings_; }
     /** Returns a sample. Throws types::ConfigError if its objects do not fit. */
     Sample at(uint64_t index) const;
+    /** Returns the part of a sample. */
+    Part getPart(uint64_t index) const;
     /** Returns the values of a combination of settings, "task.property" and YAML. */
     std::vector<std::pair<std::string, std::string>> getSettings(size_t setting) const;
     /** Returns the names of all objects that are placed in a scene. */
     std::vector<std::string> getObjects(size_t scene) const;
 
 private:
-    std::vector<TimedPose> getRun(uint64_t pose) const;
     std::vector<PlacedObject> place(size_t scene, uint64_t pose, const types::Pose& vehicle) const;
     /** Throws if a pattern of a group matches in none of the scenes. */
     void refuseUnmatched(size_t group) const;
@@ -115,6 +119,28 @@ private:
     std::vector<std::vector<std::vector<std::string>>> names_;  ///< Per scene and group.
     uint64_t poses_ = 0, settings_ = 1, count_ = 0;
 };
+
+/** Returns the poses of one number of a sweep: a grid's, a drawn one, or that of its trajectory. */
+std::vector<TimedPose> makeRun(const Sweep& sweep, const std::vector<std::vector<TimedPose>>& trajectory,
+                               uint64_t pose);
+
+/** Returns the number of poses of a sweep. @param trajectory as for Samples */
+uint64_t countPoses(const Sweep& sweep, const std::vector<std::vector<TimedPose>>& trajectory);
+
+/** What the poses of a sonar are compared with. */
+struct Surroundings {
+    std::optional<double> water_surface;                     ///< [m]
+    std::shared_ptr<const types::Geometry> geometry;         ///< In the world; null: unknown.
+    double range = std::numeric_limits<double>::infinity();  ///< Of the sonar [m].
+    uint64_t step = 1;                                       ///< The numbers of the compared poses are multiples of it.
+};
+
+/** Returns a sentence, with count and first pose, for the positions of a sonar above the water surface, for those below
+ *  the floor or inside of a body, and for those farther from the scene's box than the sonar's range [m]. */
+std::vector<std::string> describeOddPoses(const std::vector<glm::dvec3>& positions, const Surroundings& around);
+
+/** Returns a sentence if a part whose share is not 0 has none of these samples; empty: all have. */
+std::string describeEmptyParts(const Sweep& sweep, const Selection& selection, const Samples& samples);
 
 /** Returns the random word with which a sample draws the setting `number` of Sweep::drawn. */
 uint64_t word(const Sweep& sweep, uint64_t index, size_t number);

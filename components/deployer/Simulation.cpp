@@ -109,6 +109,10 @@ Simulation::Simulation(const std::string& file, SimulationOptions options) : reg
     connectReaders(options.truth);
     for (const auto& task : deployment_->tasks())
         if (auto* const sonar = dynamic_cast<sonar::PingTask*>(task.get())) sonar->useThreads(options.threads);
+    deployment_->onWarning([this](const std::string& text) {
+        constexpr size_t at_most = 100;
+        if (warnings_.size() < at_most) warnings_.push_back(text);
+    });
     deployment_->configure();
     start();
 }

@@ -114,6 +114,8 @@ public:
     /** Returns the notices of all tasks and their plans, "task: notice". Plans have theirs from the first ping on.
      *  Throws std::runtime_error while another thread steps. */
     types::Notices notices() const;
+    /** Returns the warnings that tasks gave while they ran since the last call, at most a hundred. */
+    std::vector<std::string> consumeWarnings() { return std::exchange(warnings_, {}); }
     double period() const { return period_; }  ///< [s]
     double time() const { return time_; }      ///< Default time of the next step; for any thread [s].
 
@@ -154,8 +156,9 @@ private:
     double start_time_ = 0;
     std::atomic<double> time_{0};
     mutable std::mutex in_use_;
-    std::optional<types::Time> last_;  ///< Time of the step before.
-    std::set<std::string> own_seeds_;  ///< Tasks whose seed has been given by name.
+    std::optional<types::Time> last_;    ///< Time of the step before.
+    std::vector<std::string> warnings_;  ///< For consumeWarnings().
+    std::set<std::string> own_seeds_;    ///< Tasks whose seed has been given by name.
 };
 
 }  // namespace insonify::deployer

@@ -62,6 +62,14 @@ void SimulationBatch::set(const std::map<std::string, std::string>& values) {
     for (const auto& simulation : simulations_) simulation->set(values);  // what one refuses, the first refuses
 }
 
+std::vector<std::string> SimulationBatch::consumeWarnings() {
+    std::vector<std::string> all;
+    for (const auto& simulation : simulations_)
+        for (std::string& text : simulation->consumeWarnings())
+            if (std::ranges::count(all, text) == 0) all.push_back(std::move(text));
+    return all;
+}
+
 void SimulationBatch::reset(std::span<const size_t> which, std::span<const std::optional<uint64_t>> seeds) {
     for (const size_t number : which)
         if (number >= size()) throw std::out_of_range(fmt::format("there is no simulation {} of {}", number, size()));

@@ -30,6 +30,8 @@ public:
     std::vector<std::vector<SteppedPing>> step(std::vector<std::map<std::string, types::Pose>> at);
     /** Changes properties of all simulations, as Simulation::set(). */
     void set(const std::map<std::string, std::string>& values);
+    /** Returns Simulation::consumeWarnings() of all simulations, each text once. */
+    std::vector<std::string> consumeWarnings();
     /** Resets these simulations, each with a seed, not 0; none: the same seed. */
     void reset(std::span<const size_t> which, std::span<const std::optional<uint64_t>> seeds);
 

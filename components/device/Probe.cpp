@@ -54,6 +54,10 @@ Bytes pingQuestion() {
 constexpr const char* nobody_there =
     "nothing listens there: the device or its deployment does not run, its `port` is another, or its `address` is "
     "127.0.0.1 and you ask from another machine";
+constexpr const char* no_line =
+    "the line cannot be opened: the adapter is not plugged in, its path is another (`ls /dev/serial/by-id`), this user "
+    "may not use it (group dialout), or the deployment that makes the path does not run";
+constexpr const char* port_is_taken = "another program of this machine listens to these broadcasts: stop it";
 constexpr const char* lost_on_the_way =
     "a datagram was lost on the way: another address or port, a firewall, or a device of another kind";
 
@@ -120,6 +124,15 @@ DriverLine lineFor(const Probe& probe, const ProbeAddress& address, std::chrono:
         case Probe::Line::Broadcast: return DriverLine::broadcasts(port);
     }
     throw LineError("there is no such line");
+}
+
+/** Returns why a line could not be opened, or why it refused the question. */
+const char* getAdvice(Probe::Line line) {
+    switch (line) {
+        case Probe::Line::Serial: return no_line;
+        case Probe::Line::Broadcast: return port_is_taken;
+        default: return nobody_there;
+    }
 }
 
 std::string getName(const Probe& probe, const ProbeAddress& address) {
@@ -302,7 +315,7 @@ ProbeOutcome ask(const Probe& probe, const ProbeAddress& address, std::chrono::m
         outcome.failure = error.what();
         may_be_there = may_be_there && error.error_number != ECONNREFUSED;
     }
-    if (!outcome.failure.empty()) outcome.advice = may_be_there ? probe.silence : nobody_there;
+    if (!outcome.failure.empty()) outcome.advice = may_be_there ? probe.silence : getAdvice(probe.line);
     return outcome;
 }
 

@@ -136,10 +136,11 @@ void Deployment::warn(const std::string& text) noexcept try {
 
 // -- life cycle -------------------------------------------------------------------------------------------------------
 
-void Deployment::configure() {
+void Deployment::configure(const std::function<bool(const TaskContext&)>& chosen) {
     ConfigReader reader(spec_.file);
     types::Diagnostics elsewhere;
     for (const auto& task : tasks()) {
+        if (chosen && !chosen(*task)) continue;
         const Outcome outcome = task->configure();
         if (outcome) continue;
         const TaskSpec& spec = *spec_.task(task->name());
@@ -179,6 +180,7 @@ RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop
         result.warnings = warnings_;
     }
     static_cast<Progress&>(result) = executor_->progress();
+    for (const OutputPortBase* port : graph_.counted()) result.by_port[port->path()] = port->written();
     return result;
 }
 

@@ -19,8 +19,9 @@ namespace insonify::framework {
 
 /** How far a run got, with its failures and warnings. */
 struct RunResult : Progress {
-    std::vector<std::string> failures;  ///< "task: message"; empty: no failure.
-    std::vector<std::string> warnings;  ///< The first hundred of onWarning().
+    std::map<std::string, uint64_t> by_port;  ///< Counted samples of each source, also before the shard.
+    std::vector<std::string> failures;        ///< "task: message"; empty: no failure.
+    std::vector<std::string> warnings;        ///< The first hundred of onWarning().
     bool failed() const { return !failures.empty(); }
 };
 
@@ -52,7 +53,7 @@ public:
     const std::vector<TaskContext*>& order() const { return graph_.order(); }  ///< Writers before readers.
 
     /** Configures every task. Throws types::ConfigError with the diagnostics of all tasks, after cleaning up. */
-    void configure();
+    void configure(const std::function<bool(const TaskContext&)>& chosen = {});
     /** Starts the tasks, runs until a limit, the end of the sources, a failing task or `stop`, and stops the tasks.
      *  Does not clean up. `report` is called as by Executor::run, on this thread. */
     RunResult run(const RunLimits& limits, const std::atomic<bool>& stop, const Executor::Report& report = {});

@@ -43,6 +43,8 @@ public:
     /** Returns the number of counted samples (PortBase::counted) that every source of counted samples has written. A
      *  source of counted samples reads none. */
     uint64_t countedSamples() const;
+    /** The outputs of the sources of counted samples. */
+    const std::vector<const OutputPortBase*>& counted() const { return counted_; }
     /** Returns whether a task is in Exception or FatalError, so that a run must end. */
     bool hasFailed() const;
     /** Returns whether a source of counted samples is in error and thus writes none. */

@@ -18,7 +18,6 @@
 #include <type_traits>
 
 #include "components/scene/gltf/Gltf.hpp"
-#include "types/NamedFile.hpp"
 
 namespace insonify::meshes {
 
@@ -106,29 +105,26 @@ std::string withoutTextures(const std::filesystem::path& file) {
     return text;
 }
 
-/** Opens the files that belong to a mesh file, such as the materials that an .obj names. */
-class OwnFiles final : public Assimp::DefaultIOSystem {
+/** Opens the mesh file alone. Of an .obj's library of materials a sonar needs nothing: `usemtl` has their names, and
+ *  assimp would give surfaces without a name its last one. */
+class OnlyThisFile final : public Assimp::DefaultIOSystem {
 public:
-    explicit OwnFiles(std::filesystem::path file) : file_(std::move(file)) {}
+    explicit OnlyThisFile(std::string file) : file_(std::move(file)) {}
 
-    bool Exists(const char* named) const override { return isOwn(named) && DefaultIOSystem::Exists(named); }
+    bool Exists(const char* named) const override { return file_ == named && DefaultIOSystem::Exists(named); }
     Assimp::IOStream* Open(const char* named, const char* mode) override {
-        return isOwn(named) ? DefaultIOSystem::Open(named, mode) : nullptr;
+        return file_ == named ? DefaultIOSystem::Open(named, mode) : nullptr;
     }
 
 private:
-    bool isOwn(const char* named) const {
-        std::error_code error;
-        return types::belongsTo(named, file_) && std::filesystem::is_regular_file(named, error);
-    }
-    std::filesystem::path file_;
+    const std::string file_;
 };
 
 }  // namespace
 
 FileMeshes readByAssimp(const std::filesystem::path& file, MeshAxes axes) {
     Assimp::Importer importer;
-    importer.SetIOHandler(new OwnFiles(file));  // the importer deletes it
+    importer.SetIOHandler(new OnlyThisFile(file.string()));  // the importer deletes it
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, axes == MeshAxes::AsStored);  // else y-up
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);                          // not ids
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |

@@ -19,7 +19,6 @@
 #include "components/scene/Surface.hpp"
 #include "components/scene/UniqueNames.hpp"
 #include "components/scene/gltf/Gltf.hpp"
-#include "types/geometry/Extent.hpp"
 #include "types/text/ConfigError.hpp"
 
 namespace insonify::meshes {
@@ -151,6 +150,22 @@ std::vector<types::Mesh> getMeshes(FileMeshes& from, types::Notices& notices) {
     return meshes;
 }
 
+/** Removes the materials of no mesh: assimp makes one for surfaces that name none. */
+void dropUnused(types::Geometry& geometry) {
+    std::vector<int> numbers(geometry.materials.size(), -1);
+    const auto forEach = [&](auto&& visit) {
+        for (types::Mesh& mesh : geometry.meshes)
+            for (types::Cluster& cluster : mesh.clusters) visit(cluster.material);
+    };
+    forEach([&](int material) { numbers[static_cast<size_t>(material)] = 0; });
+    int used = 0;
+    std::vector<types::Material> kept;
+    for (size_t i = 0; i < numbers.size(); ++i)
+        if (numbers[i] == 0) numbers[i] = used++, kept.push_back(std::move(geometry.materials[i]));
+    geometry.materials = std::move(kept);
+    forEach([&](int& material) { material = numbers[static_cast<size_t>(material)]; });
+}
+
 types::GeometryPtr readGltfMesh(const std::filesystem::path& file, MeshAxes axes) {
     const Scene scene = readGltf(file);
     types::Geometry geometry = *scene.geometry;
@@ -171,6 +186,7 @@ types::GeometryPtr readApart(const std::filesystem::path& file, MeshAxes axes) {
     auto geometry = std::make_shared<types::Geometry>();
     for (const std::string& name : from.materials) geometry->materials.emplace_back().name = name;
     geometry->meshes = getMeshes(from, geometry->notices);
+    dropUnused(*geometry);
     for (const FileMeshes::Placing& placing : from.placings)
         if (!geometry->meshes[placing.part].indices.empty())
             geometry->objects.push_back({placing.name, static_cast<int>(placing.part), placing.world_from_part});
@@ -220,19 +236,6 @@ types::GeometryPtr readMeshFile(const std::filesystem::path& file, MeshAxes axes
         fmt::format("has extension \"{}\"; may be .dae, .obj, .stl, .ply, .gltf or .glb", extension));
 }
 
-std::string unitWarning(const std::filesystem::path& file, const glm::dvec3& size, const char* remedy) {
-    constexpr double longest_ship = 500, flattest = 0.1;
-    const std::string extension = getExtension(file);
-    const double most = std::max({size.x, size.y, size.z}), least = std::min({size.x, size.y, size.z});
-    if ((extension != ".stl" && extension != ".obj" && extension != ".ply") || most < longest_ship ||
-        least < flattest * most)
-        return "";
-    return fmt::format(
-        "{} is {:.4g} x {:.4g} x {:.4g} m: it states no unit and is taken as metres; if it is in "
-        "millimetres, {}",
-        file.filename().string(), size.x, size.y, size.z, remedy);
-}
-
 Scene readMeshScene(const std::filesystem::path& file) {
     const types::GeometryPtr read = readMeshFile(file, MeshAxes::ZUp);
     types::Geometry geometry = *read;
@@ -240,9 +243,6 @@ Scene readMeshScene(const std::filesystem::path& file) {
     if (getExtension(file) == ".dae")  // its turn is what both readings differ by
         scene.z_up_from_file = geometry.objects.front().world_from_object *
                                glm::inverse(readMeshFile(file, MeshAxes::AsStored)->objects.front().world_from_object);
-    const glm::dvec3 size = types::getExtent(geometry).size();
-    if (const std::string warning = unitWarning(file, size, "set placement.scale: 0.001"); !warning.empty())
-        geometry.notices.push_back(types::warning(warning));
     const std::string name = file.stem().string();
     for (types::Material& material : geometry.materials)
         if (material.name.empty() || material.name == "DefaultMaterial") material.name = name;

@@ -1,7 +1,6 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <glm/vec3.hpp>
 #include <string>
 
 #include "components/meshes/FileMeshes.hpp"
@@ -37,10 +36,6 @@ FileMeshes readMeshesApart(const std::filesystem::path& file, MeshAxes axes, con
  *  and .ply specify neither unit nor up axis and are taken as they are. Geometry::notices lists what was omitted.
  * Throws types::ConfigError for a file of another kind, a damaged file, or a file without triangles. */
 types::GeometryPtr readMeshFile(const std::filesystem::path& file, MeshAxes axes);
-
-/** Returns what to ask about a mesh of this size [m] whose file states no unit, if it is a body larger than any ship;
- *  empty: nothing. Ground is flat, and may be as large. */
-std::string unitWarning(const std::filesystem::path& file, const glm::dvec3& size, const char* remedy);
 
 /** Reads a mesh file, .dae, .obj, .stl or .ply, as a scene: a node with the name of the file, below it those of the
  *  file. A material without a name has that of the file. Throws as readMeshFile(). */

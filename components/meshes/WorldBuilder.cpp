@@ -17,6 +17,7 @@
 #include <string>
 
 #include "components/meshes/MeshFile.hpp"
+#include "components/scene/Placement.hpp"
 #include "components/scene/Surface.hpp"
 #include "components/scene/SurfaceMaps.hpp"
 
@@ -281,10 +282,10 @@ std::vector<Placing> WorldBuilder::placingsOfMesh(const std::string& name, const
     if (mesh.is_centred) placings = meshes_.centred(std::move(placings));
     const glm::dmat4 scale = glm::scale(glm::dmat4(1), mesh.scale);
     for (Placing& placing : placings) placing.visual_from_object = scale * placing.visual_from_object;
-    const std::string warning =
-        unitWarning(*path, meshes_.extent(placings).size(),
-                    "give it <scale>0.001 0.001 0.001</scale>, in URDF scale=\"0.001 0.001 0.001\"");
-    if (!warning.empty() && unit_warnings_.insert(warning).second) geometry_.notices.push_back(types::warning(warning));
+    if (mesh.scale != glm::dvec3(1)) return placings;  // which answers the question
+    const auto question = askUnit(*path, meshes_.extent(placings).size(),
+                                  "give it <scale>0.001 0.001 0.001</scale>, in URDF scale=\"0.001 0.001 0.001\"");
+    if (question && unit_questions_.insert(question->text).second) geometry_.notices.push_back(*question);
     return placings;
 } catch (const types::ConfigError& failure) {
     leaveOut(name, fmt::format("{} {}", mesh.uri, failure.diagnostics().front().message));

@@ -121,7 +121,7 @@ private:
         std::vector<std::string> visuals;
     };
     std::map<std::string, LeftOut> left_out_;  ///< By the reason.
-    std::set<std::string> unit_warnings_;      ///< Already given.
+    std::set<std::string> unit_questions_;     ///< Already given.
     std::set<std::string> searched_;           ///< Sentences about files that are not found.
     size_t flat_visuals_ = 0;
 };

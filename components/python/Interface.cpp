@@ -204,6 +204,10 @@ private:
 
 const char* insonify_error() { return last_error.c_str(); }
 
+const char* insonify_version() {
+    return guarded(nullptr, [] { return INSONIFY_VERSION; });
+}
+
 void insonify_free(Handle* handle) {
     const auto* stepped = dynamic_cast<const Stepped*>(handle);
     if (stepped && stepped->process.isForked()) return;  // to end it would wait for the threads of the parent
@@ -281,6 +285,14 @@ int insonify_set(Handle* stepped, const char* const* assignments, size_t count) 
         else
             Stepped::usable<SimulationHandle>(*stepped).simulation.set(values);
         return 0;
+    });
+}
+
+const char* insonify_warnings(Handle* stepped) {
+    return guarded(nullptr, [&] {
+        if (dynamic_cast<BatchHandle*>(stepped))
+            return keep(Stepped::usable<BatchHandle>(*stepped).batch.consumeWarnings());
+        return keep(Stepped::usable<SimulationHandle>(*stepped).simulation.consumeWarnings());
     });
 }
 

@@ -16,6 +16,8 @@ const char* insonify_error();
 /** Frees a handle; a simulation of the parent is left as it is in a forked child, which may not use it either:
  *  RuntimeError. */
 void insonify_free(Handle* handle);
+/** Returns the version, that of `insonify --version`. */
+const char* insonify_version();
 /** Returns a handle's facts as JSON. */
 const char* insonify_facts(const Handle* handle);
 /** Fills in the first `room` of a handle's arrays, which are valid as long as the handle, and returns their number;
@@ -36,6 +38,8 @@ int insonify_step(Handle* simulation, const char* const* ports, const double* po
 double insonify_time(const Handle* simulation);
 /** Changes properties of a simulation or of all simulations of a batch: "task.property=value" each, all or none. */
 int insonify_set(Handle* stepped, const char* const* assignments, size_t count);
+/** Returns what a simulation, or the simulations of a batch, have warned of since the last call: a list of texts. */
+const char* insonify_warnings(Handle* stepped);
 /** Resets a simulation.
  *  @param seed null: the same.
  *  @return 0; -1 on errors. */

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
@@ -45,11 +46,17 @@ std::string getName(const glm::dvec3& direction) {
     return fmt::format("({:.3g}, {:.3g}, {:.3g})", direction.x, direction.y, direction.z);
 }
 
+/** Returns whether a file states neither unit nor up axis. */
+bool isBare(const std::filesystem::path& file) {
+    const std::string extension = getExtension(file);
+    return extension == ".obj" || extension == ".stl" || extension == ".ply";
+}
+
 }  // namespace
 
 Scene placed(const Scene& scene, const Placement& placement) {
     const glm::dmat4 z_up_from_file = zUpFromFile(scene, placement);
-    const glm::dmat4 sized = glm::scale(glm::dmat4(1), glm::dvec3(placement.scale));
+    const glm::dmat4 sized = glm::scale(glm::dmat4(1), glm::dvec3(placement.scale.value_or(1)));
     const glm::dmat4 placed_from_scene =
         worldFromZUp(placement) * z_up_from_file * glm::inverse(scene.z_up_from_file) * sized;
     Scene result = scene;
@@ -64,10 +71,6 @@ Scene placed(const Scene& scene, const Placement& placement) {
             if (scene.nodes[static_cast<size_t>(node.node)].parent < 0) node.before = placed_from_scene * node.before;
         result.animations = std::make_shared<const Animations>(std::move(animations));
     }
-    if (placement.scale != 1)  // it answers the question of the reader whether the file is in metres
-        std::erase_if(geometry->notices, [](const types::Notice& notice) {
-            return notice.text.find("placement.scale") != notice.text.npos;
-        });
     result.geometry = std::move(geometry);
     result.z_up_from_file = z_up_from_file;
     return result;
@@ -133,9 +136,8 @@ std::string describeLay(const Scene& scene, const Placement& placement, types::W
 }
 
 std::string sideWarning(const types::Geometry& geometry, const std::filesystem::path& file) {
-    const std::string extension = getExtension(file);
     const bool is_gltf = isGltf(file);
-    if (!is_gltf && extension != ".obj" && extension != ".stl" && extension != ".ply") return "";
+    if (!is_gltf && !isBare(file)) return "";
     constexpr double suspicious = 0.6;  // share of the surface
     constexpr size_t enough = 20'000;   // triangles of an object that are added
     glm::dvec3 facing(0);               // [m2]
@@ -163,6 +165,16 @@ std::string sideWarning(const types::Geometry& geometry, const std::filesystem::
               "m wide in y. OBJ, STL and PLY are taken as z-up; a file written with y up looks like this: export it "
               "with Z up, or set placement.up: y of its task";
     return fmt::format(fmt::runtime(text), 100 * facing.y / all, size.z, size.y);
+}
+
+std::optional<types::Notice> askUnit(const std::filesystem::path& file, const glm::dvec3& size, const char* remedy) {
+    constexpr double doubtful = 100, longest_ship = 500, flattest = 0.1;
+    const double most = std::max({size.x, size.y, size.z}), least = std::min({size.x, size.y, size.z});
+    if (!isBare(file) || most < doubtful) return {};
+    const std::string text = fmt::format(
+        "{} is {:.4g} x {:.4g} x {:.4g} m: it states no unit and is taken as metres; if it is in millimetres, {}",
+        file.filename().string(), size.x, size.y, size.z, remedy);
+    return most >= longest_ship && least >= flattest * most ? types::warning(text) : types::Notice(text);
 }
 
 }  // namespace insonify::scene

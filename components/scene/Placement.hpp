@@ -8,6 +8,7 @@
 #include "components/scene/Scene.hpp"
 #include "types/geometry/WorldFrame.hpp"
 #include "types/text/Describe.hpp"
+#include "types/text/Notice.hpp"
 
 namespace insonify::scene {
 
@@ -20,7 +21,7 @@ struct Placement {
     double yaw_deg = 0;
     types::WorldFrame frame = types::WorldFrame::AsIs;
     std::optional<UpAxis> up = {};
-    double scale = 1;
+    std::optional<double> scale = {};
 
     bool operator==(const Placement&) const = default;
 
@@ -36,7 +37,10 @@ struct Placement {
               self.frame);
         visit({"up", "", "axis of the file that points up; absent: y of glTF, that of .dae as it states it, else z"},
               self.up);
-        visit({"scale", "1", "factor of all lengths of the file, such as 0.001 for one in millimetres", 1e-6, 1e6},
+        visit({"scale", "1",
+               "factor of all lengths of the file, such as 0.001 for one in millimetres; absent: 1, and what states no "
+               "unit and is large is asked about",
+               1e-6, 1e6},
               self.scale);
     }
 };
@@ -56,6 +60,11 @@ std::string describeLay(const Scene& scene, const Placement& placement, types::W
 /** Returns a warning if most of the surface of a file's scene faces along y and it is higher than it is wide in y: glTF
  *  that was written with z up, or OBJ, STL or PLY with y up, has its sea floor as a wall. Empty: it does not. */
 std::string sideWarning(const types::Geometry& geometry, const std::filesystem::path& file);
+
+/** Returns the question whether a scene of this size [m] is in millimetres, if its file (OBJ, STL, PLY) states no unit:
+ *  a warning for a body larger than any ship, a notice for all else of 100 m or more. None: nothing to ask.
+ *  @param remedy says what answers the question */
+std::optional<types::Notice> askUnit(const std::filesystem::path& file, const glm::dvec3& size, const char* remedy);
 
 }  // namespace insonify::scene
 

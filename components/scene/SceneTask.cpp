@@ -17,6 +17,7 @@
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Drawings.hpp"
 #include "types/Time.hpp"
+#include "types/geometry/Extent.hpp"
 #include "types/geometry/WorldFrame.hpp"
 #include "types/text/DidYouMean.hpp"
 
@@ -281,8 +282,7 @@ std::string SceneTask::indivisible() const {
 types::Notices SceneTask::notices() const {
     types::Notices all = geometry_ ? geometry_->notices : types::Notices{};
     if (scene_) addOmissions(*scene_, all);
-    if (!lay_.empty()) all.push_back(lay_);
-    if (!side_.empty()) all.push_back(types::warning(side_));
+    all.insert(all.end(), placement_notices_.begin(), placement_notices_.end());
     if (const std::string place = bathymetry_ ? bathymetry_->placeText() : ""; !place.empty()) all.push_back(place);
     if (animator_) all.insert(all.end(), animator_->notices().begin(), animator_->notices().end());
     return all;
@@ -298,6 +298,19 @@ std::string SceneTask::layText(const Scene& scene) const {
     for (size_t i = 0; name && i < std::size(types::EnumNames<types::WorldFrame>::names); ++i)
         if (types::EnumNames<types::WorldFrame>::names[i] == *name) frame = static_cast<types::WorldFrame>(i);
     return describeLay(scene, config->placement.value_or(Placement{}), frame);
+}
+
+/** Returns how the scene lies, and what to ask about it: whether it is on its side, and its unit. */
+types::Notices SceneTask::describePlacement(const Scene& scene) const {
+    types::Notices all;
+    if (const std::string lay = layText(scene); !lay.empty()) all.emplace_back(lay);
+    if (const std::string side = sideWarning(*scene.geometry, config->file); !side.empty())
+        all.push_back(types::warning(side));
+    if (config->placement && config->placement->scale) return all;  // which answers the question
+    if (const auto unit = askUnit(config->file, types::getExtent(*scene.geometry).size(),
+                                  "set placement.scale: 0.001, else placement.scale: 1"))
+        all.push_back(*unit);
+    return all;
 }
 
 std::shared_ptr<const Scene> SceneTask::loadToRun() try {
@@ -324,8 +337,7 @@ bool SceneTask::configureHook() {
     makeAnimator(scene, diagnostics);
     if (!diagnostics.empty())
         throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
-    lay_ = layText(*scene);
-    side_ = sideWarning(*scene->geometry, config->file);
+    placement_notices_ = describePlacement(*scene);
     std::ranges::sort(movables_, {}, &Movable::node);
     movable_objects_ = getMovableObjects();
     mover_.assign(geometry_->objects.size(), nullptr);

@@ -126,6 +126,7 @@ private:
     /** Loads the scene again if Gazebo has not answered before. */
     std::shared_ptr<const Scene> loadToRun();
     std::string layText(const Scene& scene) const;
+    types::Notices describePlacement(const Scene& scene) const;
     std::unique_ptr<Bathymetry> openSurvey() const;  ///< Null without one.
     /** Returns the configured materials with their tables read. Adds errors to `diagnostics`. */
     std::map<std::string, Acoustics> materials(types::Diagnostics& diagnostics) const;
@@ -152,8 +153,7 @@ private:
     mutable std::optional<Placement> scene_placement_;
     mutable std::map<std::string, double> scene_scale_;
     mutable OmitRules scene_rules_;
-    std::string lay_;                                ///< How the scene is oriented; empty if it need not be reported.
-    std::string side_;                               ///< Warning of a scene on its side; empty: it is not.
+    types::Notices placement_notices_;               ///< How the scene is oriented, and questions about its file.
     mutable bool scene_has_survey_ = false;          ///< Whether scene_ has the floor's material.
     mutable std::optional<MosaicConfig> scene_map_;  ///< The mosaic whose classes are among the materials of scene_.
     types::GeometryPtr geometry_;                    ///< From file or gazebo, with all materials.

@@ -32,6 +32,18 @@ TEST(ClassesTest, TheFirstMatchingRuleCounts) {
     EXPECT_EQ(classes.of("rock.001"), 0u);
 }
 
+TEST(ClassesTest, NamesThatMatchSeveralClassesAreANotice) {
+    Sweep sweep;
+    sweep.classes = {{"wreck", {"hull"}, 3, 1}, {"first", {"*_00", "pile_00"}, 4, 1}, {"pile", {"pile_*"}, 5, 1}};
+    EXPECT_THAT(Classes(sweep, objects).notices(),
+                ElementsAre("classes: 1 of the scene's names match several classes, of which the first of the sweep "
+                            "counts: pile_00 matches first, pile and is a first"));
+    std::swap(sweep.classes[1], sweep.classes[2]);
+    EXPECT_THAT(Classes(sweep, objects).notices(), ElementsAre(HasSubstr("pile_00 matches pile, first and is a pile")));
+    sweep.classes.pop_back();
+    EXPECT_THAT(Classes(sweep, objects).notices(), ElementsAre());
+}
+
 TEST(ClassesTest, ClassesOfShadowsFollowAllOthers) {
     Sweep sweep;
     EXPECT_EQ(Classes(sweep, objects).shadow(3), 0u);

@@ -296,9 +296,37 @@ TEST_F(DatasetCommandTest, ChecksOptionsOfTheCommandLine) {
     EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
+TEST_F(DatasetCommandTest, AShardCountsItsOwnSamplesAndSaysWhetherTheSetIsWhole) {
+    const auto print = [&](const char* shard) { return make("out", {"--shard", shard}).out; };
+    EXPECT_THAT(print("0/3"), AllOf(HasSubstr("shard 0/3: 3 of 3 samples in out, 3 of them new\n"),
+                                    HasSubstr("of the 8 samples of all shards some are missing")));
+    EXPECT_THAT(print("0/3"), HasSubstr("shard 0/3: 3 of 3 samples in out, 0 of them new\n"));
+    print("1/3");
+    for (const char* known : {"2 of 2 samples in out, 2 of them new\n", "2 of 2 samples in out, 0 of them new\n"})
+        EXPECT_THAT(print("2/3"), AllOf(HasSubstr(known), HasSubstr("all 8 samples of all shards are there: ")));
+}
+
+TEST_F(DatasetCommandTest, WarnsOnceOfOddPosesOfClassesAndOfEmptyParts) {
+    writeFile(folder_ / "sweep.yml",
+              "poses: {grid: {x: 2, y: -2, z: [-5.5, 3, -40, 500]}}\nclasses: {pile: pile_*, all: '*'}\n"
+              "split: {train: 0.999, val: 0.001, test: 0}\npicture: {height: 100}\n");
+    const Outcome outcome = make("out", {"--set", "scene.water_surface=0"});
+    EXPECT_THAT(outcome, succeeds());
+    for (const char* text :
+         {"warning: 2 of 4 poses: the sonar is above the water surface, at z 0 m (z is up: depths are negative); the "
+          "first is "
+          "pose 1, at [2.4, -2, 2.8]\n",
+          "warning: 1 of 4 poses: the sonar is below the floor or inside of a body",
+          "warning: 2 of 4 poses: the sonar is farther from the scene than its range of 30 m",
+          "match several classes, of which the first of the sweep counts: pile_", " matches pile, all and is a pile\n",
+          "warning: split: none of 4 samples is in val (share 0.001): "})
+        EXPECT_THAT(outcome.err, HasSubstr(text));
+    EXPECT_THAT(make("none").err, testing::Not(HasSubstr("above the water"))) << "there is no water surface";
+}
+
 TEST_F(DatasetCommandTest, TheSweepOfTheHarbourIsMadeWithItsDeployment) {
     ASSERT_THAT(callInsonify(folder_, {"dataset", root / "deploy/truth.yml", "--sweep",
                                        root / "deploy/sweeps/harbour.yml", "--out", "out", "--shard", "0/24"}),
-                prints(AllOf(HasSubstr("1 of 24 samples in "), HasSubstr(", 1 of them new"))));
+                prints(AllOf(HasSubstr("shard 0/24: 1 of 1 samples in "), HasSubstr(", 1 of them new"))));
     EXPECT_GT(makeRecord("out", "000000")["annotations"].size(), 5u);
 }

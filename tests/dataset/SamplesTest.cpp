@@ -12,6 +12,7 @@
 namespace insonify::dataset {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
@@ -234,6 +235,55 @@ TEST(SamplesTest, RefusesTooManySamples) {
     Sweep sweep = drawn(100000000);
     sweep.settings = {{"sonar.range", {{"20", 1, 1}, {"30", 1, 1}}}};
     EXPECT_THROW(Samples(sweep, {}, {SceneParts{}}), types::ConfigError);
+}
+
+/** A plate of 20 x 20 m at a height, which faces up or down. */
+void addPlate(types::Geometry& geometry, float z, bool faces_up) {
+    types::Mesh& mesh = geometry.meshes.emplace_back();
+    mesh.positions = {{-10, -10, z}, {10, -10, z}, {10, 10, z}, {-10, 10, z}};
+    mesh.indices = faces_up ? std::vector<uint32_t>{0, 1, 2, 0, 2, 3} : std::vector<uint32_t>{0, 2, 1, 0, 3, 2};
+    geometry.objects.push_back({"plate", static_cast<int>(geometry.meshes.size()) - 1, glm::dmat4(1)});
+}
+
+TEST(SamplesTest, OddPosesAreCountedWithTheirFirst) {
+    const auto describe = [](std::vector<glm::dvec3> at, const Surroundings& around) {
+        return describeOddPoses(at, around);
+    };
+    EXPECT_THAT(describe({{0, 0, -1}, {1, 2, 0.5}, {0, 0, 3}}, {0.0, nullptr}),
+                ElementsAre("2 of 3 poses: the sonar is above the water surface, at z 0 m (z is up: depths are "
+                            "negative); the first is pose 1, at [1, 2, 0.5]"));
+    EXPECT_THAT(describe({{0, 0, -1}, {0, 0, 0}}, {0.0, nullptr}), ElementsAre());
+    const auto floor = std::make_shared<types::Geometry>();
+    addPlate(*floor, -8, true);
+    EXPECT_THAT(describe({{0, 0, -7}, {1, 3, -9}, {5, -5, -3}}, {{}, floor}),
+                ElementsAre(HasSubstr("1 of 3 poses: the sonar is below the floor or inside of a body")));
+    EXPECT_THAT(describe({{0, 0, -7}, {100, 0, -7}, {21, 0, -7}}, {{}, floor, 12}),
+                ElementsAre(AllOf(HasSubstr("1 of 3 poses: the sonar is farther from the scene than its range of 12 m"),
+                                  HasSubstr("the first is pose 1"))));
+    const auto box = std::make_shared<types::Geometry>(*floor);
+    addPlate(*box, -9, false);
+    EXPECT_EQ(describe({{0, 0, -7}, {0, 0, -8.5}}, {{}, box}).size(), 1u) << "within the box that is the floor";
+    const auto hull = std::make_shared<types::Geometry>();
+    addPlate(*hull, 0, false);
+    EXPECT_THAT(describe({{0, 0, -7}}, {{}, hull}), ElementsAre()) << "below a hull";
+    const auto deck = std::make_shared<types::Geometry>(*floor);
+    addPlate(*deck, 0, true);
+    EXPECT_THAT(describe({{0, 0, -7}}, {{}, deck}), ElementsAre()) << "between a floor and a deck";
+    floor->objects[0].world_from_object[0][0] = -1;  // a mirror turns the winding, not the face
+    EXPECT_EQ(describe({{0, 0, -9}, {0, 0, -7}}, {{}, floor}).size(), 1u);
+}
+
+TEST(SamplesTest, APartWithoutSamplesIsReported) {
+    Sweep sweep = drawn(3);
+    sweep.split = {0.98, 0.01, 0.01};
+    const Samples samples(sweep, {}, {SceneParts{}});
+    EXPECT_THAT(describeEmptyParts(sweep, Selection(samples.count()), samples),
+                HasSubstr("split: none of 3 samples is in val (share 0.01), nor in test (share 0.01): "));
+    sweep.split = {1, 0, 0};
+    EXPECT_EQ(describeEmptyParts(sweep, Selection(samples.count()), samples), "");
+    sweep.random_count = 200, sweep.split = {0.6, 0.2, 0.2};
+    const Samples many(sweep, {}, {SceneParts{}});
+    EXPECT_EQ(describeEmptyParts(sweep, Selection(many.count()), many), "");
 }
 
 }  // namespace

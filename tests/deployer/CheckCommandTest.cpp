@@ -85,6 +85,9 @@ TEST(CheckCommandTest, AnErrorInABlockOfSetHasThePathOfItsKey) {
         {"pulse={bandwidth_khz: 50, ring_down: {level_db: -20}}", "pulse.ring_down.decay_db_per_m: is missing"},
         {"beam_pattern={transmit: {azimuth: {width_deg: -1}}}", "beam_pattern.transmit.azimuth.width_deg: is -1 deg"},
         {"water={depth: [1, 2]}", "water.depth: is a list"},
+        {"water=5", "water: is 5; must be a block of keys and values, such as {temperature_celsius: "},
+        {"beam_pattern=3", "beam_pattern: is 3; must be a block of keys and values, such as {"},
+        {"targets=3", "targets: is not a key here"},
     };
     for (const auto& [set, error] : errors)
         EXPECT_THAT(callInsonify(folder, {"check", "wall.yml", "--set", "sonar." + set}),

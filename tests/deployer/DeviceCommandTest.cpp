@@ -69,6 +69,8 @@ TEST(DeviceCommandTest, NoAnswerIsReportedWithReasonsAndCode1) {
     EXPECT_THAT(outcome.out, HasSubstr("serial line /nowhere/line: ping protocol (Ping360, Ping1D)\nserial line "
                                        "/nowhere/line: SeaNet (Micron)\n  No such file"))
         << "one reason for both";
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("/dev/serial/by-id"), testing::Not(HasSubstr("127.0.0.1"))));
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("--timeout"))) << "waiting does not help";
     EXPECT_THAT(outcome.err, HasSubstr("nothing answers at /nowhere/line"));
     const json all =
         json::parse(callInsonify(folder, {"device", "probe", "/nowhere/line", "--timeout", "0.05", "--json"}).out);

@@ -43,7 +43,9 @@ struct PingDriverTest : testing::Test {
     void TearDown() override {
         if (!run_) return;
         run_->signal(SIGINT);
-        EXPECT_THAT(run_->wait(), succeeds());
+        const Outcome ended = run_->wait();
+        EXPECT_THAT(ended, succeeds());
+        EXPECT_THAT(ended.out, testing::ContainsRegex("(^|\n)[1-9][0-9]* pings in ")) << "of the device with a driver";
     }
     std::string udpPort(const std::string& task) const {
         const std::string text = readFile(folder_ / "stderr.txt");

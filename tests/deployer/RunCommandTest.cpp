@@ -207,3 +207,20 @@ TEST(RunCommandTest, ARealtimeRunEndsAfterItsPings) {
     ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
     EXPECT_GE(samplesIn(folder, "out/wall.0.log"), 3u);
 }
+
+/** A device whose driver is silent must not hide the pings of another. */
+TEST(RunCommandTest, SonarsThatPingUnequallyAreCountedByThemselves) {
+    const std::string second = replaced(
+        replaced(wall_deployment, "  noise:\n",
+                 "  slow:\n    type: sonar::SonarTask\n    activity: {period: 0.5}\n    properties: {beam_count: 4}\n"
+                 "  noise:\n"),
+        "  - {from: scene.snapshot, to: sonar.snapshot}\n",
+        "  - {from: scene.snapshot, to: sonar.snapshot}\n  - {from: scene.snapshot, to: slow.snapshot}\n");
+    const WallFolder folder(second);
+    const Outcome run =
+        callInsonify(folder, {"run", "wall.yml", "--duration", "2", "--out", "out", "--summary", "summary.json"});
+    EXPECT_THAT(run.out, testing::ContainsRegex("20 pings in .* per second, slow.ping 4, sonar.ping 20\n"));
+    const json summary = json::parse(readFile(folder / "summary.json"));
+    EXPECT_EQ(summary["pings"], 20);
+    EXPECT_EQ(summary["pings_by_port"], json({{"slow.ping", 4}, {"sonar.ping", 20}}));
+}

@@ -7,6 +7,8 @@
 #include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
+using testing::AllOf;
+using testing::AnyOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -112,6 +114,63 @@ TEST(SceneCommandTest, ARunWarnsOfASceneOnItsSideUnlessItIsPlacedUpright) {
     };
     EXPECT_THAT(warnings({}), HasSubstr("warning: scene: the scene may lie on its side: "));
     EXPECT_THAT(warnings({"--set", "scene.placement={up: z}"}), Not(HasSubstr("on its side")));
+}
+
+TEST(SceneCommandTest, AMeshWithoutUnitsIsShownAsItsPlacementWouldPlaceIt) {
+    const TestFolder folder;
+    writeFile(folder / "y_up.obj",
+              "v -2000 0 -1500\nv 2000 0 -1500\nv 2000 0 1500\nv -2000 0 1500\nf 1 2 3\nf 1 3 4\n");
+    const auto print = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"scene", "y_up.obj"});
+        return callInsonify(folder, more);
+    };
+    EXPECT_THAT(print({}).out, AllOf(HasSubstr("warning: y_up.obj is 4000 x 0 x 3000 m: it states no unit"),
+                                     HasSubstr("--scale 0.001"), HasSubstr("may lie on its side")));
+    const std::string placed = print({"--up", "y", "--scale", "0.001"}).out;
+    EXPECT_THAT(placed, AllOf(HasSubstr("size 4, 3, 0 m"), HasSubstr("scaled by 0.001: "), HasSubstr("its y up")));
+    EXPECT_THAT(placed, Not(AnyOf(HasSubstr("states no unit"), HasSubstr("on its side"))));
+    EXPECT_THAT(print({"--scale", "1"}).out, Not(HasSubstr("states no unit"))) << "it is answered";
+    EXPECT_THAT(print({"--scale", "0"}), isRefused(HasSubstr("--scale: is 0; must be from 1e-06 to 1000000")));
+    EXPECT_THAT(print({"--up", "north"}), isRefused(HasSubstr("--up")));
+}
+
+/** What a run reports when it starts is reported by a check, which makes no file. */
+TEST(SceneCommandTest, ACheckWarnsOfTheSceneAsARunDoes) {
+    const TestFolder folder;
+    writeFile(folder / "z_up.gltf", floorGltf(true));
+    writeFile(folder / "big.obj", "v 0 0 0\nv 2000 0 0\nv 2000 2000 0\nv 0 2000 0\nf 1 2 3\nf 1 3 4\n");
+    writeFile(folder / "empty.world",
+              "<sdf version='1.9'><world name='w'><include><uri>model://none</uri></include>"
+              "</world></sdf>");
+    std::string deployment = readFile(fs::path(insonify::test::source_dir) / "deploy/minimal.yml");
+    writeFile(folder / "d.yml", replaced(deployment, "scenes/wall.glb", "z_up.gltf"));
+    std::map<std::string, std::string> scenes{{"z_up.gltf", "warning: scene: the scene may lie on its side"},
+                                              {"big.obj", "notice: scene: big.obj is 2000 x 2000 x 0 m"}};
+    if (fs::exists(fs::path(insonify::test::build_dir) / "lib/insonify/sdf.so"))
+        scenes["empty.world"] = "the scene has no triangles: an empty sea";
+    for (const auto& [scene, text] : scenes) {
+        SCOPED_TRACE(scene);
+        const std::vector<std::string> set{"--set", "scene.file=" + scene};
+        const Outcome run = callInsonify(folder, {"run", "d.yml", "--pings", "1", "--out", "out", set[0], set[1]});
+        fs::remove_all(folder / "out");
+        const Outcome check = callInsonify(folder, {"check", "d.yml", set[0], set[1]});
+        EXPECT_EQ(check.code, 0);
+        EXPECT_FALSE(fs::exists(folder / "out"));
+        EXPECT_THAT(check.out, HasSubstr(text));
+        std::istringstream lines(run.err);
+        for (std::string line; std::getline(lines, line);)
+            if (line.find(": scene: ") != line.npos) {
+                EXPECT_THAT(check.out, HasSubstr(line + "\n"));
+            }
+        const json reported = json::parse(callInsonify(folder, {"check", "d.yml", "--json", set[0], set[1]}).out);
+        EXPECT_THAT(reported["warnings"].dump() + reported["notices"].dump(),
+                    HasSubstr(text.substr(text.find("scene"))));
+    }
+    EXPECT_THAT(
+        callInsonify(folder, {"check", "d.yml", "--set", "scene.file=big.obj", "--set", "scene.placement={scale: 1}"})
+            .out,
+        Not(HasSubstr("states no unit")))
+        << "it is answered";
 }
 
 TEST(SceneCommandTest, TheDeliveredScenesAreUpright) {

@@ -128,7 +128,8 @@ TEST(DeploymentSpecTest, RefusesATextThatIsNotADeployment) {
     EXPECT_THAT(findDiagnostics(""), ElementsAre("a.yml: is empty; a deployment needs tasks"));
     EXPECT_THAT(findDiagnostics("# nothing\n"), ElementsAre(HasSubstr("is empty")));
     EXPECT_THAT(findDiagnostics("tasks: {}"), ElementsAre("a.yml:1:8: tasks: is empty; a deployment needs a task"));
-    EXPECT_THAT(findDiagnostics("hello"), ElementsAre("a.yml:1:1: is hello; must be a block of keys and values"));
+    EXPECT_THAT(findDiagnostics("hello"),
+                ElementsAre("a.yml:1:1: is hello; must be a block of keys and values, such as {schedule: lockstep}"));
     EXPECT_THAT(findDiagnostics("- 1\n"), ElementsAre(HasSubstr("is a list")));
     EXPECT_THAT(findDiagnostics("tasks:\n  a: [1\nb: 2\n"), ElementsAre(HasSubstr("a.yml:3:2: is not YAML")));
     EXPECT_THAT(findDiagnostics("tasks: {a: *nobody}"), ElementsAre(HasSubstr("is not YAML")));

@@ -223,7 +223,7 @@ TEST(PropertiesTest, ReportsEveryDiagnosticAtItsPlaceAtOnce) {
             "a.yml:10:7: p.gain: is the text \"3\"; must be a finite number",
             "a.yml:11:15: p.bearings[1]: is 200 deg; may be -180 to 180 deg",
             "a.yml:11:20: p.bearings[2]: is x; must be a finite number",
-            "a.yml:12:9: p.layers: is gaussian; must be a list",
+            "a.yml:12:9: p.layers: is gaussian; must be a list, such as [{law: rayleigh}]",
             "a.yml:13:26: p.materials.sand.mean: is 11; may be 0 to 10",
             "a.yml:14:19: p.always.mean: is given twice; once is allowed"));
 }

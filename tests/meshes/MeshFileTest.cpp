@@ -111,26 +111,18 @@ TEST_F(MeshFileTest, AGltfInAWorldIsNotTurnedAndBringsItsAcoustics) {
     EXPECT_FLOAT_EQ(geometry->materials.at(0).lambert_db, -7);
 }
 
-TEST_F(MeshFileTest, MaterialsOutsideOfTheFolderOfAMeshAreNotRead) {
-    const auto materials = [&](const std::string& library) {
-        write("m/meshes/part.obj",
-              "mtllib " + library + "\nv 0 0 0\nv 1 0 0\nv 1 2 3\no hull\nusemtl steel_grey\nf 1 2 3\n");
-        std::vector<std::string> names;
-        const types::GeometryPtr geometry = readMeshFile(folder_ / "m/meshes/part.obj", MeshAxes::AsStored);
-        for (const types::Material& each : geometry->materials) names.push_back(each.name);
-        return names;
-    };
-    for (const char* file : {"secret.mtl", "m/own.mtl", "m/meshes/near.mtl"})
-        write(file, "newmtl steel_grey\nKd 1 1 1\nnewmtl witness\nKd 1 1 1\n");
-    std::filesystem::create_symlink(folder_ / "secret.mtl", folder_ / "m/meshes/link.mtl");
-    EXPECT_THAT(materials("near.mtl"), testing::Contains("witness"));
-    for (const char* foreign : {"../own.mtl", "../../secret.mtl", "link.mtl", "none.mtl"})
-        EXPECT_EQ(materials(foreign), materials("none.mtl")) << foreign;
-    write("m/model.config", "");
-    EXPECT_THAT(materials("../own.mtl"), testing::Contains("witness")) << "of its model";
-    EXPECT_EQ(materials("../../secret.mtl"), materials("none.mtl"));
-    ASSERT_EQ(mkfifo((folder_ / "m/meshes/pipe.mtl").c_str(), 0600), 0);
-    EXPECT_EQ(materials("pipe.mtl"), materials("none.mtl")) << "and is not waited for";
+/** Names of materials are in the .obj itself. */
+TEST_F(MeshFileTest, NoLibraryOfMaterialsIsRead) {
+    write("near.mtl", "newmtl steel_grey\nKd 1 1 1\nnewmtl witness\nKd 1 1 1\n");
+    ASSERT_EQ(mkfifo((folder_ / "pipe.mtl").c_str(), 0600), 0);
+    for (const char* library : {"near.mtl", "pipe.mtl", "none.mtl", "../near.mtl"})
+        for (const std::string name : {"steel_grey", "rubber", ""}) {
+            write("part.obj", std::string("mtllib ") + library + "\nv 0 0 0\nv 1 0 0\nv 1 2 3\no hull\n" +
+                                  (name.empty() ? "" : "usemtl " + name + "\n") + "f 1 2 3\n");
+            const Scene scene = readScene(folder_ / "part.obj");
+            ASSERT_EQ(scene.geometry->materials.size(), 1u) << library;
+            EXPECT_EQ(scene.geometry->materials[0].name, name.empty() ? "part" : name) << library;
+        }
 }
 
 TEST_F(MeshFileTest, AMeshFileIsASceneOfItsOwn) {
@@ -181,18 +173,33 @@ TEST_F(MeshFileTest, ABodyLargerThanAnyShipWhoseFileStatesNoUnitIsAsked) {
         return write("big.obj", fmt::format("v 0 0 0\nv {} 0 0\nv 0 {} {}\nf 1 2 3\n", x, y, z));
     };
     const auto warns = [&](const Scene& scene) { return hasNotice(*scene.geometry, "if it is in millimetres"); };
-    EXPECT_TRUE(warns(readScene(obj(5000, 2000, 1000))));
-    EXPECT_TRUE(warns(placed(readScene(obj(5000, 2000, 1000)), {.up = UpAxis::Y})));
-    EXPECT_FALSE(warns(placed(readScene(obj(5000, 2000, 1000)), {.scale = 0.001}))) << "it is answered";
-    EXPECT_FALSE(warns(readScene(obj(300, 50, 60)))) << "a ship";
-    EXPECT_FALSE(warns(readScene(obj(5000, 2000, 40)))) << "ground";
     obj(5000, 2000, 1000);
     const std::string uri = "<mesh><uri>big.obj</uri>";
     const Scene twice = world("<model name='m'><link name='l'>" + visual("a", uri + "</mesh>") +
                               visual("b", uri + "</mesh>") + "</link></model>");
     EXPECT_TRUE(warns(twice));
     EXPECT_EQ(twice.geometry->notices.size(), 1u);
+    EXPECT_EQ(twice.geometry->notices.front().kind, types::Notice::Kind::Warning);
     EXPECT_FALSE(warns(world(model("m", uri + "<scale>0.001 0.001 0.001</scale></mesh>"))));
+}
+
+TEST_F(MeshFileTest, HasOnlyTheMaterialsOfItsSurfaces) {
+    write("own.mtl", "newmtl unused\nKd 1 1 1\nnewmtl steel\nKd 1 0 0\nnewmtl concrete\nKd 0 1 0\n");
+    const auto getNames = [&](const std::string& faces) {
+        write("part.obj", "mtllib own.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\n" + faces);
+        const Scene scene = readScene(folder_ / "part.obj");
+        std::vector<std::string> names;
+        for (const types::Material& material : scene.geometry->materials) names.push_back(material.name);
+        for (const types::Mesh& mesh : scene.geometry->meshes)
+            for (const types::Cluster& cluster : mesh.clusters)
+                EXPECT_LT(static_cast<size_t>(cluster.material), names.size());
+        return names;
+    };
+    using testing::UnorderedElementsAre;
+    EXPECT_THAT(getNames("usemtl concrete\nf 1 2 3\nusemtl steel\nf 1 3 4\n"),
+                UnorderedElementsAre("steel", "concrete"));
+    EXPECT_THAT(getNames("usemtl rubber\nf 1 2 3\nusemtl steel\nf 1 3 4\n"), UnorderedElementsAre("steel", "rubber"))
+        << "which the .mtl lacks";
 }
 
 TEST_F(MeshFileTest, AMeshFileWithoutTrianglesOrThatIsNoMeshIsNoScene) {

@@ -120,6 +120,55 @@ def test_a_transform_and_a_pose_step_alike(minimal):
     np.testing.assert_array_equal(minimal.step(insonify.Pose(strided[:, 0])).bins, bins)
 
 
+def test_seven_numbers_are_a_pose_as_for_a_batch(minimal, deploy):
+    pose = insonify.Pose.from_euler([0.5, 2, 0.25], yaw=0.2)
+    numbers = [*pose.position, *pose.orientation_wxyz]
+    bins = minimal.step(pose).bins.copy()
+    for same in (numbers, tuple(numbers), np.array(numbers), {minimal.poses[0]: numbers}):
+        minimal.reset()
+        np.testing.assert_array_equal(minimal.step(same).bins, bins)
+    batch = insonify.SimulationBatch(deploy / "minimal.yml", 4, seed=1)
+    for made in batch.step([pose, numbers, np.array(numbers), pose.matrix()]).bins[:1]:
+        np.testing.assert_array_equal(made, bins)
+    for wrong in (numbers[:6], [numbers], "here"):
+        with pytest.raises(ValueError):
+            minimal.step(wrong)
+    with pytest.raises(ValueError, match="seven numbers x, y, z and a quaternion w, x, y, z"):
+        minimal.step(numbers[:6])
+
+
+def test_warnings_follow_changes_and_pings(deploy):
+    def warned(call):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            call()
+        return [(str(each.message), each.filename) for each in caught]
+
+    for made in (insonify.Simulation(deploy / "minimal.yml"), insonify.SimulationBatch(deploy / "minimal.yml", 2)):
+        poses = HERE if isinstance(made, insonify.Simulation) else [HERE] * 2
+        assert warned(lambda: made.step(poses)) == []
+        texts = warned(lambda: (made.set({"sonar.range": 31}), made.step(poses)))
+        assert len(texts) == 1 and "more than 31 m" in texts[0][0] and texts[0][1] == __file__, texts
+        assert warned(lambda: made.step(poses)) == []
+        assert warned(lambda: (made.set({"sonar.range": 50}), made.step(poses))) == []
+        assert len(warned(lambda: (made.set({"sonar.range": 31}), made.step(poses)))) == 1
+
+    overrides = {"scene.water_surface": -1}  # and the sonar is above it
+    for made in (
+        insonify.Simulation(deploy / "minimal.yml", overrides=overrides),
+        insonify.SimulationBatch(deploy / "minimal.yml", 2, overrides=overrides),
+    ):
+        poses = HERE if isinstance(made, insonify.Simulation) else [HERE] * 2
+        texts = warned(lambda: made.step(poses))
+        assert [text for text, _ in texts if "the sonar is 1 m above the water surface" in text], texts
+        assert not [text for text, _ in warned(lambda: made.step(poses)) if "above the water" in text]
+
+
+def test_the_version_is_that_of_the_command():
+    printed = subprocess.run([INSONIFY, "--version"], check=True, capture_output=True, text=True).stdout
+    assert insonify.__version__ == printed.split("\n")[0]
+
+
 def test_the_truth_names_objects_and_has_the_shape_of_the_bins(deploy):
     simulation = insonify.Simulation(deploy / "harbour_fls.yml", truth=True)
     ping = simulation.step(insonify.Pose([2, 0, -5.5]))

@@ -46,6 +46,20 @@ TEST_F(PlacementTest, PlacesAPointOfTheFile) {
     expectNear(corner(placed(file, {.frame = WorldFrame::Ned, .up = UpAxis::Z})), {1, -3, -3});
 }
 
+TEST_F(PlacementTest, AsksWhetherALargeFileWithoutUnitIsInMillimetres) {
+    using Kind = types::Notice::Kind;
+    const auto ask = [](const char* file, glm::dvec3 size) { return askUnit(file, size, "scale it"); };
+    const auto kind = [&](glm::dvec3 size) { return ask("a/part.STL", size)->kind; };
+    EXPECT_EQ(kind({5000, 2000, 1000}), Kind::Warning) << "larger than any ship";
+    EXPECT_EQ(kind({2000, 2000, 0}), Kind::Note) << "a plate of 2 m, or ground";
+    EXPECT_EQ(kind({300, 200, 100}), Kind::Note) << "a box of 30 cm, or a hall";
+    EXPECT_EQ(
+        ask("part.stl", {300, 200, 100})->text,
+        "part.stl is 300 x 200 x 100 m: it states no unit and is taken as metres; if it is in millimetres, scale it");
+    EXPECT_FALSE(ask("part.obj", {99, 50, 20})) << "a ferry";
+    for (const char* file : {"part.dae", "part.glb", "part.world"}) EXPECT_FALSE(ask(file, {5000, 2000, 1000})) << file;
+}
+
 /** A pose in the frame of the scene gives the same point of the file in any frame. */
 TEST_F(PlacementTest, APoseOfRosMeetsTheSamePointOfASceneInTheFrameOfRos) {
     const Scene file = scene();

@@ -49,6 +49,8 @@ namespace {
 
 const acoustics::Water water{.temperature_celsius = 12, .salinity_psu = 35, .depth = 8, .ph = 8.1};
 
+constexpr double wind_m_s = 5;  ///< Above the water, which makes its noise.
+
 /** Returns the speed of sound as pings state it [m/s]. */
 double speedOfSound() { return static_cast<double>(static_cast<float>(acoustics::soundSpeed(water))); }
 
@@ -162,7 +164,7 @@ double whiteDb(const SonarFigures& sonar) {
 double sourceLevelDb(const SonarFigures& sonar) {
     const SonarDevice& device = *sonar.device;
     const double range = referenceRange(sonar), median = 10 * std::log10(std::log(2));
-    const double noise = acoustics::coatesSpectrumDb(sonar.modes.front().frequency_khz, 5, 0.5) +
+    const double noise = acoustics::coatesSpectrumDb(sonar.modes.front().frequency_khz, wind_m_s, 0.5) +
                          10 * std::log10(1e3 * noiseBandwidth(sonar)) - device.directivity_index_db + median;
     const double gain = device.tvg * std::log10(range) + 2 * absorptionDb(sonar) * range;
     return std::round(noise + gain - whiteDb(sonar) - device.noise_db);
@@ -289,7 +291,7 @@ std::string starterDeployment(const SonarFigures& sonar) {
         arg("height", mode.beam_height_deg), arg("sidelobe", device.sidelobe_db), arg("speckle", speckleLine(device)),
         arg("errors", errorBlock(device)), arg("noise", noiseLines(device)), arg("code", codeLines(sonar)),
         arg("picture", pictureKeys(sonar)), arg("tvg", device.tvg), arg("source_level", sourceLevelDb(sonar)),
-        arg("directivity", device.directivity_index_db), arg("period", starter.period),
+        arg("wind", wind_m_s), arg("directivity", device.directivity_index_db), arg("period", starter.period),
         arg("columns", starter.columns_per_beam), arg("beams", mode.beam_count), arg("fov", mode.field_of_view_deg),
         arg("spacing", mode.field_of_view_deg / mode.beam_count), arg("pitch", starter.pitch_deg),
         arg("step", mode.step_deg), arg("speed", mode.step_deg / starter.period),

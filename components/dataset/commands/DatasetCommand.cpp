@@ -81,20 +81,29 @@ int makeDataset(const DatasetOptions& options) {
     Collection collection(run.title(options.sweep), folder.path());
     collection.describe();
     const Made done = makeMissing(run, collection.store(0), options);
+    const uint64_t all = run.selection().size();
+    const console::Shard shard = console::Shard::read(options.shard);
+    const uint64_t own = all / shard.count + (shard.index < all % shard.count ? 1 : 0);
     if (!options.quiet)
-        console::printResult("{} of {} samples in {}, {} of them new{}\n", done.made + done.found,
-                             run.selection().size(), folder.path().string(), done.made,
+        console::printResult("{}{} of {} samples in {}, {} of them new{}\n",
+                             shard.count > 1 ? fmt::format("shard {}: ", options.shard) : "", done.made + done.found,
+                             own, folder.path().string(), done.made,
                              done.stopped ? "; the same command makes the others" : "");
     if (done.stopped) return 1;
     if (!collection.isWhole(false)) {
         if (!options.quiet)
-            console::printResult("others are missing; the run that makes the last one writes manifest.json\n");
+            console::printResult(
+                "of the {} samples of all shards some are missing; the run that makes the last one "
+                "writes manifest.json\n",
+                all);
         return 0;
     }
     if (!collection.isWhole(true, done.complete))
         throw std::runtime_error("a sample of another shard is damaged; run that shard again");
     collection.write();
-    if (!options.quiet) console::printResult("all are there: manifest.json, statistics.html\n");
+    if (!options.quiet)
+        console::printResult("all{} are there: manifest.json, statistics.html\n",
+                             shard.count > 1 ? fmt::format(" {} samples of all shards", all) : "");
     return 0;
 }
 

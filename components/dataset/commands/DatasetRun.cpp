@@ -231,7 +231,8 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
     framework::Deployment checked(spec_, registry);  // throws the errors of the unchanged deployment
     refuseBudgets();
     checkAssignments();
-    readScenes();
+    runs_ = getRuns(sweep_);
+    readScenes(checked);
     std::vector<SceneParts> parts;
     std::vector<std::string> objects, nodes;
     for (const SceneFile& scene : scenes_) {
@@ -241,14 +242,16 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
             nodes.insert(nodes.end(), names.begin() + 1, names.end());
         }
     }
-    samples_.emplace(sweep_, getRuns(sweep_), std::move(parts));
+    samples_.emplace(sweep_, std::move(runs_), std::move(parts));
     classes_.emplace(sweep_, objects, nodes);
-    warnings_ = classes_->notices();
+    std::ranges::copy(classes_->notices(), std::back_inserter(warnings_));
     if (sweep_.picture.scale != output::BinScale::Code && std::ranges::any_of(checked.tasks(), sendsCodes))
         warnings_.push_back("picture: shows the codes of the receiver as intensities; give scale: code, and code_bits");
     for (const SceneFile& scene : scenes_) instances_.emplace_back(*classes_, scene.objects);
     selection_ =
         changes_.count ? Selection(samples_->count(), *changes_.count, sweep_.seed) : Selection(samples_->count());
+    if (const std::string empty = describeEmptyParts(sweep_, selection_, *samples_); !empty.empty())
+        warnings_.push_back(empty);
     checkDrawn();
     computeDigests();
 }
@@ -369,10 +372,7 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
 }
 
-DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {
-    scene::Scene scene;
-    scene.geometry = std::make_shared<const types::Geometry>();
-    if (!file.empty()) scene = scene::readScene(file);  // otherwise there is only the floor of a survey
+DatasetRun::SceneFile DatasetRun::readScene(const std::string& file, const scene::Scene& scene) const {
     SceneFile read{file.empty() ? "bathymetry" : fs::path(file).filename().string(),
                    getParts(sweep_, scene),
                    {},
@@ -381,14 +381,26 @@ DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {
     return read;
 }
 
-void DatasetRun::readScenes() {
+void DatasetRun::readScenes(const framework::Deployment& deployment) {
+    constexpr size_t shown = 5;  // scenes with odd poses
+    std::set<std::string> reported;
+    size_t odd = 0;
     const std::vector<std::string> tasks = tasksOfType(scene_type);
     if (tasks.empty()) throw types::ConfigError(spec_.file, "tasks", "have no scene; a data set needs one");
     for (const SceneChoice& choice : sweep_.scenes) {
         const YAML::Node own = child(spec_.task(tasks.front())->properties, "file");
         std::string file = choice.file;
         if (file.empty() && own.IsDefined()) file = (fs::path(deployment_).parent_path() / own.Scalar()).string();
-        scenes_.push_back(readScene(file));
+        scene::Scene scene;
+        scene.geometry = std::make_shared<const types::Geometry>();
+        if (!file.empty()) scene = scene::readScene(file);  // otherwise there is only the floor of a survey
+        scenes_.push_back(readScene(file, scene));
+        if (odd >= shown) continue;
+        const size_t before = reported.size();
+        for (const std::string& text : describePoses(sweep_, choice, runs_, deployment, scene))
+            if (reported.insert(text).second)
+                warnings_.push_back(sweep_.scenes.size() > 1 ? scenes_.back().name + ": " + text : text);
+        odd += reported.size() > before ? 1 : 0;
     }
 }
 

@@ -33,6 +33,12 @@ std::string computeDigest(const types::Geometry& geometry);
  *  diagnostics and their places. */
 Sweep readSweep(const std::filesystem::path& file);
 
+/** Returns describeOddPoses() of a sweep in one of its scenes, of at most 10,000 poses. What samples vary, such as a
+ * range among the settings, is not compared. @param runs the poses of a trajectory, as for Samples */
+std::vector<std::string> describePoses(const Sweep& sweep, const SceneChoice& choice,
+                                       const std::vector<std::vector<TimedPose>>& runs,
+                                       const framework::Deployment& deployment, const scene::Scene& scene);
+
 /** Returns the sweep with files for its scenes that have a recipe. The component library worlds makes a scene once per
  *  recipe, seed and generator. Scenes are kept in insonify/scenes of the user's cache. Throws types::ConfigError for a
  *  wrong recipe, or if the library is absent. */
@@ -84,8 +90,8 @@ private:
     void checkDrawn() const;
     void checkAssignment(const std::string& path, const std::string& property, const Written& value) const;
     void refuseBudgets() const;
-    void readScenes();
-    SceneFile readScene(const std::string& file) const;
+    void readScenes(const framework::Deployment& deployment);
+    SceneFile readScene(const std::string& file, const scene::Scene& scene) const;
     void computeDigests();
     std::vector<std::string> makeOverrides(const Sample& sample) const;
     std::string getScale(const std::string& task, const Sample& sample) const;
@@ -106,6 +112,7 @@ private:
     framework::DeploymentSpec spec_;
     std::vector<Instances> instances_;  ///< One for each scene.
     std::vector<SceneFile> scenes_;
+    std::vector<std::vector<TimedPose>> runs_;  ///< The poses of a trajectory; else empty.
     std::optional<Samples> samples_;
     std::optional<Classes> classes_;
     Selection selection_;

@@ -8,6 +8,8 @@
 #include "components/dataset/commands/DatasetRun.hpp"
 #include "components/framework/config/ConfigReader.hpp"
 #include "components/framework/config/YamlText.hpp"
+#include "components/scene/SceneTask.hpp"
+#include "components/sonar/tasks/PingTask.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/Sha256.hpp"
 
@@ -225,7 +227,7 @@ private:
     }
 
     void readScenes(const YAML::Node& scenes) {
-        if (!scenes.IsDefined() || !reader_.isSequence(scenes, "scenes")) return;
+        if (!scenes.IsDefined() || !reader_.isSequence(scenes, "scenes", ", such as [a.glb, b.glb]")) return;
         if (scenes.size() == 0) reader_.report(scenes, "scenes", "is empty; without the key it is the deployment's");
         sweep_.scenes.clear();
         for (size_t i = 0; i < scenes.size(); ++i) readScene(scenes[i], at("scenes", i));
@@ -249,7 +251,7 @@ private:
                                         ? ", a folder; must be a file"
                                         : "; there is no such file, which is relative to the sweep"));
         }
-        if (keys.set.IsDefined() && reader_.isMap(keys.set, path + ".set"))
+        if (keys.set.IsDefined() && reader_.isMap(keys.set, path + ".set", "{sonar.range: 20}"))
             for (const auto& entry : keys.set) scene.set.emplace_back(entry.first.Scalar(), written(entry.second));
         if (keys.make.empty()) return sweep_.scenes.push_back(std::move(scene));
         for (uint32_t i = 0; i < keys.count.value_or(0); ++i) keys.seeds.push_back(i + 1);
@@ -315,7 +317,7 @@ private:
     PoseAxes readAxes(const YAML::Node& node, const std::string& path, std::vector<std::string> known) {
         const bool is_drawn = !known.empty();
         PoseAxes axes;
-        if (!reader_.isMap(node, path)) return axes;
+        if (!reader_.isMap(node, path, "{x: 0, y: 0, z: -5}")) return axes;
         PoseAxes::forEach(axes, [&](const char* name, const char* unit, Axis& axis) {
             known.push_back(name);
             const YAML::Node value = child(node, name);
@@ -342,7 +344,7 @@ private:
     }
 
     void readSettings(const YAML::Node& settings) {
-        if (!settings.IsDefined() || !reader_.isMap(settings, "settings")) return;
+        if (!settings.IsDefined() || !reader_.isMap(settings, "settings", "{sonar.range: [20, 30]}")) return;
         for (const auto& entry : settings) {
             const std::string name = entry.first.Scalar(), path = "settings." + name;
             if (entry.second.IsMap()) {
@@ -367,7 +369,7 @@ private:
         drawn.line = node.Mark().line + 1, drawn.column = node.Mark().column + 1;
         if (!reader_.read(node, path, keys)) return;
         drawn.law.uniform = keys.uniform, drawn.law.normal = keys.normal;
-        if (keys.choice.IsDefined() && reader_.isSequence(keys.choice, path + ".choice"))
+        if (keys.choice.IsDefined() && reader_.isSequence(keys.choice, path + ".choice", ", such as [20, 30]"))
             readList(keys.choice, path + ".choice", drawn.choice);
     }
 
@@ -381,7 +383,7 @@ private:
     }
 
     void readClasses(const YAML::Node& classes) {
-        if (!classes.IsDefined() || !reader_.isMap(classes, "classes")) return;
+        if (!classes.IsDefined() || !reader_.isMap(classes, "classes", "{pile: pile_*}")) return;
         for (const auto& entry : classes) {
             const std::string name = entry.first.Scalar(), path = "classes." + name;
             ClassRule& rule = sweep_.classes.emplace_back();
@@ -401,6 +403,44 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::string> describePoses(const Sweep& sweep, const SceneChoice& choice,
+                                       const std::vector<std::vector<TimedPose>>& runs,
+                                       const framework::Deployment& deployment, const scene::Scene& scene) {
+    const uint64_t lines = sweep.lines ? sweep.lines->count : 1;
+    const uint64_t at_most = std::clamp<uint64_t>(1'000'000 / lines, 1, 10'000);
+    const auto varies = [&](const std::string& property) {
+        const auto isPart = [&](const std::string& other) {
+            return other == property || other.starts_with(property + ".");
+        };
+        return std::ranges::any_of(sweep.settings, isPart, &Setting::property) ||
+               std::ranges::any_of(sweep.drawn, isPart, &DrawnSetting::property) ||
+               std::ranges::any_of(choice.set, [&](const auto& set) { return isPart(set.first); });
+    };
+    Surroundings around;
+    types::Mount mount;
+    for (const auto& task : deployment.tasks()) {
+        const auto* const sonar = dynamic_cast<const sonar::PingTask*>(task.get());
+        if (sonar && !varies(task->name() + ".range")) around.range = sonar->locatedConfig().range;
+        const auto* const world = dynamic_cast<const scene::SceneTask*>(task.get());
+        if (!world) continue;
+        const scene::SceneConfig& config = *world->config;
+        mount = config.mount;
+        if (varies(task->name() + ".mount")) return {};
+        if (!varies(task->name() + ".water_surface")) around.water_surface = config.water_surface;
+        if (config.bathymetry || varies(task->name() + ".placement") || varies(task->name() + ".scale")) continue;
+        around.geometry = config.placement ? scene::placed(scene, *config.placement).geometry : scene.geometry;
+    }
+    const uint64_t count = countPoses(sweep, runs);
+    around.step = (count + at_most - 1) / at_most;
+    std::vector<glm::dvec3> positions;
+    for (uint64_t i = 0; i < count; i += around.step) {
+        types::Pose sonar;
+        types::place(makeRun(sweep, runs, i).front().at, mount, sonar);
+        positions.push_back(sonar.position);
+    }
+    return describeOddPoses(positions, around);
+}
 
 SceneParts getParts(const Sweep& sweep, const scene::Scene& scene) {
     SceneParts parts;

@@ -99,11 +99,10 @@ int probeDevice(const std::string& address, double timeout, bool json) {
     } else {
         printFailures(outcomes);
     }
-    if (!any)
-        console::printDiagnostic(
-            "insonify: nothing answers at {} within {:g} s; a slow machine may take longer: "
-            "--timeout {:g}\n",
-            address, timeout, 5 * timeout);
+    const bool is_silent = std::ranges::count(outcomes, "no answer", &ProbeOutcome::failure) > 0;
+    const std::string longer =
+        fmt::format(" within {:g} s; a slow machine may take longer: --timeout {:g}", timeout, 5 * timeout);
+    if (!any) console::printDiagnostic("insonify: nothing answers at {}{}\n", address, is_silent ? longer : "");
     return any ? answered : silent;
 }
 

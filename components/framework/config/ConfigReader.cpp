@@ -266,9 +266,13 @@ void ConfigReader::report(const YAML::Node& block, const std::string& path, cons
         report(nodeAt(block, each.path), each.path.empty() ? path : below(path, each.path), each.message, each.kind);
 }
 
-bool ConfigReader::isMap(const YAML::Node& node, const std::string& path) {
+bool ConfigReader::isMap(const YAML::Node& node, const std::string& path, const std::string& example) {
     if (node.IsNull()) return true;
-    if (!node.IsMap()) return report(node, path, "is " + shown(node) + "; must be a block of keys and values"), false;
+    if (!node.IsMap())
+        return report(node, path,
+                      "is " + shown(node) + "; must be a block of keys and values" +
+                          (example.empty() ? "" : ", such as " + example)),
+               false;
     std::set<std::string> seen;
     bool good = true;
     for (const auto& entry : node) {
@@ -282,7 +286,7 @@ bool ConfigReader::isMap(const YAML::Node& node, const std::string& path) {
 
 bool ConfigReader::isSequence(const YAML::Node& node, const std::string& path, const std::string& form) {
     if (node.IsSequence()) return true;
-    report(node, path, "is " + shown(node) + "; must be a list" + (form.empty() ? "" : " of two, " + form));
+    report(node, path, "is " + shown(node) + "; must be a list" + form);
     return false;
 }
 

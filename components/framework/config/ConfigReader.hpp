@@ -90,8 +90,9 @@ public:
     /** Reports diagnostics of a block, each at the node of its path. */
     void report(const YAML::Node& block, const std::string& path, const types::Diagnostics& diagnostics);
 
-    bool isMap(const YAML::Node& node, const std::string& path);  ///< A map or empty, keys unique; else a diagnostic.
-    /** Else a diagnostic. @param form of the list, such as [min, max]; empty: any */
+    /** A map or empty, keys unique; else a diagnostic. @param example of the map; empty: none is shown */
+    bool isMap(const YAML::Node& node, const std::string& path, const std::string& example = "");
+    /** Else a diagnostic. @param form of the list, which follows "must be a list" */
     bool isSequence(const YAML::Node& node, const std::string& path, const std::string& form = "");
     /** Reports each key that is not among `known`, with the nearest known key. */
     void refuseUnknown(const YAML::Node& map, const std::string& path, const std::vector<std::string>& known);

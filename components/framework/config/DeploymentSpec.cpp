@@ -173,7 +173,7 @@ void readTask(ConfigReader& reader, const YAML::Node& name, const YAML::Node& bl
 
 void readTasks(ConfigReader& reader, const YAML::Node& tasks, DeploymentSpec& spec) {
     if (!tasks.IsDefined()) return;
-    reader.isMap(tasks, "tasks");  // reports two tasks of one name
+    reader.isMap(tasks, "tasks", "{NAME: {type: TYPE}}");  // reports two tasks of one name
     if (!tasks.IsMap()) return;
     for (const auto& entry : tasks)
         if (entry.first.IsScalar() && !spec.task(entry.first.Scalar()))
@@ -181,7 +181,9 @@ void readTasks(ConfigReader& reader, const YAML::Node& tasks, DeploymentSpec& sp
 }
 
 void readConnections(ConfigReader& reader, const YAML::Node& connections, DeploymentSpec& spec) {
-    if (!connections.IsDefined() || connections.IsNull() || !reader.isSequence(connections, "connections")) return;
+    if (!connections.IsDefined() || connections.IsNull() ||
+        !reader.isSequence(connections, "connections", ", such as [{from: TASK.PORT, to: TASK.PORT}]"))
+        return;
     for (size_t i = 0; i < connections.size(); ++i) {
         ConnectionKeys keys;
         const std::string path = "connections[" + std::to_string(i) + "]";

@@ -135,6 +135,33 @@ std::string pairIn(std::string_view doc) {
     return "";
 }
 
+/** Returns a short value of a type in flow YAML, for errors; empty: it has none. Of a block it has one field, if
+ *  possible one with a default. */
+std::string makeExample(const ValueType& type, const types::Field& field) {
+    const auto enclose = [](const char* begin, const std::string& text, const char* end) {
+        return text.empty() ? text : begin + text + end;
+    };
+    if (const auto* optional = dynamic_cast<const OptionalType*>(&type)) return makeExample(optional->inner(), field);
+    if (const auto* list = dynamic_cast<const ListType*>(&type))
+        return enclose("[", makeExample(list->inner(), field), "]");
+    if (const auto* map = dynamic_cast<const MapType*>(&type))
+        return enclose("{NAME: ", makeExample(map->inner(), field), "}");
+    const auto* const block = dynamic_cast<const BlockType*>(&type);
+    const std::string text = type.text(type.fresh());
+    if (!block && text == "0" && (field.min > 0 || field.max < 0))
+        return fmt::format("{}", field.min > 0 ? field.min : field.max);
+    if (!block) return text;
+    std::string with_default, without;
+    block->visit(unconst(block->fresh()), [&](const types::Field& each, const ValueType& member_type, void* member) {
+        const std::string given = member_type.text(member);
+        const bool is_given = !given.empty() && given != "[]" && given != "NaN";
+        std::string& found = is_given ? with_default : without;
+        const std::string value = is_given ? given : makeExample(member_type, each);
+        if (found.empty()) found = enclose((std::string("{") + each.name + ": ").c_str(), value, "}");
+    });
+    return with_default.empty() ? without : with_default;
+}
+
 }  // namespace
 
 // clang-format off
@@ -162,7 +189,9 @@ bool OptionalType::read(ConfigReader& reader, const YAML::Node& node, const std:
 bool ListType::read(ConfigReader& reader, const YAML::Node& node, const std::string& path, const types::Field& field,
                     void* value) const {
     const bool is_one = node.IsMap() && dynamic_cast<const BlockType*>(&inner());  // a list of one
-    if (!is_one && !reader.isSequence(node, path, pairIn(field.doc))) return false;
+    const std::string pair = pairIn(field.doc), example = node.IsSequence() ? "" : makeExample(*this, field);
+    const std::string form = pair.empty() ? example.empty() ? "" : ", such as " + example : " of two, " + pair;
+    if (!is_one && !reader.isSequence(node, path, form)) return false;
     renew(value, is_one ? 1 : node.size());
     if (is_one) return inner().read(reader, node, path, field, unconst(at(value, 0)));
     bool good = true;
@@ -187,7 +216,7 @@ types::PropertyValue ListType::logged(const void* value) const { return flowYaml
 
 bool MapType::read(ConfigReader& reader, const YAML::Node& node, const std::string& path, const types::Field& field,
                    void* value) const {
-    if (!reader.isMap(node, path)) return false;
+    if (!reader.isMap(node, path, node.IsMap() ? "" : makeExample(*this, field))) return false;
     if (!reader.nullTakesOut()) clear(value);
     bool good = true;
     for (const auto& entry : node) {
@@ -251,7 +280,7 @@ void EnumType::emit(YAML::Emitter& out, const void* value) const { out << YAML::
 bool readBlock(ConfigReader& reader, const YAML::Node& node, const std::string& path, const BlockType& type,
                void* value) {
     const size_t before = reader.diagnostics().size();
-    if (node.IsDefined() && !reader.isMap(node, path)) return false;
+    if (node.IsDefined() && !reader.isMap(node, path, node.IsMap() ? "" : makeExample(type, {}))) return false;
     std::vector<std::string> known;
     type.visit(value, [&](const types::Field& field, const ValueType& member_type, void* member) {
         const YAML::Node entry = child(node, field.name);

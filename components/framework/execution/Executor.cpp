@@ -16,8 +16,10 @@ bool Executor::advance() { throw std::logic_error("only schedule: lockstep can a
 
 Progress Executor::progress() const {
     const uint64_t counted = graph_.countedSamples(), rehearsed = std::min(counted, first_);
+    uint64_t most = counted;
+    for (const OutputPortBase* port : graph_.counted()) most = std::max<uint64_t>(most, port->written());
     return {counted - rehearsed, rehearsed, environment_.elapsed().seconds(),
-            std::chrono::duration<double>(Clock::now() - wall_start_).count()};
+            std::chrono::duration<double>(Clock::now() - wall_start_).count(), most - rehearsed};
 }
 
 bool Executor::isOver(const RunLimits& limits) const {

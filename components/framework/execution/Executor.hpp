@@ -33,6 +33,7 @@ struct Progress {
     uint64_t rehearsed = 0;  ///< Counted samples before the shard.
     double elapsed_s = 0;    ///< By Environment::elapsed [s].
     double wall_s = 0;       ///< [s]
+    uint64_t most = 0;       ///< As `samples`, of the source that has written most, unless `rehearsed`.
 };
 
 /** Runs the tasks of a graph between their start and their stop, and keeps the clock that the tasks read.

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from . import native
 from .native import ConfigError
 
+__version__ = native.version
 __all__ = ["ConfigError", "Log", "Ping", "Pings", "Pose", "Simulation", "SimulationBatch", "Truth", "read_log"]
 
 
@@ -58,8 +59,8 @@ class Pose:
         matrix = np.asarray(world_from_body, float)
         if matrix.shape != (4, 4) or not np.allclose(matrix[3], [0, 0, 0, 1]):
             raise ValueError(
-                "a pose is an insonify.Pose or a transform; a transform is 4 x 4, with a last row of 0 0 0 1; "
-                f"the shape of this is {matrix.shape}"
+                "a pose is an insonify.Pose, seven numbers x, y, z and a quaternion w, x, y, z, or a transform; a transform "
+                f"is 4 x 4, with a last row of 0 0 0 1; the shape of this is {matrix.shape}"
             )
         rotation = matrix[:3, :3]
         if not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) or np.linalg.det(rotation) < 0:
@@ -264,7 +265,7 @@ class Simulation:
         self._simulation = native.simulation(str(deployment), seed, _assignments(overrides), truth, period)
         facts = self._simulation.facts()
         self._poses, self._pings, self._period = facts["poses"], facts["pings"], facts["period"]
-        self._warned, self._is_new = _warn(facts["notices"], []), True
+        self._warnings = _Warnings(self._simulation)
 
     @property
     def poses(self) -> list[str]:
@@ -287,16 +288,15 @@ class Simulation:
         return native.time(self._simulation)
 
     def step(self, pose, time: float | None = None):
-        """The ping at a pose: a Pose, or a 4 x 4 transform from the body to the world.
+        """The ping at a pose: a Pose, seven numbers x, y, z [m] and a quaternion w, x, y, z, or a 4 x 4 transform from
+        the body to the world.
 
         With several vehicles, a dictionary of poses by port; with several sonars, the pings come as one. A ping that
         was not made is None. RuntimeError has the message of a task in error.
         """
         given = pose if isinstance(pose, Mapping) else {self._only(self.poses, "poses"): pose}
         handles = native.step(self._simulation, {port: _numbers(each) for port, each in given.items()}, time, len(self.pings))
-        if self._is_new:  # plans exist from the first ping on
-            self._is_new = False
-            _warn(self._simulation.facts()["notices"], self._warned)
+        self._warnings.follow()
         made = [handle and Ping(handle) for handle in handles]
         return made[0] if len(made) == 1 else dict(zip(self.pings, made))
 
@@ -308,6 +308,7 @@ class Simulation:
         :raises RuntimeError: for properties that a running task cannot change, such as the file of a scene.
         """
         native.change(self._simulation, _assignments(values, "values"))
+        self._warnings.expect()
 
     def reset(self, seed: int | None = None) -> None:
         """Resets to the start, as if made anew with this seed, not 0; None: the same seed. The scene stays
@@ -379,9 +380,8 @@ class SimulationBatch:
         period: float | None = None,
     ) -> None:
         self._batch = native.batch(str(deployment), count, seed, _assignments(overrides), truth, period)
-        facts = self._batch.facts()
-        self._count, self._period = count, facts["period"]
-        self._warned, self._is_new = _warn(facts["notices"], []), True
+        self._count, self._period = count, self._batch.facts()["period"]
+        self._warnings = _Warnings(self._batch)
 
     def __len__(self) -> int:
         return self._count
@@ -398,17 +398,16 @@ class SimulationBatch:
 
     def step(self, poses) -> Pings:
         """Returns the ping of each simulation at its pose. Poses are an array [simulations, 7] of x, y, z [m] and a
-        quaternion w, x, y, z, an array [simulations, 4, 4] of transforms from the body to the world, or a list of
-        Pose. RuntimeError names the first simulation that failed."""
+        quaternion w, x, y, z, an array [simulations, 4, 4] of transforms from the body to the world, or a list of what
+        Simulation.step takes. RuntimeError names the first simulation that failed."""
         pings = native.batch_step(self._batch, self._numbers(poses))
-        if self._is_new:
-            self._is_new = False
-            _warn(self._batch.facts()["notices"], self._warned)
+        self._warnings.follow()
         return Pings(pings)
 
     def set(self, values: Mapping[str, object]) -> None:
         """Changes properties of all simulations, as Simulation.set()."""
         native.change(self._batch, _assignments(values, "values"))
+        self._warnings.expect()
 
     def reset(self, which: Sequence[int] | None = None, seeds: Sequence[int] | None = None) -> None:
         """Resets simulations, as if just made, with these seeds, none 0; None: all of them, the same seeds."""
@@ -424,12 +423,32 @@ class SimulationBatch:
         return np.stack([_numbers(each) for each in poses])
 
 
-def _warn(notices: list[dict], warned: list[dict]) -> list[dict]:
-    """Warns of the warnings among the notices that are not in `warned`; returns all notices."""
-    for notice in notices:
-        if notice["is_warning"] and notice not in warned:
-            warnings.warn(notice["text"], stacklevel=3)
-    return notices
+class _Warnings:
+    """Gives as Python's warnings what the command prints as warnings: those that tasks and plans have after the start, the
+    first ping and the first ping after a change of properties, and those of single pings."""
+
+    def __init__(self, stepped: native.Handle) -> None:
+        self._stepped, self._known = stepped, []
+        self._compare(4)
+
+    def expect(self) -> None:
+        """Properties have changed."""
+        self._compare(4)
+
+    def follow(self) -> None:
+        """A ping was made."""
+        if self._is_due:
+            self._compare(4)
+            self._is_due = False
+        for text in native.warnings_of(self._stepped):
+            warnings.warn(text, stacklevel=3)
+
+    def _compare(self, level: int) -> None:
+        notices = self._stepped.facts()["notices"]
+        for notice in notices:
+            if notice["is_warning"] and notice not in self._known:
+                warnings.warn(notice["text"], stacklevel=level)
+        self._known, self._is_due = notices, True
 
 
 def _assignments(overrides: Mapping[str, object] | None, what: str = "overrides") -> list[str]:
@@ -444,7 +463,11 @@ def _plain(value: object) -> object:
 
 
 def _numbers(pose) -> np.ndarray:
-    made = pose if isinstance(pose, Pose) else Pose.from_matrix(pose)
+    if isinstance(pose, Pose):
+        made = pose
+    else:
+        numbers = np.asarray(pose, float)
+        made = Pose(numbers[:3], numbers[3:]) if numbers.shape == (7,) else Pose.from_matrix(numbers)
     return np.concatenate([made.position, made.orientation_wxyz])
 
 

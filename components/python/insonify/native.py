@@ -87,6 +87,7 @@ _text, _handle, _size = ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t
 _library = ctypes.CDLL(str(pathlib.Path(__file__).with_name("_insonify.so")))
 for _name, _result, *_arguments in (
     ("error", _text),
+    ("version", _text),
     ("free", None, _handle),
     ("facts", _text, _handle),
     ("arrays", _size, _handle, ctypes.POINTER(_Array), _size),
@@ -94,6 +95,7 @@ for _name, _result, *_arguments in (
     ("step", ctypes.c_int, _handle, ctypes.POINTER(_text), _handle, _size, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(_handle)),
     ("time", ctypes.c_double, _handle),
     ("set", ctypes.c_int, _handle, ctypes.POINTER(_text), _size),
+    ("warnings", _text, _handle),
     ("reset", ctypes.c_int, _handle, ctypes.POINTER(ctypes.c_uint64)),
     ("batch", _handle, _text, ctypes.c_uint64, ctypes.POINTER(_text), _size, ctypes.c_int, ctypes.POINTER(ctypes.c_double), _size),
     ("batch_step", _handle, _handle, _handle),
@@ -113,6 +115,9 @@ def _raise() -> None:
     if error["kind"] == "ConfigError":
         raise ConfigError(error["message"], error["diagnostics"])
     raise _ERRORS[error["kind"]](error["message"])
+
+
+version = _library.insonify_version().decode()
 
 
 class Handle:
@@ -205,6 +210,14 @@ def change(stepped: Handle, assignments: Sequence[str]) -> None:
     texts = (_text * len(assignments))(*(each.encode() for each in assignments))
     if _functions.set(stepped.pointer, texts, len(texts)):
         _raise()
+
+
+def warnings_of(stepped: Handle) -> list[str]:
+    """What the simulations have warned of since the last call."""
+    texts = _functions.warnings(stepped.pointer)
+    if texts is None:
+        _raise()
+    return [] if texts == b"[]" else json.loads(texts)
 
 
 def reset(simulation: Handle, seed: int | None) -> None:
