@@ -23,7 +23,7 @@ public:
           scene_(scene),
           deposit_(rules, scene.water, false, to),
           cells_(deposit_.cells),
-          fields_(rules, scene.objects, to.sums),
+          fields_(rules, to.sums),
           column_bits_(std::countr_zero(static_cast<uint32_t>(shape_.all.columns))) {
         for (int i = 0; i < tile_samples; ++i) {
             place_[i] = shape_.at[i].rows * shape_.all.columns + shape_.at[i].columns;
@@ -47,7 +47,7 @@ public:
                 same |= static_cast<uint32_t>((command_[i] == command_[first]) & (triangle_[i] == triangle_[first]))
                         << i;
             same = tile.apparent ? 1u << first : getPart(tile, same & hits);
-            addCell(tile, same);
+            addPatch(tile, same);
             hits &= ~same;
         }
     }
@@ -57,8 +57,8 @@ public:
         if (mapped_) in_map_.setCosines(scene_, 0, cells_.count, cells_);
         deposit_.cover();
         for (int i = 0; i < cells_.count; ++i)
-            if (deposit_.covered.pixel[i] > 0 && cells_.width[i] > 0) addPatch(i);  // no direction beyond a cone's end
-        fields_.deposit();
+            if (deposit_.covered.pixel[i] > 0 && cells_.width[i] > 0)  // no direction beyond a cone's end
+                fields_.deposit(makePatch(i));
         deposit_.finish();
     }
 
@@ -107,7 +107,7 @@ private:
             return bits(column, end - column, row, top - row);
         }
         if (isRectangle(around(tile, same), same)) return same;
-        return same & bits(0, shape_.all.columns, row, std::min(Patches::max_rows, shape_.all.rows - row));
+        return same & bits(0, shape_.all.columns, row, std::min(Patch::max_rows, shape_.all.rows - row));
     }
     static bool isRectangle(const SampleRectangle& all, uint32_t samples) {
         return std::popcount(samples) == all.columns * all.rows;
@@ -124,7 +124,7 @@ private:
         count();
     }
 
-    void addCell(const TracedTile& tile, uint32_t samples) {
+    void addPatch(const TracedTile& tile, uint32_t samples) {
         const int i = cells_.count, first = std::countr_zero(samples);
         const SampleRectangle all = around(tile, samples);
         const CommandRecord& command = scene_.commands[command_[first]];
@@ -163,15 +163,14 @@ private:
         return sum / std::popcount(samples);
     }
 
-    /** Returns samples numbered as in Patches::seen. */
+    /** Returns samples numbered as in Patch::seen. */
     uint32_t samplesIn(const SampleRectangle& all, uint32_t samples, const TracedTile& tile) const {
         const uint32_t row_bits = (1u << all.columns) - 1;
         if (isRectangle(all, samples)) return row_bits;
         uint32_t seen = 0;
         for (int row = 0; row < all.rows; ++row) {
             const int place = (all.first_row - tile.first_row + row) * shape_.all.columns;
-            seen |= (samples >> (place + all.first_column - tile.first_column) & row_bits)
-                    << Patches::max_columns * row;
+            seen |= (samples >> (place + all.first_column - tile.first_column) & row_bits) << Patch::max_columns * row;
         }
         return seen;
     }
@@ -193,81 +192,68 @@ private:
         in_map_.place(i, command_[first], triangle_[first], u * per_sample, v * per_sample);
     }
 
+    /** Sets the columns' edges, which are tangents about the middle of the rectangle, or sines of cones; and their
+     *  beams. */
+    void setColumns(const SampleRectangle& all, Patch& patch) const {
+        const AngularView::Direction& middle = patch.bearing;
+        const auto first_beam = deposit_.to().first_beam;
+        for (int k = 0; k <= all.columns; ++k) {
+            const int column = all.first_column + std::min(k, all.columns - 1);
+            const AngularView::Direction& edge = view_.azimuths[k < all.columns ? view_.at(column) : all.right];
+            const double aside = edge.sine * middle.cosine - edge.cosine * middle.sine,
+                         ahead = edge.cosine * middle.cosine + edge.sine * middle.sine;
+            patch.columns[static_cast<size_t>(k)] = conical_ ? edge.sine : aside / std::max(ahead, 1e-9);
+            if (k < Patch::max_columns)
+                patch.beams[static_cast<size_t>(k)] =
+                    static_cast<uint32_t>(view_.beam_of[static_cast<size_t>(column)] - first_beam);
+        }
+        for (auto k = static_cast<size_t>(all.columns); k < Patch::max_columns; ++k) {
+            patch.columns[k + 1] = patch.columns[k];
+            patch.beams[k] = patch.beams[k - 1];
+        }
+    }
+
+    Patch makePatch(int i) const {
+        const Source& source = sources_[i];
+        const SampleRectangle& all = source.all;
+        const AngularView::Elevation &low = view_.elevations[all.low], &high = view_.elevations[all.high];
+        const auto direction = [&](size_t side, const AngularView::Elevation& up) {
+            const AngularView::Direction around =
+                conical_ ? AngularView::computeAzimuth(view_.bearings[side], up) : view_.azimuths[side];
+            return glm::dvec3(up.cosine * around.cosine, up.cosine * around.sine, up.sine);
+        };
+        Patch patch{{cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]},
+                    cells_.distance[i],
+                    {cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i], cells_.sin_el[i]},
+                    {direction(all.left, low), direction(all.left, high), direction(all.right, high),
+                     direction(all.right, low)},
+                    cells_.width[i],
+                    cells_.height[i],
+                    view_.azimuths[all.across(view_)],
+                    {},
+                    {},
+                    source.seen,
+                    {},
+                    deposit_.covered.strength_range[i],
+                    cells_.size[i] / (cells_.width[i] * (high.sine - low.sine)),
+                    scene_.objects[source.object],
+                    source.lattice,
+                    conical_};
+        setColumns(all, patch);
+        const bool is_one_row = source.seen < 1u << Patch::max_columns;
+        for (size_t k = 0; k < patch.rows.size(); ++k) {
+            const size_t edge = is_one_row && k > 0 ? all.high : std::min(all.low + 2 * k, all.high);
+            patch.rows[k] = view_.elevations[edge].sine;
+        }
+        return patch;
+    }
+
     /** The samples and the object of a cell. */
     struct Source {
         SampleRectangle all;
-        uint32_t seen;  ///< As in Patches.
+        uint32_t seen;  ///< As in Patch.
         uint32_t object, lattice;
     };
-
-    /** Adds cell i to the patches. */
-    void addPatch(int i) {
-        const Source& source = sources_[i];
-        Patches& to = fields_.patches;
-        const int k = to.count++;
-        to.normal[0][k] = cells_.normal_x[i];
-        to.normal[1][k] = cells_.normal_y[i];
-        to.normal[2][k] = cells_.normal_z[i];
-        to.distance[k] = cells_.distance[i];
-        to.middle[0][k] = cells_.cos_el[i] * cells_.cos_az[i];
-        to.middle[1][k] = cells_.cos_el[i] * cells_.sin_az[i];
-        to.middle[2][k] = cells_.sin_el[i];
-        to.width[k] = cells_.width[i];
-        to.height[k] = cells_.height[i];
-        to.strength_range[k] = deposit_.covered.strength_range[i];
-        to.seen[k] = source.seen;
-        to.object[k] = source.object;
-        to.number[k] = source.lattice;
-        setColumns(source.all, k, to);
-        const AngularView::Elevation &low = view_.elevations[source.all.low], &high = view_.elevations[source.all.high];
-        to.per_solid_angle[k] = cells_.size[i] / (cells_.width[i] * (high.sine - low.sine));
-        setElevations(source, k, to);
-    }
-
-    /** Sets the edges of the columns of patch k, its bearing, and its beams. */
-    void setColumns(const SampleRectangle& all, int k, Patches& to) const {
-        const AngularView::Direction& middle = view_.azimuths[all.across(view_)];
-        to.bearing_cosine[k] = middle.cosine;
-        to.bearing_sine[k] = middle.sine;
-        const auto first_beam = deposit_.to().first_beam;
-        for (int edge = 0; edge <= Patches::max_columns; ++edge) {
-            const int column = all.first_column + std::min(edge, all.columns - 1);
-            const AngularView::Direction& at = view_.azimuths[edge < all.columns ? view_.at(column) : all.right];
-            to.edge_cosine[edge][k] = at.cosine;
-            to.edge_sine[edge][k] = at.sine;
-            if (edge < Patches::max_columns)
-                to.beams[edge][k] = static_cast<uint32_t>(view_.beam_of[static_cast<size_t>(column)] - first_beam);
-        }
-    }
-
-    /** Sets the edges of the rows of patch k, and its corners. */
-    void setElevations(const Source& source, int k, Patches& to) const {
-        const SampleRectangle& all = source.all;
-        const AngularView::Elevation &low = view_.elevations[all.low], &high = view_.elevations[all.high];
-        to.low_cosine[k] = low.cosine;
-        to.low_sine[k] = low.sine;
-        to.high_cosine[k] = high.cosine;
-        to.high_sine[k] = high.sine;
-        for (int corner = 0; corner < Patches::corners; ++corner) {
-            const size_t side = corner < 2 ? all.left : all.right;
-            const AngularView::Direction at =
-                conical_ ? AngularView::computeAzimuth(view_.bearings[side], corner == 0 || corner == 3 ? low : high)
-                         : view_.azimuths[side];
-            to.corner_cosine[corner][k] = at.cosine;
-            to.corner_sine[corner][k] = at.sine;
-            // Cones are wider in azimuth towards their ends.
-            for (int other = 0; conical_ && other < corner; ++other) {
-                const double sine = to.corner_sine[other][k] * at.cosine - to.corner_cosine[other][k] * at.sine,
-                             cosine = to.corner_cosine[other][k] * at.cosine + to.corner_sine[other][k] * at.sine;
-                to.width[k] = std::max(to.width[k], std::abs(std::atan2(sine, cosine)));
-            }
-        }
-        const bool is_one_row = source.seen < 1u << Patches::max_columns;
-        for (size_t row = 0; row <= Patches::max_rows; ++row) {
-            const size_t edge = is_one_row && row > 0 ? all.high : std::min(all.low + 2 * row, all.high);
-            to.rows[row][k] = static_cast<float>(view_.elevations[edge].sine);
-        }
-    }
 
     bool conical_, mapped_, has_maps_, has_own_, echoes_from_misses_;
     const AngularView& view_;
@@ -281,7 +267,6 @@ private:
     int sample_[tile_samples];  ///< Sample at each place.
     alignas(64) uint32_t command_[tile_samples],
         triangle_[tile_samples];  ///< Hits of the current tile, row by row.
-    static_assert(Cells::capacity <= Patches::capacity);
     Source sources_[Cells::capacity];
     MappedCells in_map_;
 };
