@@ -65,7 +65,7 @@ inline bool expectTruth(const RecordingFit& fit, const auto& truth, double range
     expectFound(fit, "noise", truth.noise_db, 1);
     const double span = tvgSpanDb(truth.log_coefficient, truth.db_per_m, range);
     expectFound(fit, "TVG span", span, 0.05 * span);
-    expectFound(fit, "pulse length", truth.pulse_m, 0.05 * truth.pulse_m);
+    expectFound(fit, "pulse length", truth.pulse_m, 0.06 * truth.pulse_m);
     const Finding* shape = fit.finding("scatterers per cell");
     EXPECT_NE(shape, nullptr);
     if (!shape) return false;
