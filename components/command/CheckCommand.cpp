@@ -46,8 +46,8 @@ Json connectionJson(const framework::Connection& connection) {
             {"policy", policy}};
 }
 
-/** Configures the tasks that lead to pings and touch nothing outside of the process, and returns what all tasks report
- *  at the start of a run. */
+/** Configures the tasks that lead to pings, which find the graphics device but open no files and ports to write, and
+ * returns what all tasks report at the start of a run. */
 types::Notices findNotices(framework::Deployment& deployment) {
     std::set<std::string> names;
     for (const auto& task : deployment.tasks())

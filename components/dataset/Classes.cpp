@@ -33,7 +33,7 @@ Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects, co
     }
     if (patterns > 0 && unmatched.size() == patterns) throw types::ConfigError(unmatched);
     for (const types::Diagnostic& each : unmatched) notices_.push_back(each.text());
-    noteSeveral(known);
+    noteLost(known);
     std::set<std::string> bare;
     for (const std::string& object : objects) bare.insert(withoutNumber(object));
     if (rules_.empty()) names_.assign(bare.begin(), bare.end());
@@ -48,22 +48,23 @@ Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects, co
     refuseTwice(sweep);
 }
 
-void Classes::noteSeveral(const std::vector<std::string>& names) {
-    std::set<std::string> doubtful;
-    std::string first;
-    for (const std::string& name : names) {
-        std::string classes;
-        for (const ClassRule& rule : rules_)
-            if (std::ranges::any_of(rule.patterns, [&](const std::string& each) { return matches(each, name); }))
-                classes += (classes.empty() ? "" : ", ") + rule.name;
-        if (classes.find(',') == classes.npos || !doubtful.insert(name).second || doubtful.size() > 1) continue;
-        first = fmt::format("{} matches {} and is a {}", name, classes, rules_[of(name) - 1].name);
+void Classes::noteLost(const std::vector<std::string>& names) {
+    for (size_t rule = 1; rule < rules_.size(); ++rule) {
+        std::string lost;
+        bool keeps = false;
+        for (const std::string& name : names) {
+            if (std::ranges::none_of(rules_[rule].patterns,
+                                     [&](const std::string& each) { return matches(each, name); }))
+                continue;
+            if (of(name) == rule + 1)
+                keeps = true;
+            else if (lost.empty())
+                lost = fmt::format("{} is a {}", name, rules_[of(name) - 1].name);
+        }
+        if (!keeps && !lost.empty())
+            notices_.push_back(fmt::format("classes.{}: all its names match a class before it, which counts: {}",
+                                           rules_[rule].name, lost));
     }
-    if (!doubtful.empty())
-        notices_.push_back(
-            fmt::format("classes: {} of the scene's names match several classes, of which the first of "
-                        "the sweep counts: {}",
-                        doubtful.size(), first));
 }
 
 void Classes::refuseTwice(const Sweep& sweep) const {

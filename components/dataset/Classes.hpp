@@ -18,7 +18,7 @@ public:
     Classes(const Sweep& sweep, const std::vector<std::string>& objects, const std::vector<std::string>& nodes = {});
 
     const std::vector<std::string>& names() const { return names_; }  ///< Names of the classes from 1 on.
-    /** Returns the patterns without a match, with their places, and names that match several classes. */
+    /** Returns the patterns without a match, with their places, and classes whose names are all of classes before. */
     const std::vector<std::string>& notices() const { return notices_; }
     uint32_t of(const std::string& object) const;
     /** Returns the class of the shadows of a class; 0 if shadows have no class. */
@@ -29,7 +29,7 @@ public:
 
 private:
     void refuseTwice(const Sweep& sweep) const;
-    void noteSeveral(const std::vector<std::string>& names);
+    void noteLost(const std::vector<std::string>& names);
 
     std::vector<ClassRule> rules_;
     std::vector<std::string> names_, notices_;

@@ -238,7 +238,7 @@ std::string describeEmptyParts(const Sweep& sweep, const Selection& selection, c
                                    types::EnumNames<Part>::names[part], shares[part]);
     if (missing.empty()) return "";
     return fmt::format(
-        "split: none of {} samples is in {}: few may miss a part, which is drawn; take more, or another seed",
+        "split: none of {} samples is in {}; parts are drawn at random: use more samples or another seed",
         selection.size(), missing);
 }
 
@@ -297,7 +297,7 @@ std::vector<std::string> describeOddPoses(const std::vector<glm::dvec3>& positio
             if (isOdd(i) && count++ == 0) first = i;
         const glm::dvec3 at = positions.empty() ? glm::dvec3(0) : positions[first];
         if (count == 0) return;
-        const std::string each = around.step > 1 ? fmt::format(" (each {}th of the sweep)", around.step) : "";
+        const std::string each = around.step > 1 ? fmt::format(" (one in {} of the sweep)", around.step) : "";
         all.push_back(
             fmt::format("{} of {} poses{}: the sonar is {}; the first is pose {}, at [{:.4g}, {:.4g}, {:.4g}]", count,
                         positions.size(), each, what, first * around.step, at.x, at.y, at.z));
@@ -307,7 +307,7 @@ std::vector<std::string> describeOddPoses(const std::vector<glm::dvec3>& positio
                  [&](size_t i) { return positions[i].z > *surface; });
     if (!around.geometry || around.geometry->objects.empty()) return all;
     const types::Extent box = types::getExtent(*around.geometry);
-    describe(fmt::format("farther from the scene than its range of {:g} m, and shows nothing of it", around.range),
+    describe(fmt::format("farther from the scene than its range of {:g} m", around.range),
              [&](size_t i) { return computeDistance(box, positions[i]) > around.range; });
     const std::vector<Column> columns = findColumns(positions, *around.geometry);
     describe("below the floor or inside of a body: the surface above it faces up, and none below it does",

@@ -110,8 +110,9 @@ Simulation::Simulation(const std::string& file, SimulationOptions options) : reg
     for (const auto& task : deployment_->tasks())
         if (auto* const sonar = dynamic_cast<sonar::PingTask*>(task.get())) sonar->useThreads(options.threads);
     deployment_->onWarning([this](const std::string& text) {
-        constexpr size_t at_most = 100;
-        if (warnings_.size() < at_most) warnings_.push_back(text);
+        std::string kind = text;
+        std::erase_if(kind, [](char c) { return c >= '0' && c <= '9'; });
+        if (warned_.insert(kind).second) warnings_.push_back(text);
     });
     deployment_->configure();
     start();

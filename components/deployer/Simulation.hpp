@@ -114,8 +114,12 @@ public:
     /** Returns the notices of all tasks and their plans, "task: notice". Plans have theirs from the first ping on.
      *  Throws std::runtime_error while another thread steps. */
     types::Notices notices() const;
-    /** Returns the warnings that tasks gave while they ran since the last call, at most a hundred. */
-    std::vector<std::string> consumeWarnings() { return std::exchange(warnings_, {}); }
+    /** Returns the warnings that tasks gave while they ran since the last call: of texts that differ by their numbers
+     *  only, the first. None while another thread steps. */
+    std::vector<std::string> consumeWarnings() {
+        const std::unique_lock lock(in_use_, std::try_to_lock);
+        return lock ? std::exchange(warnings_, {}) : std::vector<std::string>();
+    }
     double period() const { return period_; }  ///< [s]
     double time() const { return time_; }      ///< Default time of the next step; for any thread [s].
 
@@ -150,15 +154,16 @@ private:
     framework::Registry registry_;
     std::vector<std::string> poses_;
     std::vector<std::unique_ptr<PingReader>> readers_;  ///< Outlive the tasks that write to them.
+    std::vector<std::string> warnings_;                 ///< For consumeWarnings().
+    std::set<std::string> warned_;                      ///< Their texts without digits, since the start.
     std::unique_ptr<framework::Deployment> deployment_;
     std::vector<PoseFeed*> feeds_;
     double period_ = 0.1;
     double start_time_ = 0;
     std::atomic<double> time_{0};
     mutable std::mutex in_use_;
-    std::optional<types::Time> last_;    ///< Time of the step before.
-    std::vector<std::string> warnings_;  ///< For consumeWarnings().
-    std::set<std::string> own_seeds_;    ///< Tasks whose seed has been given by name.
+    std::optional<types::Time> last_;  ///< Time of the step before.
+    std::set<std::string> own_seeds_;  ///< Tasks whose seed has been given by name.
 };
 
 }  // namespace insonify::deployer

@@ -285,7 +285,8 @@ std::vector<Placing> WorldBuilder::placingsOfMesh(const std::string& name, const
     if (mesh.scale != glm::dvec3(1)) return placings;  // which answers the question
     const auto question = askUnit(*path, meshes_.extent(placings).size(),
                                   "give it <scale>0.001 0.001 0.001</scale>, in URDF scale=\"0.001 0.001 0.001\"");
-    if (question && unit_questions_.insert(question->text).second) geometry_.notices.push_back(*question);
+    if (question && question->kind == types::Notice::Kind::Warning && unit_questions_.insert(question->text).second)
+        geometry_.notices.push_back(*question);
     return placings;
 } catch (const types::ConfigError& failure) {
     leaveOut(name, fmt::format("{} {}", mesh.uri, failure.diagnostics().front().message));

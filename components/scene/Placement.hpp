@@ -38,8 +38,8 @@ struct Placement {
         visit({"up", "", "axis of the file that points up; absent: y of glTF, that of .dae as it states it, else z"},
               self.up);
         visit({"scale", "1",
-               "factor of all lengths of the file, such as 0.001 for one in millimetres; absent: 1, and what states no "
-               "unit and is large is asked about",
+               "factor of all lengths of the file, such as 0.001 for one in millimetres; absent: 1; a large file "
+               "without a unit gives a notice",
                1e-6, 1e6},
               self.scale);
     }

@@ -85,6 +85,8 @@ public:
     void setHideable(std::vector<uint32_t> objects);
     /** Hides these objects, and shows all others, from the next snapshot on: they are far below the world. */
     void hide(std::vector<uint32_t> objects) { hidden_ = std::move(objects); }
+    /** Returns what of the scene is omitted, by the properties. */
+    OmitRules omitRules() const;
 
 private:
     bool configureHook() override;
@@ -122,7 +124,6 @@ private:
     /** Returns the models of the file or of Gazebo, placed and scaled; null if neither is configured. */
     std::shared_ptr<const Scene> loadModels() const;
     /** Returns what of the models is omitted. */
-    OmitRules omitRules() const;
     /** Loads the scene again if Gazebo has not answered before. */
     std::shared_ptr<const Scene> loadToRun();
     std::string layText(const Scene& scene) const;

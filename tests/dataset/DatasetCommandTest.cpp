@@ -308,7 +308,7 @@ TEST_F(DatasetCommandTest, AShardCountsItsOwnSamplesAndSaysWhetherTheSetIsWhole)
 
 TEST_F(DatasetCommandTest, WarnsOnceOfOddPosesOfClassesAndOfEmptyParts) {
     writeFile(folder_ / "sweep.yml",
-              "poses: {grid: {x: 2, y: -2, z: [-5.5, 3, -40, 500]}}\nclasses: {pile: pile_*, all: '*'}\n"
+              "poses: {grid: {x: 2, y: -2, z: [-5.5, 3, -60, 500]}}\nclasses: {all: '*', pile: pile_*}\n"
               "split: {train: 0.999, val: 0.001, test: 0}\npicture: {height: 100}\n");
     const Outcome outcome = make("out", {"--set", "scene.water_surface=0"});
     EXPECT_THAT(outcome, succeeds());
@@ -318,8 +318,8 @@ TEST_F(DatasetCommandTest, WarnsOnceOfOddPosesOfClassesAndOfEmptyParts) {
           "pose 1, at [2.4, -2, 2.8]\n",
           "warning: 1 of 4 poses: the sonar is below the floor or inside of a body",
           "warning: 2 of 4 poses: the sonar is farther from the scene than its range of 30 m",
-          "match several classes, of which the first of the sweep counts: pile_", " matches pile, all and is a pile\n",
-          "warning: split: none of 4 samples is in val (share 0.001): "})
+          "classes.pile: all its names match a class before it, which counts: pile_",
+          "warning: split: none of 4 samples is in val (share 0.001); "})
         EXPECT_THAT(outcome.err, HasSubstr(text));
     EXPECT_THAT(make("none").err, testing::Not(HasSubstr("above the water"))) << "there is no water surface";
 }

@@ -278,7 +278,7 @@ TEST(SamplesTest, APartWithoutSamplesIsReported) {
     sweep.split = {0.98, 0.01, 0.01};
     const Samples samples(sweep, {}, {SceneParts{}});
     EXPECT_THAT(describeEmptyParts(sweep, Selection(samples.count()), samples),
-                HasSubstr("split: none of 3 samples is in val (share 0.01), nor in test (share 0.01): "));
+                HasSubstr("split: none of 3 samples is in val (share 0.01), nor in test (share 0.01); "));
     sweep.split = {1, 0, 0};
     EXPECT_EQ(describeEmptyParts(sweep, Selection(samples.count()), samples), "");
     sweep.random_count = 200, sweep.split = {0.6, 0.2, 0.2};

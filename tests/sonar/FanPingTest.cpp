@@ -316,9 +316,9 @@ TEST(FanPingTest, ABinHasItsScatterersWhateverBinsAreAboutIt) {
     std::mt19937 random(11);
     const auto upTo = [&](double end) { return std::uniform_real_distribution<double>(0, end)(random); };
     size_t echoes = 0;
-    for (int drawn = 0; drawn < 24; ++drawn) {
+    for (int drawn = 0; drawn < 40; ++drawn) {
         SonarConfig config = test::getSonar({.beams = 2 + static_cast<int>(upTo(30)),
-                                             .width_deg = 20 + upTo(100),
+                                             .width_deg = 20 + upTo(140),
                                              .height_deg = 10 + upTo(50),
                                              .bins = 280,
                                              .rows = 1 << (3 + drawn % 5),
@@ -326,7 +326,7 @@ TEST(FanPingTest, ABinHasItsScatterersWhateverBinsAreAboutIt) {
         config.visibility = Visibility::Cpu;
         config.frequency_khz = 300;
         config.speckle = SpeckleConfig{true, 5, {}};
-        if (drawn % 3 == 0) config.beam_geometry = BeamGeometry::Conical;
+        if (drawn % 2 == 0) config.beam_geometry = BeamGeometry::Conical;
         const glm::dvec3 place(upTo(6), upTo(4) - 2, upTo(2));
         const types::Snapshot scene = test::makeSnapshot(test::surfaces(), place, upTo(6.28), upTo(0.6));
         const types::Sonar whole = test::makePing(config, scene);

@@ -421,7 +421,8 @@ std::vector<std::string> describePoses(const Sweep& sweep, const SceneChoice& ch
     types::Mount mount;
     for (const auto& task : deployment.tasks()) {
         const auto* const sonar = dynamic_cast<const sonar::PingTask*>(task.get());
-        if (sonar && !varies(task->name() + ".range")) around.range = sonar->locatedConfig().range;
+        if (sonar && sweep.objects.empty() && !varies(task->name() + ".range"))
+            around.range = sonar->locatedConfig().range;
         const auto* const world = dynamic_cast<const scene::SceneTask*>(task.get());
         if (!world) continue;
         const scene::SceneConfig& config = *world->config;
@@ -429,7 +430,8 @@ std::vector<std::string> describePoses(const Sweep& sweep, const SceneChoice& ch
         if (varies(task->name() + ".mount")) return {};
         if (!varies(task->name() + ".water_surface")) around.water_surface = config.water_surface;
         if (config.bathymetry || varies(task->name() + ".placement") || varies(task->name() + ".scale")) continue;
-        around.geometry = config.placement ? scene::placed(scene, *config.placement).geometry : scene.geometry;
+        const scene::Scene placed = config.placement ? scene::placed(scene, *config.placement) : scene;
+        around.geometry = scene::withoutOmitted(placed, world->omitRules()).geometry;
     }
     const uint64_t count = countPoses(sweep, runs);
     around.step = (count + at_most - 1) / at_most;

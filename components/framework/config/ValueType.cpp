@@ -135,8 +135,8 @@ std::string pairIn(std::string_view doc) {
     return "";
 }
 
-/** Returns a short value of a type in flow YAML, for errors; empty: it has none. Of a block it has one field, if
- *  possible one with a default. */
+/** Returns a short value of a type in flow YAML, for errors; empty: it has none. Of a block it has one
+ *  field, if possible one with a default. */
 std::string makeExample(const ValueType& type, const types::Field& field) {
     const auto enclose = [](const char* begin, const std::string& text, const char* end) {
         return text.empty() ? text : begin + text + end;
@@ -148,8 +148,7 @@ std::string makeExample(const ValueType& type, const types::Field& field) {
         return enclose("{NAME: ", makeExample(map->inner(), field), "}");
     const auto* const block = dynamic_cast<const BlockType*>(&type);
     const std::string text = type.text(type.fresh());
-    if (!block && text == "0" && (field.min > 0 || field.max < 0))
-        return fmt::format("{}", field.min > 0 ? field.min : field.max);
+    if (!block && text == "0" && (field.min > 0 || field.max < 0)) return "";  // a bound is no example
     if (!block) return text;
     std::string with_default, without;
     block->visit(unconst(block->fresh()), [&](const types::Field& each, const ValueType& member_type, void* member) {

@@ -67,8 +67,8 @@ struct PictureConfig : DisplayConfig, RecordingConfig {
 
     static void describe(auto& self, auto& visit) {
         RecordingConfig::describe(self, visit);
-        visit({"every", "1", "pings from one picture to the next: the first of so many has one, of a disc the last", 1,
-               1e6},
+        visit({"every", "1",
+               "pings from one picture to the next: a picture shows the first of them; a disc shows the last", 1, 1e6},
               self.every);
         DisplayConfig::describe(self, visit);
     }

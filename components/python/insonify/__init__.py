@@ -437,18 +437,21 @@ class _Warnings:
 
     def follow(self) -> None:
         """A ping was made."""
-        if self._is_due:
+        was_due, self._is_due = self._is_due, False
+        texts = native.warnings_of(self._stepped)
+        if was_due:
             self._compare(4)
             self._is_due = False
-        for text in native.warnings_of(self._stepped):
+        for text in texts:
             warnings.warn(text, stacklevel=3)
 
     def _compare(self, level: int) -> None:
-        notices = self._stepped.facts()["notices"]
-        for notice in notices:
-            if notice["is_warning"] and notice not in self._known:
-                warnings.warn(notice["text"], stacklevel=level)
+        """State changes before the first warning, which Python may turn into an exception."""
+        before, notices = self._known, self._stepped.facts()["notices"]
         self._known, self._is_due = notices, True
+        for notice in notices:
+            if notice["is_warning"] and notice not in before:
+                warnings.warn(notice["text"], stacklevel=level)
 
 
 def _assignments(overrides: Mapping[str, object] | None, what: str = "overrides") -> list[str]:

@@ -282,7 +282,8 @@ PatchOutline makeOutline(const Patch& patch, const PatchLattice& lattice, const 
     const glm::dvec3 middle = patch.middle * lattice.range;
     const double per_spacing = 1 / spacing;
     const glm::dvec2 at = lattice.middle * per_spacing - base;
-    PatchOutline outline{{}, glm::dvec2(far * patch.width * patch.width * per_spacing / 8)};
+    const double bulge = (patch.width * patch.width + patch.height * patch.height) / 8;
+    PatchOutline outline{{}, glm::dvec2(far * bulge * per_spacing)};
     std::array<int, 4> cut{};
     for (size_t i = 0; i < 4; ++i) {
         const double whole = 1 / std::max(inverseRange(patch, patch.corners[i]), 1e-9);
@@ -292,11 +293,14 @@ PatchOutline makeOutline(const Patch& patch, const PatchLattice& lattice, const 
     }
     if (cut == std::array<int, 4>{}) return outline;
     // A corner that is cut off is outside the plane, by less than the patch's height, and width where its side is skew.
-    const glm::dvec3 up = glm::normalize(glm::dvec3(0, 0, 1) - patch.middle.z * patch.middle),
-                     aside(-patch.middle.y, patch.middle.x, 0);
-    outline.margin += glm::abs(lattice.across(up)) * (far * patch.height * per_spacing);
-    if (cut[0] != cut[3] || cut[1] != cut[2])
-        outline.margin += glm::abs(lattice.across(aside)) * (far * patch.width * per_spacing);
+    // Sides of cones lean.
+    const glm::dvec3 &to = patch.middle, up = glm::normalize(glm::dvec3(0, 0, 1) - to.z * to), aside(-to.y, to.x, 0);
+    const double level = std::hypot(to.x, to.y), ahead = std::max(to.x, 0.07 * level);
+    const bool is_skew = cut[0] != cut[3] || cut[1] != cut[2];
+    const double shift = (is_skew ? patch.width : 0) +
+                         (patch.conical ? patch.height * std::abs(to.y * to.z) / std::max(ahead * level, 1e-9) : 0);
+    outline.margin +=
+        far * per_spacing * (glm::abs(lattice.across(up)) * patch.height + glm::abs(lattice.across(aside)) * shift);
     return outline;
 }
 
