@@ -34,6 +34,7 @@ struct LatticePatch {
         square_vv;               ///< Change of the squared slant range from the middle.
     Plane height, aside, ahead;  ///< In the direction of the middle's bearing [m].
     float ahead_per_range;
+    Plane front;  ///< Of conical beams, along x: a cone goes on behind the sonar. Else 1.
     float columns[Patch::max_columns + 1], rows[Patch::max_rows + 1];
     uint32_t seen;
     int32_t sum, next_sums[Patch::max_columns - 1];  ///< First sum of the beam; steps to that of the next column.
@@ -99,6 +100,7 @@ INSONIFY_VECTOR_CLONES void locate(const LatticePatch& patch, int count, Lattice
         const float height = p.height.constant + u * p.height.along_u + v * p.height.along_v;
         const float aside = p.aside.constant + u * p.aside.along_u + v * p.aside.along_v;
         const float ahead = p.ahead.constant + u * p.ahead.along_u + v * p.ahead.along_v + p.ahead_per_range * range;
+        const float front = p.front.constant + u * p.front.along_u + v * p.front.along_v;
         int32_t sample = 0, first_sum = p.sum;
         for (int k = 0; k < 3; ++k) {
             sample += height >= p.rows[k + 1] * range ? Patch::max_columns : 0;
@@ -107,7 +109,7 @@ INSONIFY_VECTOR_CLONES void locate(const LatticePatch& patch, int count, Lattice
             first_sum += past ? p.next_sums[k] : 0;
         }
         const auto cell = static_cast<int32_t>(range * p.cells_per_metre);
-        const int inside = (height >= p.rows[0] * range) & (height < p.rows[4] * range) &
+        const int inside = (front >= 0) & (height >= p.rows[0] * range) & (height < p.rows[4] * range) &
                            (aside >= p.columns[0] * ahead) & (aside < p.columns[4] * ahead) & (further >= p.near_end) &
                            (further < p.far_end) & (static_cast<uint32_t>(cell) < p.cell_count) &
                            static_cast<int>(p.seen >> sample);
@@ -341,6 +343,7 @@ LatticePatch getPart(const EchoRules& rules, const Patch& patch, const PatchLatt
     const AngularView::Direction towards = patch.conical ? AngularView::Direction{1, 0} : patch.bearing;
     part.height = makePlane({0, 0, 1}, at, along_u, along_v);
     part.aside = makePlane({-towards.sine, towards.cosine, 0}, at, along_u, along_v);
+    part.front = patch.conical ? makePlane({1, 0, 0}, at, along_u, along_v) : LatticePatch::Plane{1, 0, 0};
     if (patch.conical)
         part.ahead_per_range = 1;
     else
