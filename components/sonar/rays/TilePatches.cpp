@@ -239,6 +239,13 @@ private:
                     scene_.objects[source.object],
                     source.lattice,
                     conical_};
+        // Cones are wider in azimuth towards their ends.
+        for (size_t k = 1; conical_ && k < patch.corners.size(); ++k)
+            for (size_t j = 0; j < k; ++j) {
+                const glm::dvec3 &from = patch.corners[j], &to = patch.corners[k];
+                patch.width = std::max(
+                    patch.width, std::abs(std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y)));
+            }
         setColumns(all, patch);
         const bool is_one_row = source.seen < 1u << Patch::max_columns;
         for (size_t k = 0; k < patch.rows.size(); ++k) {
