@@ -295,12 +295,8 @@ PatchOutline makeOutline(const Patch& patch, const PatchLattice& lattice, const 
     }
     if (cut == std::array<int, 4>{}) return outline;
     // A corner that is cut off is outside the plane, by less than the patch's height, and width where its side is skew.
-    // Sides of cones lean.
     const glm::dvec3 &to = patch.middle, up = glm::normalize(glm::dvec3(0, 0, 1) - to.z * to), aside(-to.y, to.x, 0);
-    const double level = std::hypot(to.x, to.y), ahead = std::max(to.x, 0.07 * level);
-    const bool is_skew = cut[0] != cut[3] || cut[1] != cut[2];
-    const double shift = (is_skew ? patch.width : 0) +
-                         (patch.conical ? patch.height * std::abs(to.y * to.z) / std::max(ahead * level, 1e-9) : 0);
+    const double shift = patch.conical || cut[0] != cut[3] || cut[1] != cut[2] ? patch.width : 0;
     outline.margin +=
         far * per_spacing * (glm::abs(lattice.across(up)) * patch.height + glm::abs(lattice.across(aside)) * shift);
     return outline;
