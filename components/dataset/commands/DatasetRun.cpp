@@ -231,8 +231,8 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
     framework::Deployment checked(spec_, registry);  // throws the errors of the unchanged deployment
     refuseBudgets();
     checkAssignments();
-    runs_ = getRuns(sweep_);
-    readScenes(checked);
+    auto runs = getRuns(sweep_);
+    readScenes(checked, runs);
     std::vector<SceneParts> parts;
     std::vector<std::string> objects, nodes;
     for (const SceneFile& scene : scenes_) {
@@ -242,7 +242,7 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
             nodes.insert(nodes.end(), names.begin() + 1, names.end());
         }
     }
-    samples_.emplace(sweep_, std::move(runs_), std::move(parts));
+    samples_.emplace(sweep_, std::move(runs), std::move(parts));
     classes_.emplace(sweep_, objects, nodes);
     std::ranges::copy(classes_->notices(), std::back_inserter(warnings_));
     if (sweep_.picture.scale != output::BinScale::Code && std::ranges::any_of(checked.tasks(), sendsCodes))
@@ -381,7 +381,7 @@ DatasetRun::SceneFile DatasetRun::readScene(const std::string& file, const scene
     return read;
 }
 
-void DatasetRun::readScenes(const framework::Deployment& deployment) {
+void DatasetRun::readScenes(const framework::Deployment& deployment, const std::vector<std::vector<TimedPose>>& runs) {
     constexpr size_t shown = 5;  // scenes with odd poses
     std::set<std::string> reported;
     size_t odd = 0;
@@ -397,7 +397,7 @@ void DatasetRun::readScenes(const framework::Deployment& deployment) {
         scenes_.push_back(readScene(file, scene));
         if (odd >= shown) continue;
         const size_t before = reported.size();
-        for (const std::string& text : describePoses(sweep_, choice, runs_, deployment, scene))
+        for (const std::string& text : describePoses(sweep_, choice, runs, deployment, scene))
             if (reported.insert(text).second)
                 warnings_.push_back(sweep_.scenes.size() > 1 ? scenes_.back().name + ": " + text : text);
         odd += reported.size() > before ? 1 : 0;

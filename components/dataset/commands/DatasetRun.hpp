@@ -90,7 +90,8 @@ private:
     void checkDrawn() const;
     void checkAssignment(const std::string& path, const std::string& property, const Written& value) const;
     void refuseBudgets() const;
-    void readScenes(const framework::Deployment& deployment);
+    /** Warns of odd poses among the runs. */
+    void readScenes(const framework::Deployment& deployment, const std::vector<std::vector<TimedPose>>& runs);
     SceneFile readScene(const std::string& file, const scene::Scene& scene) const;
     void computeDigests();
     std::vector<std::string> makeOverrides(const Sample& sample) const;
@@ -112,7 +113,6 @@ private:
     framework::DeploymentSpec spec_;
     std::vector<Instances> instances_;  ///< One for each scene.
     std::vector<SceneFile> scenes_;
-    std::vector<std::vector<TimedPose>> runs_;  ///< The poses of a trajectory; else empty.
     std::optional<Samples> samples_;
     std::optional<Classes> classes_;
     Selection selection_;

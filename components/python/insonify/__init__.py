@@ -428,30 +428,28 @@ class _Warnings:
     first ping and the first ping after a change of properties, and those of single pings."""
 
     def __init__(self, stepped: native.Handle) -> None:
-        self._stepped, self._known = stepped, []
-        self._compare(4)
+        self._stepped, self._known, self._is_due = stepped, [], True
+        self._compare()
 
     def expect(self) -> None:
         """Properties have changed."""
-        self._compare(4)
+        self._is_due = True
+        self._compare()
 
     def follow(self) -> None:
-        """A ping was made."""
+        """A ping was made. State changes before the first warning, which Python may turn into an exception."""
         was_due, self._is_due = self._is_due, False
         texts = native.warnings_of(self._stepped)
         if was_due:
-            self._compare(4)
-            self._is_due = False
+            self._compare()
         for text in texts:
             warnings.warn(text, stacklevel=3)
 
-    def _compare(self, level: int) -> None:
-        """State changes before the first warning, which Python may turn into an exception."""
-        before, notices = self._known, self._stepped.facts()["notices"]
-        self._known, self._is_due = notices, True
-        for notice in notices:
+    def _compare(self) -> None:
+        before, self._known = self._known, self._stepped.facts()["notices"]
+        for notice in self._known:
             if notice["is_warning"] and notice not in before:
-                warnings.warn(notice["text"], stacklevel=level)
+                warnings.warn(notice["text"], stacklevel=4)
 
 
 def _assignments(overrides: Mapping[str, object] | None, what: str = "overrides") -> list[str]:
