@@ -46,10 +46,10 @@ INSONIFY_VECTOR_CLONES void scaleSums(const uint64_t* sums, const double* amplit
                                       float* __restrict fields, size_t count) {
     for (size_t j = 0; j < count; ++j) {
         const double unit = amplitudes[stride * j] * quantum;
-        const auto real = static_cast<int64_t>(sums[2 * stride * j]),
-                   imaginary = static_cast<int64_t>(sums[2 * stride * j + 1]);
-        fields[2 * j] = static_cast<float>(static_cast<double>(real) * unit);
-        fields[2 * j + 1] = static_cast<float>(static_cast<double>(imaginary) * unit);
+        const auto in_phase = static_cast<int64_t>(sums[2 * stride * j]),
+                   quadrature = static_cast<int64_t>(sums[2 * stride * j + 1]);
+        fields[2 * j] = static_cast<float>(static_cast<double>(in_phase) * unit);
+        fields[2 * j + 1] = static_cast<float>(static_cast<double>(quadrature) * unit);
     }
 }
 
@@ -110,8 +110,8 @@ struct Cubes {
 };
 
 /** Fills a complex Gaussian field of given intensities, which belongs to the cubes of the middles of range cells. */
-INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* intensities, float* __restrict real,
-                                           float* __restrict imaginary) {
+INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* intensities, float* __restrict in_phase,
+                                           float* __restrict quadrature) {
     const Cubes c = cubes;
     for (size_t k = c.first; k < c.last; ++k) {
         const auto on = static_cast<float>(static_cast<int32_t>(k - c.first));
@@ -124,8 +124,8 @@ INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* inte
         }
         const float field = std::sqrt(-intensities[k] * logarithm(uniform(place)));
         const float phase = uniform(place >> 16), turns = phase - nearest(phase);
-        real[k] = field * computeCosine(turns);
-        imaginary[k] = field * computeSine(turns);
+        in_phase[k] = field * computeCosine(turns);
+        quadrature[k] = field * computeSine(turns);
     }
 }
 

@@ -16,9 +16,7 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
-constexpr double reaching_back = 1.1;  ///< Cells beyond the range, up to this factor of it, may extend into it [1].
-constexpr double nearest_bin = 1e-3;   ///< Min slant range that is summed [m].
+constexpr double nearest_bin = 1e-3;  ///< Min slant range that is summed [m].
 
 /** A transmission in one ping. */
 struct PlacedSender {

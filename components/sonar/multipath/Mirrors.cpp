@@ -66,9 +66,9 @@ void WaterMirror::place(const types::Snapshot& snapshot, double range_max) {
 }
 
 double WaterMirror::distance(const glm::dvec3& from, const glm::dvec3& direction) const {
-    constexpr double edge_on = 1e-9;
+    constexpr double level = 1e-9;
     const double rise = glm::dot(plane_.normal, direction);
-    if (!reflects_ || !(rise > edge_on)) return std::numeric_limits<double>::infinity();
+    if (!reflects_ || !(rise > level)) return std::numeric_limits<double>::infinity();
     return std::max(0.0, (plane_.distance - glm::dot(plane_.normal, from)) / rise);
 }
 

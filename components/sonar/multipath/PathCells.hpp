@@ -11,6 +11,9 @@
 
 namespace insonify::sonar {
 
+constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
+constexpr double reaching_back = 1.1;  ///< Cells beyond the range, up to this factor of it, may extend into it [1].
+
 /** The directions of a rectangle of samples of a tile. */
 struct CellAngles {
     glm::dvec3 middle, per_azimuth, per_elevation;  ///< Unit direction of the middle, and its derivatives [1].

@@ -23,8 +23,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double reaching_back = 1.1;  ///< Cells beyond the range, up to this factor of it, may extend into it [1].
-constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
 constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Water surface in the mirrors of a chain.
 
 class PathEchoes final : public PingEffect {
