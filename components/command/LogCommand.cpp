@@ -218,10 +218,17 @@ Paths writeCsv(log::Reader& log, const LogOptions& options) {
     return {options.to};
 }
 
+Paths writePictures(log::Reader& log, const LogOptions& options) {
+    Paths files = exportPictures(log, options.stream, options.to, options.ground);
+    if (files.empty())
+        throw types::ConfigError(log.path(), options.stream, "holds no sample; there is nothing to draw");
+    return files;
+}
+
 constexpr ExportFormat export_formats[] = {
     {".npz", "", writeNpz},
     {".csv", "", writeCsv},
-    {".png", "", [](log::Reader& log, const LogOptions& o) { return exportPictures(log, o.stream, o.to, o.ground); }},
+    {".png", "", writePictures},
     {".mcap"},
     {".xtf", " (side-scan)",
      [](log::Reader& log, const LogOptions& o) { return exportXtf(log, o.stream, o.poses, o.to), Paths{o.to}; }},

@@ -273,6 +273,8 @@ int replay(ReplayAsked options) {
     log::Reader& log = *opened.log;
     if (options.deployment.empty()) return listPoses(log);
     refuseFolder(options.replay.log, options.out);
+    if (log.samples().empty())
+        throw types::ConfigError(options.replay.log, "", "holds no sample; there is nothing to replay");
     choosePoses(log, options);
     if (!options.from.empty() && !log.samples().empty()) options.replay.from = startIn(log, options.from);
     std::vector<RecordedProperty> changed;

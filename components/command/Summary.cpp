@@ -178,7 +178,7 @@ Json Summary::json() const {
 }
 
 std::string Summary::text() const {
-    std::string text = fmt::format("{} pings in {:.2f} s: {:.1f} per second", pings, wall_s,
+    std::string text = fmt::format("{} ping{} in {:.2f} s: {:.1f} per second", pings, pings == 1 ? "" : "s", wall_s,
                                    wall_s > 0 ? static_cast<double>(pings) / wall_s : 0.0);
     for (const auto& [port, count] : pings_by_port) text += fmt::format(", {} {}", port, count);
     text += "\n";

@@ -2,17 +2,22 @@
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Exceptional.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstdint>
 #include <exception>
 #include <fstream>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <new>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <type_traits>
@@ -26,7 +31,26 @@ namespace {
 
 static_assert(std::is_same_v<ai_real, float>);
 
-Surface getSurface(const aiMesh& from) {
+/** Triangles of a mesh with a vertex that is not a finite number, as assimp would join it to any other: it moves to the
+ *  first vertex. */
+std::vector<unsigned> takeUnplaced(aiMesh& mesh) {
+    std::vector<bool> unplaced(mesh.mNumVertices);
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+        aiVector3D& at = mesh.mVertices[i];
+        unplaced[i] = !std::isfinite(at.x) || !std::isfinite(at.y) || !std::isfinite(at.z);
+        if (unplaced[i]) at = i > 0 ? mesh.mVertices[0] : aiVector3D();
+    }
+    std::vector<unsigned> faces;
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+        const std::span all(mesh.mFaces[i].mIndices, mesh.mFaces[i].mNumIndices);
+        const auto is = [&](unsigned index) { return index < mesh.mNumVertices && unplaced[index]; };
+        if (std::ranges::any_of(all, is)) faces.push_back(i);
+    }
+    return faces;
+}
+
+/** @param unplaced of takeUnplaced(); these triangles get a vertex that is not a number */
+Surface getSurface(const aiMesh& from, const std::vector<unsigned>& unplaced) {
     Surface surface;
     surface.positions.reserve(from.mNumVertices);
     for (unsigned i = 0; i < from.mNumVertices; ++i)
@@ -36,8 +60,38 @@ Surface getSurface(const aiMesh& from) {
         const auto exists = [&from](unsigned index) { return index < from.mNumVertices; };
         if (face.mNumIndices == 3 && std::all_of(face.mIndices, face.mIndices + 3, exists))
             surface.indices.insert(surface.indices.end(), face.mIndices, face.mIndices + 3);
+        if (std::ranges::binary_search(unplaced, i) && !surface.indices.empty())
+            surface.indices.back() = from.mNumVertices;
     }
+    if (!unplaced.empty()) surface.positions.emplace_back(std::numeric_limits<float>::quiet_NaN());
     return surface;
+}
+
+constexpr char in_name = '\x1f';  ///< In place of a space in a name, which assimp would cut there.
+
+/** Returns a text with `in_name` for each blank within a name: "o left wall" of an .obj, "solid left wall" of an .stl.
+ */
+std::string withMarkedNames(std::string text, std::string_view keyword) {
+    constexpr std::string_view blanks = " \t";
+    for (size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
+        end = std::min(text.find_first_of("\r\n", begin), text.size());
+        const size_t at = std::min(text.find_first_not_of(blanks, begin), end);
+        const std::string_view line(text.data() + at, end - at);
+        if (!line.starts_with(keyword) || line.size() == keyword.size() ||
+            blanks.find(line[keyword.size()]) == blanks.npos)
+            continue;
+        const size_t first = text.find_first_not_of(blanks, at + keyword.size());
+        if (first >= end) continue;
+        const size_t last = text.find_last_not_of(blanks, end - 1);
+        for (size_t i = first; i < last; ++i)
+            if (blanks.find(text[i]) != blanks.npos) text[i] = in_name;
+    }
+    return text;
+}
+
+std::string withSpaces(std::string name) {
+    std::ranges::replace(name, in_name, ' ');
+    return name;
 }
 
 /** Returns a placing for each mesh of each node, without recursion. */
@@ -54,7 +108,7 @@ std::vector<FileMeshes::Placing> getPlacings(const aiScene& from, const glm::dma
         const glm::dmat4 world_from_node =
             world_from_parent * glm::transpose(glm::dmat4(glm::make_mat4(&node->mTransformation.a1)));
         for (unsigned i = 0; i < node->mNumMeshes; ++i)
-            placings.push_back({node->mName.C_Str(), node->mMeshes[i], world_from_node});
+            placings.push_back({withSpaces(node->mName.C_Str()), node->mMeshes[i], world_from_node});
         for (unsigned i = 0; i < node->mNumChildren; ++i) waiting.push_back({node->mChildren[i], world_from_node});
     }
     return placings;
@@ -89,11 +143,15 @@ std::string shortened(const std::string& text) {
     throw std::runtime_error(shortened(importer.GetErrorString()));
 }
 
+std::string toText(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 /** Returns a .dae with a colour in place of each texture: assimp refuses whole files for pictures that are not named,
  *  which no sonar needs. */
 std::string withoutTextures(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::string text = toText(file);
     constexpr std::string_view colour = "<color>1 1 1 1</color>";
     for (size_t at = 0; (at = text.find("<texture", at)) != std::string::npos; at += colour.size()) {
         const size_t end = text.find('>', at);
@@ -113,7 +171,14 @@ public:
 
     bool Exists(const char* named) const override { return file_ == named && DefaultIOSystem::Exists(named); }
     Assimp::IOStream* Open(const char* named, const char* mode) override {
-        return file_ == named ? DefaultIOSystem::Open(named, mode) : nullptr;
+        if (file_ != named) return nullptr;
+        const std::string extension = scene::getExtension(file_);
+        if (extension != ".obj" && extension != ".stl") return DefaultIOSystem::Open(named, mode);
+        std::string text = toText(file_);
+        if (text.find('\0') == text.npos) text = withMarkedNames(std::move(text), extension == ".obj" ? "o" : "solid");
+        auto* const bytes = new uint8_t[text.size()];  // the stream deletes them
+        std::ranges::copy(text, bytes);
+        return new Assimp::MemoryIOStream(bytes, text.size(), true);
     }
 
 private:
@@ -132,20 +197,23 @@ FileMeshes readByAssimp(const std::filesystem::path& file, MeshAxes axes) {
                                                             aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                                             aiComponent_TEXTURES);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    constexpr unsigned steps =
-        aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices;
+    constexpr unsigned steps = aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType;
     const aiScene* from = importer.ReadFile(file.string(), steps);
     if (!from && std::string_view(importer.GetErrorString()).find("texture") != std::string_view::npos) {
         const std::string text = withoutTextures(file);
         from = importer.ReadFileFromMemory(text.data(), text.size(), steps, "dae");
     }
     if (!from || !from->mRootNode) refuse(importer);
+    std::vector<std::vector<unsigned>> unplaced;
+    for (unsigned i = 0; i < from->mNumMeshes; ++i) unplaced.push_back(takeUnplaced(*from->mMeshes[i]));
+    from = importer.ApplyPostProcessing(aiProcess_JoinIdenticalVertices);
+    if (!from) refuse(importer);
     FileMeshes meshes;
     for (unsigned i = 0; i < from->mNumMaterials; ++i)
         meshes.materials.push_back(from->mMaterials[i]->GetName().C_Str());
     for (unsigned i = 0; i < from->mNumMeshes; ++i) {
         const aiMesh& mesh = *from->mMeshes[i];
-        meshes.parts.push_back({mesh.mName.C_Str(), mesh.mMaterialIndex, getSurface(mesh)});
+        meshes.parts.push_back({withSpaces(mesh.mName.C_Str()), mesh.mMaterialIndex, getSurface(mesh, unplaced[i])});
     }
     meshes.placings = getPlacings(*from, axes == MeshAxes::ZUp ? z_up_from_y_up : glm::dmat4(1));
     return meshes;

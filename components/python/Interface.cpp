@@ -100,9 +100,9 @@ void keepError(const char* kind, const std::exception& error, const types::Diagn
 }
 
 /** Returns the errors with the parameter of Python as the origin of what `--set` would have set. */
-types::ConfigError namingOverrides(types::Diagnostics diagnostics) {
+types::ConfigError namingParameter(types::Diagnostics diagnostics, const char* parameter) {
     for (types::Diagnostic& each : diagnostics)
-        if (each.file == framework::set_origin) each.file = "overrides";
+        if (each.file == framework::set_origin) each.file = parameter;
     return types::ConfigError(std::move(diagnostics));
 }
 
@@ -112,7 +112,7 @@ auto guarded(std::invoke_result_t<Work> failed, Work&& work) {
     try {
         return work();
     } catch (const types::ConfigError& error) {
-        const types::ConfigError named = namingOverrides(error.diagnostics());
+        const types::ConfigError named = namingParameter(error.diagnostics(), "overrides");
         keepError("ConfigError", named, named.diagnostics());
     } catch (const UnreadableType& error) {
         keepError("TypeError", error);
@@ -274,16 +274,20 @@ double insonify_time(const Handle* simulation) {
 }
 
 int insonify_set(Handle* stepped, const char* const* assignments, size_t count) {
-    return guarded(-1, [&] {
+    return guarded(-1, [&]() -> int {
         std::map<std::string, std::string> values;
         for (const std::string assignment : std::span(assignments, count)) {
             const size_t equals = assignment.find('=');
             values[assignment.substr(0, equals)] = assignment.substr(equals + 1);
         }
-        if (dynamic_cast<BatchHandle*>(stepped))
-            Stepped::usable<BatchHandle>(*stepped).batch.set(values);
-        else
-            Stepped::usable<SimulationHandle>(*stepped).simulation.set(values);
+        try {
+            if (dynamic_cast<BatchHandle*>(stepped))
+                Stepped::usable<BatchHandle>(*stepped).batch.set(values);
+            else
+                Stepped::usable<SimulationHandle>(*stepped).simulation.set(values);
+        } catch (const types::ConfigError& error) {
+            throw namingParameter(error.diagnostics(), "values");
+        }
         return 0;
     });
 }

@@ -30,6 +30,7 @@
 #include <sdf/Visual.hh>
 #include <sdf/World.hh>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 #include "components/meshes/WorldBuilder.hpp"
@@ -78,6 +79,72 @@ void keepFixedJoints(XMLElement& robot) {
     }
 }
 
+scene::AcousticValue getValue(const std::string& text) {
+    double number;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc() && end == text.data() + text.size()) return number;
+    if (text == "true" || text == "false") return text == "true";
+    return text;
+}
+
+/** Checks the visuals of links, of which libsdformat leaves out without a word what it cannot read. */
+class VisualChecks {
+public:
+    explicit VisualChecks(std::string file) : file_(std::move(file)) {}
+
+    types::Diagnostics diagnostics;
+    std::vector<std::string> notices;
+
+    void check(const XMLElement& visual, const std::string& link) {
+        path_ = "link " + link + ".visual.";
+        if (const XMLElement* origin = visual.FirstChildElement("origin"))
+            for (const char* const name : {"xyz", "rpy"}) checkNumbers(*origin, name, 3, Any, !origin->Attribute(name));
+        const XMLElement* const geometry = visual.FirstChildElement("geometry");
+        const XMLElement* const shape = geometry ? geometry->FirstChildElement() : nullptr;
+        const std::string_view name = shape ? shape->Name() : "";
+        if (name == "box") {
+            checkNumbers(*shape, "size", 3, NotNegative);
+        } else if (name == "sphere" || name == "cylinder") {
+            checkNumbers(*shape, "radius", 1, NotNegative);
+            if (name == "cylinder") checkNumbers(*shape, "length", 1, NotNegative);
+        } else if (name == "mesh") {
+            checkNumbers(*shape, "scale", 3, Any, !shape->Attribute("scale"));
+            if (!shape->Attribute("filename") || std::string_view(shape->Attribute("filename")).empty())
+                report(*shape, "filename", "is missing; must be the path or URI of a mesh");
+        } else {
+            notices.push_back(fmt::format("{}:{}: {}geometry: {}; omitted: may be box, cylinder, sphere or mesh", file_,
+                                          visual.GetLineNum(), path_,
+                                          shape ? fmt::format("<{}> is no shape of URDF", name) : "holds no shape"));
+        }
+    }
+
+private:
+    enum Sign { Any, NotNegative };
+
+    void checkNumbers(const XMLElement& element, const char* name, size_t count, Sign sign, bool may_lack = false) {
+        const char* const text = element.Attribute(name);
+        std::istringstream words(text ? text : "");
+        size_t good = 0, all = 0;
+        for (std::string word; words >> word; ++all) {
+            const scene::AcousticValue value = getValue(word.front() == '+' ? word.substr(1) : word);
+            const auto* const number = std::get_if<double>(&value);
+            good += number && std::isfinite(*number) && (sign == Any || *number >= 0) ? 1 : 0;
+        }
+        if (may_lack || (good == count && all == count)) return;
+        report(element, name,
+               fmt::format("{}; must be {}{}", text ? fmt::format("is \"{}\"", text) : "is missing",
+                           count == 1 ? "a number" : fmt::format("{} numbers", count),
+                           sign == NotNegative ? ", not negative" : ""));
+    }
+    void report(const XMLElement& element, const char* attribute, const std::string& message) {
+        diagnostics.push_back(
+            {fmt::format("{}{}.{}", path_, element.Name(), attribute), message, file_, element.GetLineNum()});
+    }
+
+    const std::string file_;
+    std::string path_;
+};
+
 }  // namespace
 
 bool isUrdf(const std::filesystem::path& file) { return scene::getExtension(file) == ".urdf"; }
@@ -94,13 +161,18 @@ Urdf readUrdf(const std::filesystem::path& file, const std::string& text) {
     if (!robot) refuse("holds no <robot>, which is what URDF describes", 1);
     if (usesXacro(*robot)) refuse("is a macro file of xacro; expand it: xacro IN > OUT.urdf", robot->GetLineNum());
     Urdf urdf;
+    VisualChecks checks(file.string());
     for (XMLElement* link = robot->FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
         addInertia(*link);
         std::vector<std::string>& materials = urdf.materials[getName(link)];
         for (const XMLElement* visual = link->FirstChildElement("visual"); visual;
-             visual = visual->NextSiblingElement("visual"))
+             visual = visual->NextSiblingElement("visual")) {
+            checks.check(*visual, getName(link));
             materials.push_back(getName(visual->FirstChildElement("material")));
+        }
     }
+    if (!checks.diagnostics.empty()) throw types::ConfigError(std::move(checks.diagnostics));
+    urdf.notices = std::move(checks.notices);
     keepFixedJoints(*robot);
     if (urdf.materials.empty()) refuse("is a robot without links", robot->GetLineNum());
     tinyxml2::XMLPrinter printer;
@@ -118,14 +190,6 @@ glm::dmat4 toMatrix(const ignition::math::Pose3d& pose) {
     const ignition::math::Quaterniond& q = pose.Rot();
     return glm::translate(glm::dmat4(1), toVector(pose.Pos())) *
            glm::mat4_cast(glm::normalize(glm::dquat(q.W(), q.X(), q.Y(), q.Z())));
-}
-
-AcousticValue getValue(const std::string& text) {
-    double number;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error == std::errc() && end == text.data() + text.size()) return number;
-    if (text == "true" || text == "false") return text == "true";
-    return text;
 }
 
 /** Returns the link or nested model of `model` that contains the entity `name`; empty if there is none. */
@@ -240,6 +304,7 @@ public:
     Scene read() {
         CerrCapture console;
         if (isUrdf(file_) && std::filesystem::is_regular_file(file_)) urdf_ = readUrdf(file_, toText(file_));
+        for (const std::string& notice : urdf_.notices) builder_.notice(notice);
         const ::sdf::Root root = readSdfFile(file_, builder_, console, urdf_.text);
         if (const ::sdf::World* world = root.WorldByIndex(0))
             addWorld(*world);
@@ -399,7 +464,9 @@ private:
     }
 
     void fail(const ::sdf::Element& element, const std::string& path, const std::string& message) {
-        diagnostics_.push_back({path, message, element.FilePath(), element.LineNumber().value_or(0)});
+        const bool is_file = urdf_.text.empty();  // else of SDF that was made of it
+        diagnostics_.push_back({path, message, is_file ? element.FilePath() : file_.string(),
+                                is_file ? element.LineNumber().value_or(0) : 0});
     }
 
     std::filesystem::path file_;

@@ -241,8 +241,8 @@ TEST_F(JoinTest, PartsThatDoNotFitAreRefused) {
     EXPECT_THAT(refusal({a, c}), HasSubstr("2 of 6 samples of seed 3 are in none of the parts, the first is 1"));
     Title other = getTitle(Format::Mask, {member(4, 6)});
     const Title fixed = [&] {
-        Title fixed = title;
-        return fixed.one_seed = true, fixed;
+        Title same = title;
+        return same.one_seed = true, same;
     }();
     other.one_seed = true;
     EXPECT_THAT(refusal({whole("h", fixed), whole("i", other)}),

@@ -167,6 +167,27 @@ TEST(ReplayCommandTest, ATruncatedLogIsReplayedUpToItsLastCompleteBlock) {
     EXPECT_TRUE(getInfo(folder, "again/wall.0.log")["complete"]);
 }
 
+TEST(ReplayCommandTest, ALogThatEndsBeforeItsFirstSampleIsRefused) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({"--pings", "2"}).code, 0);
+    const std::string whole = readFile(folder / "out/wall.0.log");
+    int without = 0;
+    for (size_t part = 1; part <= 12; ++part) {
+        writeFile(folder / "out/wall.0.log", whole.substr(0, whole.size() * part / 12));
+        for (const bool rerender : {false, true}) {
+            std::vector<std::string> words = {"replay", "out/wall.0.log", "wall.yml", "--out", "again"};
+            if (rerender) words.push_back("--rerender");
+            const auto result = callInsonify(folder, words);
+            EXPECT_THAT(result.code, testing::AnyOf(0, 2)) << part << result.err;
+            if (result.err.find("holds no sample; there is nothing to replay") != std::string::npos) ++without;
+        }
+        const auto picture = callInsonify(
+            folder, {"log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "again/fan.png"});
+        EXPECT_EQ(picture.code == 0, picture.out.find("fan") != std::string::npos) << part << picture.err;
+    }
+    EXPECT_GE(without, 2) << "some cuts are before the first sample";
+}
+
 TEST(ReplayCommandTest, ALogIsNotReplacedByItsReplay) {
     const WallFolder folder;
     ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);

@@ -128,6 +128,8 @@ TEST(DeploymentSpecTest, RefusesATextThatIsNotADeployment) {
     EXPECT_THAT(findDiagnostics(""), ElementsAre("a.yml: is empty; a deployment needs tasks"));
     EXPECT_THAT(findDiagnostics("# nothing\n"), ElementsAre(HasSubstr("is empty")));
     EXPECT_THAT(findDiagnostics("tasks: {}"), ElementsAre("a.yml:1:8: tasks: is empty; a deployment needs a task"));
+    for (const char* wrong : {"tasks: 5", "tasks: [a]", "tasks: []"})
+        EXPECT_THAT(findDiagnostics(wrong), ElementsAre(HasSubstr("; must be a block of keys and values"))) << wrong;
     EXPECT_THAT(findDiagnostics("hello"),
                 ElementsAre("a.yml:1:1: is hello; must be a block of keys and values, such as {schedule: lockstep}"));
     EXPECT_THAT(findDiagnostics("- 1\n"), ElementsAre(HasSubstr("is a list")));

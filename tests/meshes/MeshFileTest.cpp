@@ -98,6 +98,42 @@ TEST_F(MeshFileTest, ObjAndStlAreTakenAsTheyAre) {
     }
 }
 
+TEST_F(MeshFileTest, NamesKeepTheirBlanks) {
+    const auto names = [](const types::Geometry& geometry) {
+        std::vector<std::string> all;
+        for (const types::Object& object : geometry.objects) all.push_back(object.name);
+        return all;
+    };
+    const std::string points = "v 0 0 1\nv 2 0 1\nv 2 3 1\n", face = "f 1 2 3\n";
+    for (const std::string end : {"\n", " \r\n", "\t\n"})
+        EXPECT_THAT(names(*readMeshFile(write("o.obj", points + "o pile 1" + end + face + "o pile  groß 2" + end +
+                                                           face + "o\tpile" + end + face + "o one" + end + face),
+                                        MeshAxes::AsStored)),
+                    testing::UnorderedElementsAre("pile 1", "pile  groß 2", "pile", "one"));
+    const auto solid = [](const std::string& name) {
+        return "solid " + name +
+               "\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 2 0 1\nvertex 0 3 1\nendloop\n"
+               "endfacet\nendsolid " +
+               name + "\n";
+    };
+    EXPECT_THAT(names(*readMeshFile(write("s.stl", solid("pile 1") + solid("left wall")), MeshAxes::AsStored)),
+                testing::UnorderedElementsAre("pile 1", "left wall"));
+}
+
+/** assimp would join such a vertex to any other. */
+TEST_F(MeshFileTest, ATriangleWhoseVertexIsNoNumberIsDroppedWithANotice) {
+    for (const char* wrong : {"nan 0 0", "0 inf 0", "0 0 -inf"})
+        for (const bool is_first : {true, false}) {
+            const std::string odd = std::string("v ") + wrong + "\n", good = "v 0 0 1\nv 2 0 1\nv 2 3 1\n";
+            const auto geometry = readMeshFile(write("n.obj", is_first ? odd + good + "o a\nf 2 3 4\nf 1 2 3\n"
+                                                                       : good + odd + "o a\nf 1 2 4\nf 1 2 3\n"),
+                                               MeshAxes::AsStored);
+            EXPECT_EQ(geometry->triangleCount(), 1u) << wrong;
+            expectBounds(getBounds(*geometry), {0, 0, 1}, {2, 3, 1});
+            EXPECT_TRUE(hasNotice(*geometry, "triangles dropped for a vertex that is not a finite number: 1")) << wrong;
+        }
+}
+
 TEST_F(MeshFileTest, AGltfInAWorldIsNotTurnedAndBringsItsAcoustics) {
     write("leaf.gltf",
           gltf(R"("nodes":[{"mesh":0}],"materials":[{"name":"oak","extras":{"acoustics":{"lambert_db":-7}}}],

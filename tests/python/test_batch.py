@@ -1,5 +1,6 @@
 """Many simulations on one scene, compared with single simulations."""
 
+import copy
 import re
 import subprocess
 import sys
@@ -106,6 +107,10 @@ def test_each_wrong_argument_has_one_clear_error(deploy):
             batch.step(np.zeros(shape))
     with pytest.raises(IndexError, match="there is no simulation 2 of 2"):
         batch.reset([2])
+    with pytest.raises(IndexError, match="there is no simulation -1 of 2"):
+        batch.reset([-1])
+    with pytest.raises(TypeError, match="cannot be copied"):
+        copy.copy(batch)
     with pytest.raises(ValueError, match="simulation 0 is given more than once"):
         batch.reset([0, 0])
     with pytest.raises(ValueError, match="deployment's own"):

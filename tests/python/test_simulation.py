@@ -328,6 +328,18 @@ def test_objects_of_the_library_are_not_copied_to_other_processes(minimal):
                 refused(wrong)
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(ping.bins)), ping.bins)
     np.testing.assert_array_equal(copy.copy(ping).bins, ping.bins)
+    with pytest.raises(TypeError, match="cannot be copied"):
+        copy.copy(minimal)
+
+
+def test_arguments_that_are_not_numbers_are_named(minimal):
+    with pytest.raises(TypeError, match="time: is 'x'; must be a number"):
+        minimal.step(HERE, time="x")
+    for wrong in ("abc", [1, "a"]):
+        with pytest.raises(ValueError, match="pose: is .*; must be a Pose, seven numbers or a 4 x 4 transform"):
+            minimal.step(wrong)
+    with pytest.raises(insonify.ConfigError, match="values: tasks.sonar.properties.range: is -1"):
+        minimal.set({"sonar.range": -1})
 
 
 def test_impossible_times_are_errors(deploy, minimal):

@@ -101,6 +101,35 @@ TEST_F(UrdfTest, RefusesOtherXmlAtItsLine) {
     EXPECT_THAT(findDiagnostic(folder_ / "none.urdf"), HasSubstr("does not exist"));
 }
 
+TEST_F(UrdfTest, RefusesShapesAndOriginsThatLackNumbers) {
+    const std::pair<const char*, const char*> wrong[] = {
+        {"<box size='1 1'/>", "box.size: is \"1 1\"; must be 3 numbers, not negative"},
+        {"<box/>", "box.size: is missing"},
+        {"<box size='1 1 nan'/>", "box.size: is \"1 1 nan\""},
+        {"<box size='1 1 1 1'/>", "box.size: is \"1 1 1 1\""},
+        {"<cylinder radius='1'/>", "cylinder.length: is missing; must be a number, not negative"},
+        {"<cylinder radius='-1' length='2'/>", "cylinder.radius: is \"-1\""},
+        {"<sphere radius='1m'/>", "sphere.radius: is \"1m\""},
+        {"<mesh scale='1 1 1'/>", "mesh.filename: is missing"},
+        {"<mesh filename='a.stl' scale='2'/>", "mesh.scale: is \"2\"; must be 3 numbers"}};
+    for (const auto& [shape, message] : wrong)
+        EXPECT_THAT(findDiagnostic(robot(link("a", small_) + "\n" + link("b", shape) +
+                                         joint("j", "fixed", "a", "b", "xyz='0 0 0'"))),
+                    testing::AllOf(HasSubstr("arm.urdf:5: link b.visual."), HasSubstr(message)))
+            << shape;
+    EXPECT_THAT(
+        findDiagnostic(robot("<link name='a'><visual><origin xyz='1 2'/><geometry><sphere radius='+1'/></geometry>"
+                             "</visual></link>")),
+        HasSubstr("link a.visual.origin.xyz: is \"1 2\"; must be 3 numbers"));
+}
+
+TEST_F(UrdfTest, AShapeThatIsNotKnownIsANotice) {
+    const Scene scene = readScene(robot(link("a", small_) + link("b", "<capsule radius='1' length='2'/>") +
+                                        joint("j", "fixed", "a", "b", "xyz='0 0 0'")));
+    EXPECT_EQ(scene.geometry->objects.size(), 1u);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "link b.visual.geometry: <capsule> is no shape of URDF; omitted"));
+}
+
 TEST_F(UrdfTest, AMeshOfAPackageThatIsNotFoundKeepsItsName) {
     const Scene scene = readScene(robot(link("base", "<mesh filename='package://blue/meshes/prop.dae'/>") +
                                         link("arm", "<mesh filename='package://blue/meshes/prop.dae'/>") +

@@ -102,6 +102,21 @@ TEST(SettingsTest, RejectsInvalidSettingsCompletelyAndRecoversWithTheNextValid) 
     EXPECT_EQ(sonar.task.state(), framework::TaskState::Running);
 }
 
+/** Drivers ask for the least that a device knows, which may be nearer than the sonar hears. */
+TEST(SettingsTest, ARangeNearerThanTheNearestIsTheShortestThatThereIs) {
+    Asked<SonarTask> sonar(smallSonar());
+    sonar.show(facingWall(5));
+    types::SonarSettings asked;
+    for (const uint32_t bins : {20u, 100u, 1000u})
+        for (const double range : {smallSonar().range_min, smallSonar().range_min / 2, 0.0, -3.0}) {
+            asked.range = range;
+            asked.bin_count = bins;
+            ASSERT_TRUE(sonar.ask(asked)) << range << sonar.task.lastError();
+            EXPECT_GE(sonar.task.config->range, 1.1 * smallSonar().range_min) << range;
+            EXPECT_LE(sonar.task.config->range, 2.3 * smallSonar().range_min + 1.7e-3 * bins) << range;
+        }
+}
+
 TEST(SettingsTest, AHeadLooksAtTheRequestedBearing) {
     ScanningSonarConfig config;
     config.sonar = smallSonar();

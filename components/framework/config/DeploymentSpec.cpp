@@ -139,7 +139,7 @@ struct DocumentKeys {
             diagnostics.push_back({"namespace", "is " + ros_namespace + wanted_namespace});
         if (!names.setFramePrefix(frame_prefix))
             diagnostics.push_back({"frame_prefix", "is " + frame_prefix + wanted_prefix});
-        if (!tasks.IsDefined() || tasks.size() == 0)
+        if (!tasks.IsDefined() || tasks.IsNull() || (tasks.IsMap() && tasks.size() == 0))
             diagnostics.push_back({"tasks", "is empty; a deployment needs a task"});
     }
 };

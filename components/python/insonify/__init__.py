@@ -13,6 +13,7 @@ radians, times seconds; bearings are positive to port.
 from __future__ import annotations
 
 import json
+import operator
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -253,6 +254,8 @@ class Simulation:
     :raises ConfigError: with `file`, `line`, `column` of the first diagnostic, and all of them in `diagnostics`.
     """
 
+    __copy__ = native.refuse_copy
+
     def __init__(
         self,
         deployment: str,
@@ -369,6 +372,8 @@ class SimulationBatch:
     Other parameters as for Simulation; the deployment has one vehicle and one sonar.
     """
 
+    __copy__ = native.refuse_copy
+
     def __init__(
         self,
         deployment: str,
@@ -411,7 +416,7 @@ class SimulationBatch:
 
     def reset(self, which: Sequence[int] | None = None, seeds: Sequence[int] | None = None) -> None:
         """Resets simulations, as if just made, with these seeds, none 0; None: all of them, the same seeds."""
-        native.batch_reset(self._batch, range(len(self)) if which is None else which, seeds)
+        native.batch_reset(self._batch, len(self), range(len(self)) if which is None else which, seeds)
 
     def _numbers(self, poses) -> NDArray[np.float64]:
         if isinstance(poses, np.ndarray) and poses.shape == (len(self), 7):
@@ -467,7 +472,10 @@ def _numbers(pose) -> np.ndarray:
     if isinstance(pose, Pose):
         made = pose
     else:
-        numbers = np.asarray(pose, float)
+        try:
+            numbers = np.asarray(pose, float)
+        except (TypeError, ValueError):
+            raise ValueError(f"pose: is {pose!r}; must be a Pose, seven numbers or a 4 x 4 transform") from None
         made = Pose(numbers[:3], numbers[3:]) if numbers.shape == (7,) else Pose.from_matrix(numbers)
     return np.concatenate([made.position, made.orientation_wxyz])
 
@@ -515,6 +523,10 @@ class _Samples(Sequence):
     def __getitem__(self, index):
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
+        try:
+            index = operator.index(index)
+        except TypeError:
+            raise TypeError(f"{self.name}: takes a whole number or a slice; {index!r} is neither") from None
         if not -len(self) <= index < len(self):
             raise IndexError(f"{index}: {self.name} has {len(self)} samples")
         sample = native.sample(self._log, self._index, index + len(self) if index < 0 else index)

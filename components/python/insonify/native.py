@@ -120,6 +120,13 @@ def _raise() -> None:
 version = _library.insonify_version().decode()
 
 
+def refuse_copy(*_others):
+    raise TypeError(
+        "a simulation, log or ping cannot be copied or sent to another process; make the simulation or read the log there, "
+        "and send arrays of pings"
+    )
+
+
 class Handle:
     """A handle of an object in C++: facts, and arrays, which stay valid as long as they are
     referenced."""
@@ -131,7 +138,7 @@ class Handle:
         weakref.finalize(self, _functions.free, pointer).atexit = False  # at exit, other threads may still use it
 
     def __reduce_ex__(self, _protocol):
-        raise TypeError("a simulation or ping cannot be copied or sent to another process; make a simulation there, and send arrays of pings")
+        refuse_copy()
 
     def facts(self):
         facts = _functions.facts(self.pointer)
@@ -176,7 +183,11 @@ def _whole(name: str, number: int, end: int, first: int = 0) -> int:
 
 def _optional(name: str, number: float | None):
     """A pointer to the value; None: null."""
-    if number is not None and not math.isfinite(number):
+    try:
+        finite = number is None or math.isfinite(number)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: is {number!r}; must be a number") from None
+    if not finite:
         raise ValueError(f"{name}: is {number}; must be finite")
     return None if number is None else ctypes.byref(ctypes.c_double(number))
 
@@ -240,8 +251,12 @@ def batch_step(batch: Handle, poses: NDArray[np.float64]) -> Handle:
     return Handle(_functions.batch_step(batch.pointer, poses.ctypes.data))
 
 
-def batch_reset(batch: Handle, which: Sequence[int], seeds: Sequence[int] | None) -> None:
-    numbers = np.array([_whole("which", each, 2**16) for each in which], np.uintp)
+def batch_reset(batch: Handle, count: int, which: Sequence[int], seeds: Sequence[int] | None) -> None:
+    asked = [_whole("which", each, 2**16, -(2**16)) for each in which]
+    for each in asked:
+        if each < 0:
+            raise IndexError(f"there is no simulation {each} of {count}")
+    numbers = np.array(asked, np.uintp)
     given = None if seeds is None else np.array([_whole("seeds", each, 2**64) for each in seeds], np.uint64)
     if given is not None and given.shape != numbers.shape:
         raise ValueError(f"seeds: are {len(given)}; there are {len(numbers)} simulations to reset")

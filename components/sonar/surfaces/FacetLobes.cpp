@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "components/sonar/surfaces/StraightEdges.hpp"
+#include "types/geometry/PosedMesh.hpp"
 
 namespace insonify::sonar {
 namespace {

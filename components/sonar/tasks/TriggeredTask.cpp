@@ -78,7 +78,12 @@ TriggeredTask::Changes TriggeredTask::changedBy(const types::SonarSettings& requ
     const auto compareCount = [&](const char* name, uint32_t wanted, int now) {
         if (wanted != 0 && wanted != static_cast<uint32_t>(now)) changes[name] = wanted;
     };
-    compare("range", requested.range, config.range);
+    // Drivers may ask for less than the nearest that a sonar hears.
+    SonarConfig nearest = config;
+    nearest.range = 1.1 * config.range_min;
+    if (requested.bin_count != 0) nearest.bin_count = static_cast<int>(requested.bin_count);
+    compare("range", requested.range <= config.range_min ? makeBinGrid(nearest).range_max : requested.range,
+            config.range);
     compare("frequency_khz", requested.frequency_khz, config.frequency_khz);
     if (requested.speed_of_sound != 0)
         compare("speed_of_sound", requested.speed_of_sound, config.speed_of_sound);
