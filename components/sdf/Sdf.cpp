@@ -57,13 +57,25 @@ std::string getName(const XMLElement* element) {
     return name ? name : "";
 }
 
-void addInertia(XMLElement& link) {
-    if (link.FirstChildElement("inertial")) return;
+/** Sets an inertia, without which libsdformat omits a link, and takes out what it may refuse and a sonar does not need.
+ */
+void setInertia(XMLElement& link) {
+    for (const char* const needless : {"inertial", "collision"})
+        while (XMLElement* const part = link.FirstChildElement(needless)) link.DeleteChild(part);
     XMLElement* const inertial = link.InsertNewChildElement("inertial");
     inertial->InsertNewChildElement("mass")->SetAttribute("value", 1);
     XMLElement* const inertia = inertial->InsertNewChildElement("inertia");
     for (const char* const moment : {"ixx", "iyy", "izz"}) inertia->SetAttribute(moment, 1);
     for (const char* const product : {"ixy", "ixz", "iyz"}) inertia->SetAttribute(product, 0);
+}
+
+/** Keeps how a joint moves a link, without the numbers of the movement, which a sonar does not need. */
+void simplify(XMLElement& joint) {
+    for (const char* const needless : {"axis", "limit", "dynamics", "safety_controller", "calibration", "mimic"})
+        while (XMLElement* const part = joint.FirstChildElement(needless)) joint.DeleteChild(part);
+    if (joint.Attribute("type", "fixed")) return;
+    joint.SetAttribute("type", "continuous");
+    joint.InsertNewChildElement("axis")->SetAttribute("xyz", "0 0 1");
 }
 
 /** Keeps fixed joints, so that each link keeps its name and place: libsdformat would merge links joined by a fixed
@@ -87,18 +99,17 @@ scene::AcousticValue getValue(const std::string& text) {
     return text;
 }
 
-/** Checks the visuals of links, of which libsdformat leaves out without a word what it cannot read. */
-class VisualChecks {
+/** Checks what libsdformat leaves out without a word, or refuses without a reason. */
+class UrdfChecks {
 public:
-    explicit VisualChecks(std::string file) : file_(std::move(file)) {}
+    explicit UrdfChecks(std::string file) : file_(std::move(file)) {}
 
     types::Diagnostics diagnostics;
     std::vector<std::string> notices;
 
-    void check(const XMLElement& visual, const std::string& link) {
+    void checkVisual(const XMLElement& visual, const std::string& link) {
         path_ = "link " + link + ".visual.";
-        if (const XMLElement* origin = visual.FirstChildElement("origin"))
-            for (const char* const name : {"xyz", "rpy"}) checkNumbers(*origin, name, 3, Any, !origin->Attribute(name));
+        checkOrigin(visual);
         const XMLElement* const geometry = visual.FirstChildElement("geometry");
         const XMLElement* const shape = geometry ? geometry->FirstChildElement() : nullptr;
         const std::string_view name = shape ? shape->Name() : "";
@@ -117,10 +128,73 @@ public:
                                           shape ? fmt::format("<{}> is no shape of URDF", name) : "holds no shape"));
         }
     }
+    /** Checks that joints make one tree of the links. */
+    void checkTree(const XMLElement& robot) {
+        path_.clear();
+        checkName(robot);
+        for (const auto* link = robot.FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
+            path_ = "link " + getName(link) + ".";
+            if (checkName(*link) && std::ranges::count(links_, getName(link)) > 0)
+                report(*link, "name", "is that of two links; each has its own");
+            links_.push_back(getName(link));
+        }
+        for (const auto* joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint"))
+            checkJoint(*joint);
+        if (links_.empty() || !diagnostics.empty()) return;
+        path_.clear();
+        std::vector<std::string> roots = links_;
+        std::erase_if(roots, [&](const std::string& link) { return parents_.contains(link); });
+        if (roots.size() > 1)
+            report(robot, "link",
+                   fmt::format("{} are the children of no joint; only one link may be", fmt::join(roots, ", ")));
+        for (const std::string& link : links_) {
+            std::string above = link;
+            for (size_t i = 0; i < links_.size() && parents_.contains(above); ++i) above = parents_.at(above);
+            if (!parents_.contains(above) || roots.size() > 1) continue;
+            return report(robot, "joint", fmt::format("carries link {} by joints in a circle; must be a tree", link));
+        }
+    }
 
 private:
     enum Sign { Any, NotNegative };
 
+    void checkJoint(const XMLElement& joint) {
+        static const std::vector<std::string> types = {"fixed",     "revolute", "continuous",
+                                                       "prismatic", "floating", "planar"};
+        path_ = "joint " + getName(&joint) + ".";
+        checkName(joint);
+        const char* const type = joint.Attribute("type");
+        if (!type || std::ranges::count(types, type) == 0)
+            report(joint, "type",
+                   fmt::format("{}; may be {}", type ? fmt::format("is \"{}\"", type) : "is missing",
+                               fmt::join(types, ", ")));
+        checkOrigin(joint);
+        std::string ends[2];
+        for (const bool is_child : {false, true}) {
+            const XMLElement* const end = joint.FirstChildElement(is_child ? "child" : "parent");
+            const char* const link = end ? end->Attribute("link") : nullptr;
+            if (!link)
+                report(joint, is_child ? "child" : "parent", "is missing; must be <... link=\"NAME\"/>");
+            else if (std::ranges::count(links_, link) == 0)
+                report(*end, "link",
+                       fmt::format("is \"{}\", which is no link; {}known: {}", link, types::didYouMean(link, links_),
+                                   fmt::join(links_, ", ")));
+            else
+                ends[is_child] = link;
+        }
+        if (!ends[0].empty() && !ends[1].empty() && !parents_.emplace(ends[1], ends[0]).second)
+            report(joint, "child",
+                   fmt::format("is \"{}\", which is the child of another joint; a link has one parent", ends[1]));
+    }
+    bool checkName(const XMLElement& element) {
+        const bool has = !getName(&element).empty();
+        if (!has) report(element, "name", "is missing; must be a name");
+        return has;
+    }
+    void checkOrigin(const XMLElement& element) {
+        if (const XMLElement* origin = element.FirstChildElement("origin"))
+            for (const char* const name : {"xyz", "rpy"}) checkNumbers(*origin, name, 3, Any, !origin->Attribute(name));
+    }
     void checkNumbers(const XMLElement& element, const char* name, size_t count, Sign sign, bool may_lack = false) {
         const char* const text = element.Attribute(name);
         std::istringstream words(text ? text : "");
@@ -137,12 +211,15 @@ private:
                            sign == NotNegative ? ", not negative" : ""));
     }
     void report(const XMLElement& element, const char* attribute, const std::string& message) {
-        diagnostics.push_back(
-            {fmt::format("{}{}.{}", path_, element.Name(), attribute), message, file_, element.GetLineNum()});
+        const std::string_view name = element.Name();
+        const std::string within = name == "link" || name == "joint" ? "" : std::string(name) + ".";
+        diagnostics.push_back({path_ + within + attribute, message, file_, element.GetLineNum()});
     }
 
     const std::string file_;
     std::string path_;
+    std::vector<std::string> links_;
+    std::map<std::string, std::string> parents_;  ///< By the link.
 };
 
 }  // namespace
@@ -161,18 +238,21 @@ Urdf readUrdf(const std::filesystem::path& file, const std::string& text) {
     if (!robot) refuse("holds no <robot>, which is what URDF describes", 1);
     if (usesXacro(*robot)) refuse("is a macro file of xacro; expand it: xacro IN > OUT.urdf", robot->GetLineNum());
     Urdf urdf;
-    VisualChecks checks(file.string());
+    UrdfChecks checks(file.string());
+    checks.checkTree(*robot);
     for (XMLElement* link = robot->FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
-        addInertia(*link);
+        setInertia(*link);
         std::vector<std::string>& materials = urdf.materials[getName(link)];
         for (const XMLElement* visual = link->FirstChildElement("visual"); visual;
              visual = visual->NextSiblingElement("visual")) {
-            checks.check(*visual, getName(link));
+            checks.checkVisual(*visual, getName(link));
             materials.push_back(getName(visual->FirstChildElement("material")));
         }
     }
     if (!checks.diagnostics.empty()) throw types::ConfigError(std::move(checks.diagnostics));
     urdf.notices = std::move(checks.notices);
+    for (XMLElement* joint = robot->FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint"))
+        simplify(*joint);
     keepFixedJoints(*robot);
     if (urdf.materials.empty()) refuse("is a robot without links", robot->GetLineNum());
     tinyxml2::XMLPrinter printer;

@@ -11,8 +11,8 @@ namespace insonify::sdf {
 
 /** A robot in URDF, prepared for libsdformat. */
 struct Urdf {
-    std::string text;  ///< With an inertia for each link that has none, as libsdformat omits links without inertia;
-                       ///< fixed joints stay.
+    std::string text;  ///< With an inertia for each link, without which libsdformat omits it; fixed joints stay, all
+                       ///< others turn freely.
     std::map<std::string, std::vector<std::string>> materials;  ///< Per link, of its visuals.
     std::vector<std::string> notices;                           ///< Visuals without a shape that is known.
 };
@@ -21,7 +21,7 @@ struct Urdf {
 bool isUrdf(const std::filesystem::path& file);
 
 /** Reads a robot. Throws types::ConfigError for text that is not XML, has no robot, or is a macro file that xacro has
- *  to expand, and for shapes and origins without the numbers that they need. */
+ *  to expand, for shapes and origins without the numbers that they need, and for joints that make no tree. */
 Urdf readUrdf(const std::filesystem::path& file, const std::string& text);
 
 /** Reads a scene from SDF 1.2 to 1.9 with libsdformat: the first world of a file, or its model.

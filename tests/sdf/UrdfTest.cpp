@@ -123,6 +123,37 @@ TEST_F(UrdfTest, RefusesShapesAndOriginsThatLackNumbers) {
         HasSubstr("link a.visual.origin.xyz: is \"1 2\"; must be 3 numbers"));
 }
 
+TEST_F(UrdfTest, RefusesJointsThatMakeNoTree) {
+    const std::string two = link("a", small_) + link("b", small_), at = "xyz='1 0 0'";
+    const std::pair<std::string, const char*> wrong[] = {
+        {two, "robot.link: a, b are the children of no joint; only one link may be"},
+        {two + joint("j", "fixed", "a", "c", at), "joint j.child.link: is \"c\", which is no link; known: a, b"},
+        {two + joint("j", "flying", "a", "b", at), "joint j.type: is \"flying\"; may be fixed, revolute"},
+        {two + joint("j", "fixed", "a", "b", "xyz='1 0'"), "joint j.origin.xyz: is \"1 0\"; must be 3 numbers"},
+        {two + joint("j", "fixed", "a", "b", at) + joint("k", "fixed", "b", "a", at), "by joints in a circle"},
+        {two + link("c", small_) + joint("j", "fixed", "b", "c", at) + joint("k", "fixed", "c", "b", at),
+         "robot.joint: carries link b by joints in a circle"},
+        {two + joint("j", "fixed", "a", "b", at) + joint("k", "fixed", "a", "b", at), "child of another joint"},
+        {two + link("b", small_) + joint("j", "fixed", "a", "b", at), "link b.name: is that of two links"},
+        {two + "<joint name='j' type='fixed'><child link='b'/></joint>", "joint j.parent: is missing"},
+        {"<link><visual/></link>", "link .name: is missing"}};
+    for (const auto& [body, message] : wrong) EXPECT_THAT(findDiagnostic(robot(body)), HasSubstr(message)) << body;
+}
+
+TEST_F(UrdfTest, WhatASonarDoesNotNeedMayBeWrong) {
+    const std::string odd =
+        "<inertial><mass value='x'/></inertial><collision><geometry><box size='1'/></geometry></collision>";
+    for (const char* type : {"revolute", "prismatic", "continuous", "floating", "planar", "fixed"}) {
+        const Scene scene =
+            readScene(robot("<link name='a'>" + odd + "<visual><geometry>" + small_ + "</geometry></visual></link>" +
+                            link("b", small_) + "<joint name='j' type='" + type +
+                            "'><parent link='a'/><child link='b'/><origin xyz='5 0 0'/><axis xyz='0 0'/>"
+                            "<limit lower='x'/><dynamics damping='y'/></joint>"));
+        ASSERT_EQ(scene.geometry->objects.size(), 2u) << type;
+        EXPECT_NEAR(getObject(scene, "rov::b").world_from_object[3].x, 5, 1e-9) << type;
+    }
+}
+
 TEST_F(UrdfTest, AShapeThatIsNotKnownIsANotice) {
     const Scene scene = readScene(robot(link("a", small_) + link("b", "<capsule radius='1' length='2'/>") +
                                         joint("j", "fixed", "a", "b", "xyz='0 0 0'")));
