@@ -276,7 +276,7 @@ int replay(ReplayAsked options) {
     if (log.samples().empty())
         throw types::ConfigError(options.replay.log, "", "holds no sample; there is nothing to replay");
     choosePoses(log, options);
-    if (!options.from.empty() && !log.samples().empty()) options.replay.from = startIn(log, options.from);
+    if (!options.from.empty()) options.replay.from = startIn(log, options.from);
     std::vector<RecordedProperty> changed;
     if (options.replay.rerender) changed = readSettings(log, options);
     try {

@@ -60,8 +60,9 @@ Surface getSurface(const aiMesh& from, const std::vector<unsigned>& unplaced) {
         const auto exists = [&from](unsigned index) { return index < from.mNumVertices; };
         if (face.mNumIndices == 3 && std::all_of(face.mIndices, face.mIndices + 3, exists))
             surface.indices.insert(surface.indices.end(), face.mIndices, face.mIndices + 3);
-        if (std::ranges::binary_search(unplaced, i) && !surface.indices.empty())
-            surface.indices.back() = from.mNumVertices;
+        else
+            continue;
+        if (std::ranges::binary_search(unplaced, i)) surface.indices.back() = from.mNumVertices;
     }
     if (!unplaced.empty()) surface.positions.emplace_back(std::numeric_limits<float>::quiet_NaN());
     return surface;
@@ -82,7 +83,8 @@ std::string withMarkedNames(std::string text, std::string_view keyword) {
             continue;
         const size_t first = text.find_first_not_of(blanks, at + keyword.size());
         if (first >= end) continue;
-        const size_t last = text.find_last_not_of(blanks, end - 1);
+        const size_t comment = std::min(text.find(" #", first), end);
+        const size_t last = text.find_last_not_of(blanks, comment - 1);
         for (size_t i = first; i < last; ++i)
             if (blanks.find(text[i]) != blanks.npos) text[i] = in_name;
     }

@@ -30,6 +30,7 @@
 #include <sdf/Visual.hh>
 #include <sdf/World.hh>
 #include <set>
+#include <span>
 #include <sstream>
 #include <string_view>
 
@@ -69,13 +70,35 @@ void setInertia(XMLElement& link) {
     for (const char* const product : {"ixy", "ixz", "iyz"}) inertia->SetAttribute(product, 0);
 }
 
-/** Keeps how a joint moves a link, without the numbers of the movement, which a sonar does not need. */
-void simplify(XMLElement& joint) {
-    for (const char* const needless : {"axis", "limit", "dynamics", "safety_controller", "calibration", "mimic"})
-        while (XMLElement* const part = joint.FirstChildElement(needless)) joint.DeleteChild(part);
-    if (joint.Attribute("type", "fixed")) return;
-    joint.SetAttribute("type", "continuous");
-    joint.InsertNewChildElement("axis")->SetAttribute("xyz", "0 0 1");
+/** Returns the name of a visual's material. libsdformat needs one. */
+std::string nameMaterial(XMLElement& visual) {
+    XMLElement* const material = visual.FirstChildElement("material");
+    std::string name = getName(material);
+    if (material && name.empty()) material->SetAttribute("name", fmt::format("line_{}", visual.GetLineNum()).c_str());
+    return name;
+}
+
+/** Takes out what libsdformat may refuse and a sonar does not need: versions, second materials of a name, and how far
+ * and along which axis joints move. A joint has a name of its own then, also among links. */
+void simplify(XMLElement& robot) {
+    robot.DeleteAttribute("version");
+    std::set<std::string> names, materials;
+    for (const auto* link = robot.FirstChildElement("link"); link; link = link->NextSiblingElement("link"))
+        names.insert(getName(link));
+    for (XMLElement *material = robot.FirstChildElement("material"), *next = nullptr; material; material = next) {
+        next = material->NextSiblingElement("material");
+        if (getName(material).empty() || !materials.insert(getName(material)).second) robot.DeleteChild(material);
+    }
+    for (auto* joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint")) {
+        std::string name = getName(joint);
+        while (!names.insert(name).second) name += "_joint";
+        joint->SetAttribute("name", name.c_str());
+        for (const char* const needless : {"axis", "limit", "dynamics", "safety_controller", "calibration", "mimic"})
+            while (XMLElement* const part = joint->FirstChildElement(needless)) joint->DeleteChild(part);
+        if (joint->Attribute("type", "fixed")) continue;
+        joint->SetAttribute("type", "continuous");
+        joint->InsertNewChildElement("axis")->SetAttribute("xyz", "0 0 1");
+    }
 }
 
 /** Keeps fixed joints, so that each link keeps its name and place: libsdformat would merge links joined by a fixed
@@ -107,11 +130,12 @@ public:
     types::Diagnostics diagnostics;
     std::vector<std::string> notices;
 
-    void checkVisual(const XMLElement& visual, const std::string& link) {
+    /** Returns whether libsdformat can read the visual. It would leave out all that follow in its link, too. */
+    bool checkVisual(XMLElement& visual, const std::string& link) {
         path_ = "link " + link + ".visual.";
         checkOrigin(visual);
-        const XMLElement* const geometry = visual.FirstChildElement("geometry");
-        const XMLElement* const shape = geometry ? geometry->FirstChildElement() : nullptr;
+        XMLElement* const geometry = visual.FirstChildElement("geometry");
+        XMLElement* const shape = geometry ? geometry->FirstChildElement() : nullptr;
         const std::string_view name = shape ? shape->Name() : "";
         if (name == "box") {
             checkNumbers(*shape, "size", 3, NotNegative);
@@ -123,42 +147,51 @@ public:
             if (!shape->Attribute("filename") || std::string_view(shape->Attribute("filename")).empty())
                 report(*shape, "filename", "is missing; must be the path or URI of a mesh");
         } else {
-            notices.push_back(fmt::format("{}:{}: {}geometry: {}; omitted: may be box, cylinder, sphere or mesh", file_,
-                                          visual.GetLineNum(), path_,
-                                          shape ? fmt::format("<{}> is no shape of URDF", name) : "holds no shape"));
+            if (notices.size() < max_reports)
+                notices.push_back(fmt::format("{}:{}: {}geometry: {}; omitted: may be box, cylinder, sphere or mesh",
+                                              file_, visual.GetLineNum(), path_,
+                                              shape ? fmt::format("<{}> is not read", name) : "holds no shape"));
+            return false;
         }
+        return true;
     }
     /** Checks that joints make one tree of the links. */
-    void checkTree(const XMLElement& robot) {
+    void checkTree(XMLElement& robot) {
         path_.clear();
         checkName(robot);
         for (const auto* link = robot.FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
             path_ = "link " + getName(link) + ".";
-            if (checkName(*link) && std::ranges::count(links_, getName(link)) > 0)
+            if (checkName(*link) && !links_.insert(getName(link)).second)
                 report(*link, "name", "is that of two links; each has its own");
-            links_.push_back(getName(link));
         }
-        for (const auto* joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint"))
+        for (auto* joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint"))
             checkJoint(*joint);
         if (links_.empty() || !diagnostics.empty()) return;
         path_.clear();
-        std::vector<std::string> roots = links_;
+        std::vector<std::string> roots(links_.begin(), links_.end());
         std::erase_if(roots, [&](const std::string& link) { return parents_.contains(link); });
         if (roots.size() > 1)
-            report(robot, "link",
-                   fmt::format("{} are the children of no joint; only one link may be", fmt::join(roots, ", ")));
+            return report(robot, "link", listSome(roots) + " are the children of no joint; only one link may be");
+        std::set<std::string> hangs(roots.begin(), roots.end());  // on the root
         for (const std::string& link : links_) {
-            std::string above = link;
-            for (size_t i = 0; i < links_.size() && parents_.contains(above); ++i) above = parents_.at(above);
-            if (!parents_.contains(above) || roots.size() > 1) continue;
-            return report(robot, "joint", fmt::format("carries link {} by joints in a circle; must be a tree", link));
+            std::set<std::string> way;
+            for (std::string at = link; !hangs.contains(at); at = parents_.at(at))
+                if (!way.insert(at).second)
+                    return report(robot, "joint",
+                                  fmt::format("carries link {} by joints in a circle; must be a tree", link));
+            hangs.merge(way);
         }
     }
 
 private:
     enum Sign { Any, NotNegative };
+    static constexpr size_t max_reports = 20;
 
-    void checkJoint(const XMLElement& joint) {
+    static std::string listSome(const std::vector<std::string>& names) {
+        const std::span some(names.data(), std::min(names.size(), max_reports));
+        return fmt::format("{}{}", fmt::join(some, ", "), names.size() > some.size() ? ", ..." : "");
+    }
+    void checkJoint(XMLElement& joint) {
         static const std::vector<std::string> types = {"fixed",     "revolute", "continuous",
                                                        "prismatic", "floating", "planar"};
         path_ = "joint " + getName(&joint) + ".";
@@ -175,11 +208,12 @@ private:
             const char* const link = end ? end->Attribute("link") : nullptr;
             if (!link)
                 report(joint, is_child ? "child" : "parent", "is missing; must be <... link=\"NAME\"/>");
-            else if (std::ranges::count(links_, link) == 0)
+            else if (!links_.contains(link) && diagnostics.size() < max_reports) {
+                const std::vector<std::string> known(links_.begin(), links_.end());
                 report(*end, "link",
-                       fmt::format("is \"{}\", which is no link; {}known: {}", link, types::didYouMean(link, links_),
-                                   fmt::join(links_, ", ")));
-            else
+                       fmt::format("is \"{}\", which is no link; {}known: {}", link, types::didYouMean(link, known),
+                                   listSome(known)));
+            } else
                 ends[is_child] = link;
         }
         if (!ends[0].empty() && !ends[1].empty() && !parents_.emplace(ends[1], ends[0]).second)
@@ -191,19 +225,24 @@ private:
         if (!has) report(element, "name", "is missing; must be a name");
         return has;
     }
-    void checkOrigin(const XMLElement& element) {
-        if (const XMLElement* origin = element.FirstChildElement("origin"))
+    void checkOrigin(XMLElement& element) {
+        if (XMLElement* origin = element.FirstChildElement("origin"))
             for (const char* const name : {"xyz", "rpy"}) checkNumbers(*origin, name, 3, Any, !origin->Attribute(name));
     }
-    void checkNumbers(const XMLElement& element, const char* name, size_t count, Sign sign, bool may_lack = false) {
+    /** Also writes the numbers as libsdformat reads them, with one space between them. */
+    void checkNumbers(XMLElement& element, const char* name, size_t count, Sign sign, bool may_lack = false) {
         const char* const text = element.Attribute(name);
         std::istringstream words(text ? text : "");
         size_t good = 0, all = 0;
+        std::string joined;
         for (std::string word; words >> word; ++all) {
-            const scene::AcousticValue value = getValue(word.front() == '+' ? word.substr(1) : word);
+            if (word.front() == '+') word.erase(0, 1);
+            const scene::AcousticValue value = getValue(word);
             const auto* const number = std::get_if<double>(&value);
             good += number && std::isfinite(*number) && (sign == Any || *number >= 0) ? 1 : 0;
+            joined += (joined.empty() ? "" : " ") + word;
         }
+        if (good == count && all == count) element.SetAttribute(name, joined.c_str());
         if (may_lack || (good == count && all == count)) return;
         report(element, name,
                fmt::format("{}; must be {}{}", text ? fmt::format("is \"{}\"", text) : "is missing",
@@ -211,6 +250,7 @@ private:
                            sign == NotNegative ? ", not negative" : ""));
     }
     void report(const XMLElement& element, const char* attribute, const std::string& message) {
+        if (diagnostics.size() >= max_reports) return;
         const std::string_view name = element.Name();
         const std::string within = name == "link" || name == "joint" ? "" : std::string(name) + ".";
         diagnostics.push_back({path_ + within + attribute, message, file_, element.GetLineNum()});
@@ -218,7 +258,7 @@ private:
 
     const std::string file_;
     std::string path_;
-    std::vector<std::string> links_;
+    std::set<std::string> links_;
     std::map<std::string, std::string> parents_;  ///< By the link.
 };
 
@@ -243,16 +283,17 @@ Urdf readUrdf(const std::filesystem::path& file, const std::string& text) {
     for (XMLElement* link = robot->FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
         setInertia(*link);
         std::vector<std::string>& materials = urdf.materials[getName(link)];
-        for (const XMLElement* visual = link->FirstChildElement("visual"); visual;
-             visual = visual->NextSiblingElement("visual")) {
-            checks.checkVisual(*visual, getName(link));
-            materials.push_back(getName(visual->FirstChildElement("material")));
+        for (XMLElement *visual = link->FirstChildElement("visual"), *next = nullptr; visual; visual = next) {
+            next = visual->NextSiblingElement("visual");
+            if (checks.checkVisual(*visual, getName(link)))
+                materials.push_back(nameMaterial(*visual));
+            else
+                link->DeleteChild(visual);
         }
     }
     if (!checks.diagnostics.empty()) throw types::ConfigError(std::move(checks.diagnostics));
     urdf.notices = std::move(checks.notices);
-    for (XMLElement* joint = robot->FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint"))
-        simplify(*joint);
+    simplify(*robot);
     keepFixedJoints(*robot);
     if (urdf.materials.empty()) refuse("is a robot without links", robot->GetLineNum());
     tinyxml2::XMLPrinter printer;

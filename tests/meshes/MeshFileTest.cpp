@@ -106,10 +106,11 @@ TEST_F(MeshFileTest, NamesKeepTheirBlanks) {
     };
     const std::string points = "v 0 0 1\nv 2 0 1\nv 2 3 1\n", face = "f 1 2 3\n";
     for (const std::string end : {"\n", " \r\n", "\t\n"})
-        EXPECT_THAT(names(*readMeshFile(write("o.obj", points + "o pile 1" + end + face + "o pile  groß 2" + end +
-                                                           face + "o\tpile" + end + face + "o one" + end + face),
-                                        MeshAxes::AsStored)),
-                    testing::UnorderedElementsAre("pile 1", "pile  groß 2", "pile", "one"));
+        EXPECT_THAT(
+            names(*readMeshFile(write("o.obj", points + "o pile 1" + end + face + "o pile  groß 2" + end + face +
+                                                   "o\tpile" + end + face + "o one # of two" + end + face),
+                                MeshAxes::AsStored)),
+            testing::UnorderedElementsAre("pile 1", "pile  groß 2", "pile", "one"));
     const auto solid = [](const std::string& name) {
         return "solid " + name +
                "\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 2 0 1\nvertex 0 3 1\nendloop\n"

@@ -154,11 +154,44 @@ TEST_F(UrdfTest, WhatASonarDoesNotNeedMayBeWrong) {
     }
 }
 
-TEST_F(UrdfTest, AShapeThatIsNotKnownIsANotice) {
-    const Scene scene = readScene(robot(link("a", small_) + link("b", "<capsule radius='1' length='2'/>") +
-                                        joint("j", "fixed", "a", "b", "xyz='0 0 0'")));
-    EXPECT_EQ(scene.geometry->objects.size(), 1u);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "link b.visual.geometry: <capsule> is no shape of URDF; omitted"));
+TEST_F(UrdfTest, AShapeThatIsNotKnownIsANoticeAndOthersOfItsLinkStay) {
+    const std::string known = "<visual><geometry>" + small_ + "</geometry>";
+    for (const char* odd :
+         {"<visual><geometry><capsule radius='1' length='2'/></geometry><material name='odd'/></visual>", "<visual/>",
+          "<visual><geometry/></visual>"}) {
+        const Scene scene = readScene(robot("<link name='a'>" + known + "<material name='rubber'/></visual>" + odd +
+                                            known + "<material name='steel'/></visual></link>"));
+        ASSERT_EQ(scene.geometry->objects.size(), 2u) << odd;
+        std::vector<std::string> names;
+        for (const types::Material& material : scene.geometry->materials) names.push_back(material.name);
+        EXPECT_THAT(names, testing::UnorderedElementsAre("rubber", "steel")) << odd;
+        EXPECT_TRUE(hasNotice(*scene.geometry, "link a.visual.geometry: ")) << odd;
+        EXPECT_TRUE(hasNotice(*scene.geometry, "; omitted: may be box, cylinder, sphere or mesh")) << odd;
+    }
+}
+
+TEST_F(UrdfTest, EachFormOfNumbersMaterialsAndNamesIsRead) {
+    for (const char* shape :
+         {"<box size='1\t1  1'/>", "<box size=' +1 1\n1 '/>", "<sphere radius='1 '/>", "<box size='1e0 1. .1e1'/>"})
+        for (const char* material :
+             {"", "<material/>", "<material><color rgba='1 0 0 1'/></material>", "<material name=''/>"}) {
+            const Scene scene = readScene(
+                robot("<material name='m'/><material name='m'/>" + link("a", shape, "xyz='0\n0  0'", material) +
+                      link("b", shape, "", material) + link("c", small_) +
+                      joint("b", "fixed", "a", "b", "xyz='5\t0 0'") + joint("b", "fixed", "b", "c", "xyz='0 0 0'")));
+            EXPECT_EQ(scene.geometry->objects.size(), 3u) << shape << material;
+            EXPECT_NEAR(getObject(scene, "rov::b").world_from_object[3].x, 5, 1e-9) << shape << material;
+        }
+}
+
+TEST_F(UrdfTest, ManyErrorsAndLinksTakeLittleTime) {
+    std::string body;
+    for (int i = 0; i < 20000; ++i) {
+        const std::string name = std::to_string(i);
+        body += "<link name='l" + name + "'/><joint name='j" + name +
+                "' type='fixed'><parent link='x'/><child link='l" + name + "'/></joint>";
+    }
+    EXPECT_LT(findDiagnostic(robot(body)).size(), 20'000u);
 }
 
 TEST_F(UrdfTest, AMeshOfAPackageThatIsNotFoundKeepsItsName) {

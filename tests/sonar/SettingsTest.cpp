@@ -107,14 +107,19 @@ TEST(SettingsTest, ARangeNearerThanTheNearestIsTheShortestThatThereIs) {
     Asked<SonarTask> sonar(smallSonar());
     sonar.show(facingWall(5));
     types::SonarSettings asked;
-    for (const uint32_t bins : {20u, 100u, 1000u})
-        for (const double range : {smallSonar().range_min, smallSonar().range_min / 2, 0.0, -3.0}) {
-            asked.range = range;
-            asked.bin_count = bins;
-            ASSERT_TRUE(sonar.ask(asked)) << range << sonar.task.lastError();
-            EXPECT_GE(sonar.task.config->range, 1.1 * smallSonar().range_min) << range;
-            EXPECT_LE(sonar.task.config->range, 2.3 * smallSonar().range_min + 1.7e-3 * bins) << range;
-        }
+    for (const double speed : {1300.0, 1450.0, 0.0, 1700.0, asked.unset})
+        for (const uint32_t bins : {20u, 25u, 100u, 1000u})
+            for (const double range : {smallSonar().range_min, smallSonar().range_min / 2, 0.0}) {
+                asked.range = range;
+                asked.bin_count = bins;
+                asked.speed_of_sound = speed;
+                ASSERT_TRUE(sonar.ask(asked)) << range << sonar.task.lastError();
+                EXPECT_GE(sonar.task.config->range, 1.1 * smallSonar().range_min) << range;
+                EXPECT_LE(sonar.task.config->range, 2.3 * smallSonar().range_min + 1.8e-3 * bins) << range;
+            }
+    asked.range = -3;
+    EXPECT_FALSE(sonar.ask(asked));
+    EXPECT_THAT(sonar.task.lastError(), ::testing::HasSubstr("range"));
 }
 
 TEST(SettingsTest, AHeadLooksAtTheRequestedBearing) {

@@ -185,7 +185,7 @@ def _optional(name: str, number: float | None):
     """A pointer to the value; None: null."""
     try:
         finite = number is None or math.isfinite(number)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise TypeError(f"{name}: is {number!r}; must be a number") from None
     if not finite:
         raise ValueError(f"{name}: is {number}; must be finite")

@@ -78,12 +78,18 @@ TriggeredTask::Changes TriggeredTask::changedBy(const types::SonarSettings& requ
     const auto compareCount = [&](const char* name, uint32_t wanted, int now) {
         if (wanted != 0 && wanted != static_cast<uint32_t>(now)) changes[name] = wanted;
     };
-    // Drivers may ask for less than the nearest that a sonar hears.
-    SonarConfig nearest = config;
-    nearest.range = 1.1 * config.range_min;
-    if (requested.bin_count != 0) nearest.bin_count = static_cast<int>(requested.bin_count);
-    compare("range", requested.range <= config.range_min ? makeBinGrid(nearest).range_max : requested.range,
-            config.range);
+    double range = requested.range;
+    if (range >= 0 && range <= config.range_min) {  // drivers may ask for less than the nearest that a sonar hears
+        SonarConfig nearest = config;
+        nearest.range = 1.1 * config.range_min;
+        if (requested.bin_count != 0) nearest.bin_count = static_cast<int>(std::min(requested.bin_count, 65536u));
+        if (requested.speed_of_sound > 0)
+            nearest.speed_of_sound = std::clamp(requested.speed_of_sound, 100.0, 20000.0);
+        else if (requested.speed_of_sound == 0 && own_speed_)
+            nearest.speed_of_sound = *own_speed_;
+        range = makeBinGrid(nearest).range_max;
+    }
+    compare("range", range, config.range);
     compare("frequency_khz", requested.frequency_khz, config.frequency_khz);
     if (requested.speed_of_sound != 0)
         compare("speed_of_sound", requested.speed_of_sound, config.speed_of_sound);
