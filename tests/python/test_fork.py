@@ -143,7 +143,7 @@ def test_a_forked_pool_reports_a_shared_simulation(simulation):
 
 def test_a_simulation_that_is_sent_to_a_process_is_refused_when_it_is_pickled(simulation):
     process = multiprocessing.get_context("spawn").Process(target=print, args=(simulation,))
-    with pytest.raises(TypeError, match="cannot be copied or sent to another process; make a simulation there"):
+    with pytest.raises(TypeError, match="cannot be copied or sent to another process; make the simulation"):
         process.start()
 
 
