@@ -177,6 +177,7 @@ public:
         const std::string extension = scene::getExtension(file_);
         if (extension != ".obj" && extension != ".stl") return DefaultIOSystem::Open(named, mode);
         std::string text = toText(file_);
+        if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // a mark of UTF-8, which would hide the first line
         if (text.find('\0') == text.npos) text = withMarkedNames(std::move(text), extension == ".obj" ? "o" : "solid");
         auto* const bytes = new uint8_t[text.size()];  // the stream deletes them
         std::ranges::copy(text, bytes);

@@ -16,7 +16,7 @@ using namespace scene;
 int VisualMeshes::material(types::Material material, const Look& look) {
     if (!look.name.empty()) material.name = look.name;
     types::Diagnostics none;
-    if (!look.acoustics.empty()) readAcoustics(look.acoustics, "", none).applyTo(material);
+    if (!look.acoustics.empty()) readAcoustics(look.acoustics, "/", none).applyTo(material);
     geometry_.materials.push_back(std::move(material));
     return static_cast<int>(geometry_.materials.size()) - 1;
 }

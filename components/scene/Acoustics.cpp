@@ -13,6 +13,7 @@
 
 #include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/Seabed.hpp"
+#include "types/NamedFile.hpp"
 #include "types/text/ConfigError.hpp"
 #include "types/text/DidYouMean.hpp"
 
@@ -462,6 +463,11 @@ Acoustics readAcoustics(const AcousticValues& values, const std::filesystem::pat
         acoustics.shell->check(of_shell);
         for (const types::Diagnostic& diagnostic : of_shell)
             diagnostics.push_back({"shell." + diagnostic.path, diagnostic.message});
+    }
+    const std::filesystem::path own = folder.empty() ? "." : folder;
+    if (acoustics.table && !types::belongsTo(own / *acoustics.table, own / "scene")) {
+        diagnostics.push_back({"table", fmt::format("is {}, which {}", *acoustics.table, types::not_its_own)});
+        acoustics.table.reset();
     }
     acoustics.readTable(folder, diagnostics);
     return acoustics;

@@ -195,6 +195,16 @@ TEST(DeploymentSpecTest, NamesSettingsThatDoNotFit) {
                                      "--set: s=1: must be task.property=value, namespace=value or frame_prefix=value",
                                      HasSubstr("--set: s.seed=[: is not YAML"),
                                      "--set: s.last=: has no value; null removes the property"));
+    for (const char* nothing : {"%5", "#5", " ", "...", "---", "%06d.png"})
+        EXPECT_THAT(findDiagnostics("tasks: {s: {type: test::Source, activity: {period: 1}}}",
+                                    {std::string("s.last=") + nothing}),
+                    ElementsAre(HasSubstr(std::string("is `") + nothing + "`, which YAML takes for nothing")))
+            << nothing;
+    for (const char* absent : {"null", "~", "NULL"})
+        EXPECT_THAT(findDiagnostics("tasks: {s: {type: test::Source, activity: {period: 1}}}",
+                                    {std::string("s.last=") + absent}),
+                    testing::IsEmpty())
+            << absent;
 }
 
 }  // namespace

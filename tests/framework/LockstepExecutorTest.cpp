@@ -170,6 +170,29 @@ TEST(LockstepExecutorTest, EndsWhenSourcesOnlyHoldRefusedSamples) {
     EXPECT_EQ(held.value.written(), 1u);
 }
 
+/** Is always in error, as a scene whose survey is damaged. */
+struct Broken : TaskContext {
+    using TaskContext::TaskContext;
+    InputPort<double> in{this, "in", "numbers"};
+    OutputPort<double> out{this, "out", "nothing"};
+    void updateHook() override {
+        double number = 0;
+        if (in.readNew(number)) error("broken");
+    }
+    void errorHook() override { updateHook(); }
+};
+
+TEST(LockstepExecutorTest, EndsWhenATaskBeforeTheCountedSamplesStaysInError) {
+    Range bench;
+    auto& held = bench.add<Held>("held", 0.1);
+    auto& broken = bench.add<Broken>("broken");
+    auto& picky = bench.add<Picky>("picky");
+    bench.graph.connect(held.value, broken.in, {});
+    bench.graph.connect(broken.out, picky.in, {});
+    bench.start();
+    EXPECT_EQ(bench.run({.samples = 5}).samples, 0u);
+}
+
 TEST(LockstepExecutorTest, ChecksTheStopFlagAndReportsAfterEachInstant) {
     Range bench;
     bench.add<test::Source>("source", 0.1);

@@ -121,6 +121,12 @@ TEST_F(MeshFileTest, NamesKeepTheirBlanks) {
                 testing::UnorderedElementsAre("pile 1", "left wall"));
 }
 
+TEST_F(MeshFileTest, AMarkOfUtf8HidesNoVertex) {
+    const auto geometry =
+        readMeshFile(write("b.obj", "\xef\xbb\xbfv 5 0 1\nv 2 0 1\nv 2 3 1\nv 9 9 9\nf 1 2 3\n"), MeshAxes::AsStored);
+    expectBounds(getBounds(*geometry), {2, 0, 1}, {5, 3, 1});
+}
+
 /** assimp would join such a vertex to any other. */
 TEST_F(MeshFileTest, ATriangleWhoseVertexIsNoNumberIsDroppedWithANotice) {
     for (const char* wrong : {"nan 0 0", "0 inf 0", "0 0 -inf"})

@@ -252,6 +252,17 @@ TEST_F(GltfMaterialsTest, ReadsATableNextToTheFile) {
     EXPECT_FLOAT_EQ(m.reflection, 0.5);
 }
 
+/** A model of somebody else could show any file of a machine. */
+TEST_F(GltfMaterialsTest, ReadsNoTableOutsideOfItsFolder) {
+    std::filesystem::create_symlink("/etc/passwd", folder_ / "link.csv");
+    for (const char* table : {"/etc/passwd", "../../../../../etc/passwd", "link.csv"}) {
+        const std::string text = diagnosticOfAcoustics((std::string(R"({"table":")") + table + "\"}").c_str());
+        EXPECT_THAT(text, testing::HasSubstr(std::string("table: is ") + table + ", which is outside of its folder"))
+            << text;
+        EXPECT_THAT(text, testing::Not(testing::HasSubstr("root:"))) << text;
+    }
+}
+
 TEST_F(GltfMaterialsTest, ReportsAWrongTableWithItsPlace) {
     write("floor.csv", "grazing_deg,strength_db\n10,-40\n100,-10\n");
     const auto expect = [this](const char* json, const char* part) {

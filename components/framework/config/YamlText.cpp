@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::framework {
 
@@ -154,7 +155,10 @@ YAML::Node parseValue(const std::string& text) {
     try {
         const std::vector<YAML::Node> documents = parseYaml(text, "");
         if (documents.size() > 1) throw refuse("holds several YAML documents; must be one value");
-        return documents.empty() ? YAML::Node() : documents[0];
+        const YAML::Node node = documents.empty() ? YAML::Node() : documents[0];
+        if (node.IsNull() && !text.empty() && text != "~" && types::lowered(text) != "null")
+            throw refuse("is `" + text + "`, which YAML takes for nothing; put a text that begins with # or % in quotes");
+        return node;
     } catch (const types::ConfigError& error) {
         throw refuse(error.diagnostics().front().message);
     }

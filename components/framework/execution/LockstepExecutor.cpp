@@ -9,6 +9,7 @@
 namespace insonify::framework {
 namespace {
 
+constexpr int max_failures = 20'000;  ///< Consecutive instants with an error after which no counted sample is expected.
 constexpr int max_refusals = 100'000;  ///< Consecutive instants after which no counted sample is expected any more.
 
 bool readsNothing(const TaskContext& task) {
@@ -94,7 +95,7 @@ bool LockstepExecutor::advance() {
 
 void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) {
     findTasks();
-    refusals_ = 0;
+    refusals_ = failures_ = 0;
     first_ = limits.shard ? limits.shard->first : 0;
     const types::Time end = limits.duration_s > 0 ? start_ + types::Time::fromSeconds(limits.duration_s) : never;
     for (types::Time instant = nextBetweenInstants(); !stop && instant < end; instant = nextBetweenInstants()) {
@@ -110,7 +111,12 @@ void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& sto
             if (!consumeStep()) continue;        // paused meanwhile
             const types::Time now_due = next();  // may differ, if a source has advanced meanwhile
             if (now_due >= end || !joinStep(limits)) return;
+            const uint64_t before = graph_.countedSamples();
             runInstant(now_due);
+            const auto is_in_error = [](const auto& task) { return task->state() == TaskState::RunTimeError; };
+            const bool has_failed =
+                before == graph_.countedSamples() && std::ranges::any_of(graph_.tasks(), is_in_error);
+            failures_ = has_failed ? failures_ + 1 : 0;
         }
         if (report) report(progress());
         refusals_ = graph_.hasSourceInError() ? refusals_ + 1 : 0;
@@ -125,7 +131,7 @@ bool LockstepExecutor::joinStep(const RunLimits& limits) {
 }
 
 bool LockstepExecutor::sourcesAreDone(const RunLimits& limits) const {
-    if (limits.samples > 0 && refusals_ >= max_refusals) return true;
+    if (limits.samples > 0 && (refusals_ >= max_refusals || failures_ >= max_failures)) return true;
     if (!std::ranges::all_of(sources_, [](const TaskContext* task) { return task->finished(); })) return false;
     // With a limit, a source that keeps writing its last value counts as active, unless that value is refused; a source
     // that writes nothing more does not.

@@ -64,6 +64,7 @@ private:
     std::vector<TaskContext*> triggered_;
     std::vector<const TaskContext*> sources_;
     int refusals_ = 0;            ///< Consecutive instants in which a source of counted samples was in error.
+    int failures_ = 0;            ///< Consecutive instants without a counted sample in which a task was in error.
     bool sources_wrote_ = false;  ///< Whether a task that runs by the clock wrote anything at the last instant.
     std::atomic<int64_t> now_us_;
     Clock::duration stood_still_{};  ///< In this run.
