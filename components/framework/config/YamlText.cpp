@@ -157,7 +157,8 @@ YAML::Node parseValue(const std::string& text) {
         if (documents.size() > 1) throw refuse("holds several YAML documents; must be one value");
         const YAML::Node node = documents.empty() ? YAML::Node() : documents[0];
         if (node.IsNull() && !text.empty() && text != "~" && types::lowered(text) != "null")
-            throw refuse("is `" + text + "`, which YAML takes for nothing; put a text that begins with # or % in quotes");
+            throw refuse("is `" + text +
+                         "`, which YAML takes for nothing; put a text that begins with # or % in quotes");
         return node;
     } catch (const types::ConfigError& error) {
         throw refuse(error.diagnostics().front().message);
