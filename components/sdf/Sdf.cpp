@@ -155,7 +155,7 @@ public:
         }
         return true;
     }
-    /** Checks that joints make one tree of the links. */
+    /** Checks that all have names, and that joints make one tree of the links. */
     void checkTree(XMLElement& robot) {
         path_.clear();
         checkName(robot);
@@ -208,13 +208,14 @@ private:
             const char* const link = end ? end->Attribute("link") : nullptr;
             if (!link)
                 report(joint, is_child ? "child" : "parent", "is missing; must be <... link=\"NAME\"/>");
-            else if (!links_.contains(link) && diagnostics.size() < max_reports) {
+            else if (links_.contains(link))
+                ends[is_child] = link;
+            else if (diagnostics.size() < max_reports) {  // a suggestion takes time
                 const std::vector<std::string> known(links_.begin(), links_.end());
                 report(*end, "link",
                        fmt::format("is \"{}\", which is no link; {}known: {}", link, types::didYouMean(link, known),
                                    listSome(known)));
-            } else
-                ends[is_child] = link;
+            }
         }
         if (!ends[0].empty() && !ends[1].empty() && !parents_.emplace(ends[1], ends[0]).second)
             report(joint, "child",
