@@ -176,16 +176,19 @@ public:
         if (file_ != named) return nullptr;
         const std::string extension = scene::getExtension(file_);
         if (extension != ".obj" && extension != ".stl") return DefaultIOSystem::Open(named, mode);
-        std::string text = toText(file_);
-        if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // a mark of UTF-8, which would hide the first line
-        if (text.find('\0') == text.npos) text = withMarkedNames(std::move(text), extension == ".obj" ? "o" : "solid");
-        auto* const bytes = new uint8_t[text.size()];  // the stream deletes them
-        std::ranges::copy(text, bytes);
-        return new Assimp::MemoryIOStream(bytes, text.size(), true);
+        if (text_.empty()) {  // the file is opened more than once
+            text_ = toText(file_);
+            if (text_.starts_with("\xef\xbb\xbf"))
+                text_.erase(0, 3);  // a mark of UTF-8, which would hide the first line
+            if (text_.find('\0') == text_.npos)
+                text_ = withMarkedNames(std::move(text_), extension == ".obj" ? "o" : "solid");
+        }
+        return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(text_.data()), text_.size(), false);
     }
 
 private:
     const std::string file_;
+    std::string text_;  ///< Of an .obj or .stl; streams refer to it.
 };
 
 }  // namespace
