@@ -12,6 +12,7 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <typeinfo>
 #include <utility>
 #include <vector>
@@ -20,9 +21,43 @@
 #include "components/framework/config/ConnPolicy.hpp"
 #include "components/framework/execution/Activity.hpp"
 #include "types/Thread.hpp"
-#include "types/text/TypeName.hpp"
 
 namespace insonify::framework {
+
+template <class T>
+struct Pointee {
+    using type = T;
+};
+template <class T>
+struct Pointee<std::shared_ptr<const T>> {
+    using type = T;
+};
+
+/** Types that count the progress of runs (`counted`), passed by value or by shared pointer. */
+template <class T>
+concept Counted = requires {
+    requires Pointee<T>::type::counted;
+};
+
+/** Returns the name of a type on a port; a shared pointer has the name of its sample: "/base/samples/Imu". */
+template <class T>
+std::string typeName() {
+    using Value = typename Pointee<T>::type;
+    if constexpr (requires { Value::type_name; })
+        return Value::type_name;
+    else if constexpr (std::is_same_v<Value, double>)
+        return "/double";
+    else if constexpr (std::is_same_v<Value, float>)
+        return "/float";
+    else if constexpr (std::is_same_v<Value, int32_t>)
+        return "/int32_t";
+    else if constexpr (std::is_same_v<Value, int64_t>)
+        return "/int64_t";
+    else if constexpr (std::is_same_v<Value, bool>)
+        return "/bool";
+    else
+        return "/std/string";
+}
 
 class OutputPortBase;
 
@@ -97,7 +132,7 @@ public:
     virtual std::string typeName() const = 0;
     /** The C++ type of its samples, as the connections carry them. */
     virtual const std::type_info& type() const = 0;
-    /** Whether runs are counted in these samples, see types::Counted. */
+    /** Whether runs are counted in these samples, see Counted. */
     virtual bool counted() const = 0;
 
 private:
@@ -214,9 +249,9 @@ public:
      *  sample. */
     bool readNext(T& sample) { return readNextInto(&sample) == FlowStatus::NewData; }
 
-    std::string typeName() const override { return types::typeName<T>(); }
+    std::string typeName() const override { return framework::typeName<T>(); }
     const std::type_info& type() const override { return typeid(T); }
-    bool counted() const override { return types::Counted<T>; }
+    bool counted() const override { return Counted<T>; }
 
 private:
     std::shared_ptr<ChannelBase> makeChannel(OutputPortBase& source, ConnPolicy policy) const override {
@@ -242,9 +277,9 @@ public:
             requires { sample->time.microseconds; } || requires { sample.time.microseconds; })
             noteWritten(portStamp(sample));
     }
-    std::string typeName() const override { return types::typeName<T>(); }
+    std::string typeName() const override { return framework::typeName<T>(); }
     const std::type_info& type() const override { return typeid(T); }
-    bool counted() const override { return types::Counted<T>; }
+    bool counted() const override { return Counted<T>; }
 
 private:
     const void* last() const override { return &last_; }

@@ -4,10 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "components/log/NpzFile.hpp"
@@ -247,13 +251,40 @@ std::vector<Path> writeRuns(Reader& log, const std::string& stream, const Path& 
     return files;
 }
 
+/** The arrays of samples in tables: those of types::Columns, and the velocities of a stream of poses if one of them
+ *  states a velocity. */
+template <class T>
+class TableArrays {
+public:
+    TableArrays(Reader& log, const std::string& stream) {
+        if constexpr (std::is_same_v<T, types::Pose>)
+            log.forEach<T>(stream, [this](const T& pose, const SampleRef&) {
+                const auto& [v, w] = std::tie(pose.velocity, pose.angular_velocity);
+                has_velocity_ |= !std::isnan(v.x + v.y + v.z) || !std::isnan(w.x + w.y + w.z);
+            });
+    }
+    void forEach(const T& sample, auto&& visit) const {
+        types::Columns<T>::forEach(sample, visit);
+        if constexpr (std::is_same_v<T, types::Pose>)
+            if (has_velocity_) {
+                const auto& [v, w] = std::tie(sample.velocity, sample.angular_velocity);
+                visit("velocity", std::array{"vx", "vy", "vz"}, std::array{v.x, v.y, v.z});
+                visit("angular_velocity", std::array{"wx", "wy", "wz"}, std::array{w.x, w.y, w.z});
+            }
+    }
+
+private:
+    bool has_velocity_ = false;
+};
+
 template <class T>
 void writeRows(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     std::vector<double> time;
     std::vector<std::vector<double>> arrays;
+    const TableArrays<T> table(log, stream);
     log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
         time.push_back(sampleTime(sample, at.time).seconds());
-        types::Columns<T>::forEach(sample, [&, i = size_t{0}](const char*, const auto&, const auto& numbers) mutable {
+        table.forEach(sample, [&, i = size_t{0}](const char*, const auto&, const auto& numbers) mutable {
             if (i == arrays.size()) arrays.emplace_back();
             arrays[i].insert(arrays[i].end(), numbers.begin(), numbers.end());
             ++i;
@@ -261,7 +292,7 @@ void writeRows(Reader& log, const std::string& stream, const Path& path, const s
     });
     NpzFile npz(path);
     npz.array("time", {time.size()}, time);
-    types::Columns<T>::forEach(T{}, [&, i = size_t{0}](const char* name, const auto& names, const auto&) mutable {
+    table.forEach(T{}, [&, i = size_t{0}](const char* name, const auto& names, const auto&) mutable {
         arrays.resize(std::max(arrays.size(), i + 1));
         npz.array(name, {time.size(), names.size()}, arrays[i++]);
     });
@@ -433,15 +464,16 @@ void writeValues(Reader& log, const std::string& stream, const std::filesystem::
 
 template <class T>
 void writeRows(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    const TableArrays<T> table(log, stream);
     std::string header = "time";
-    types::Columns<T>::forEach(T{}, [&](const char*, const auto& names, const auto&) {
+    table.forEach(T{}, [&](const char*, const auto& names, const auto&) {
         for (const char* name : names) header += std::string(",") + name;
     });
     CsvFile csv(path, header);
     std::vector<double> row;
     log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
         row.clear();
-        types::Columns<T>::forEach(sample, [&](const char*, const auto&, const auto& numbers) {
+        table.forEach(sample, [&](const char*, const auto&, const auto& numbers) {
             row.insert(row.end(), numbers.begin(), numbers.end());
         });
         csv.line(sampleTime(sample, at.time), fmt::format("{}", fmt::join(row, ",")));

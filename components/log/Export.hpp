@@ -23,7 +23,8 @@ namespace insonify::log {
  *  `speed_of_sound`, `time`, as in types::SonarElements.
  *  Points: `time` s, `points` [n, 3] m, `intensity`, of each point. Maps of distances: `distances`, `remissions` [maps,
  *  rows, columns], `time`, and the angles of the last map. Ranges: `time`, `range`. Poses: `time` s, `position` [n, 3]
- *  m, `orientation` [n, 4] (w, x, y, z). Numbers, texts, times [s] and angles [rad]: `time`, `value`. If `meta` is not
+ *  m, `orientation` [n, 4] (w, x, y, z), and where one states them `velocity` [n, 3] m/s, `angular_velocity` [n, 3]
+ *  rad/s. Numbers, texts, times [s] and angles [rad]: `time`, `value`. If `meta` is not
  *  empty, it is added as one text. Throws ConfigError for a missing stream or one of another type, std::runtime_error
  *  on a full disk. */
 std::vector<std::filesystem::path> exportNpz(Reader& log, const std::string& stream, const std::filesystem::path& path,
@@ -40,7 +41,8 @@ struct EarthColumns {
  *  `time,beam,bearing` and their fields. Elements: `time,element,position,sample,in_phase,quadrature`. Points:
  *  `time,x,y,z,intensity`, with `earth` also `latitude_deg,longitude_deg,height_m` or `easting,northing,height_m,epsg`.
  * Maps: `time,row,column,distance,remission`. Ranges: `time,range`. Poses: `time,x,y,z,qw,qx,qy,qz`, the columns of a
- * trajectory file [s, m, 1]. Numbers, texts, times [s] and angles [rad]: `time,value`. Throws as exportNpz. */
+ * trajectory file [s, m, 1], and `vx,vy,vz,wx,wy,wz` where one states velocities [m/s, rad/s]. Numbers, texts, times
+ * [s] and angles [rad]: `time,value`. Throws as exportNpz. */
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path,
                const std::optional<EarthColumns>& earth = {});
 

@@ -6,11 +6,13 @@
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <fstream>
 #include <glm/gtc/type_ptr.hpp>
@@ -23,6 +25,7 @@
 #include <type_traits>
 
 #include "components/scene/gltf/Gltf.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::meshes {
 
@@ -165,6 +168,23 @@ std::string withoutTextures(const std::filesystem::path& file) {
     return text;
 }
 
+/** Refuses what assimp would refuse for another reason: text in UTF-16, and a binary .stl that was cut. */
+void checkBegin(const std::filesystem::path& file) {
+    constexpr size_t head_size = 84, triangle_size = 50;  // of a binary .stl [bytes]
+    std::string head(head_size, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<size_t>(stream.gcount()));
+    if (types::isUtf16(head)) throw std::runtime_error(std::string("it ") + types::utf16_refusal);
+    if (scene::getExtension(file) != ".stl" || head.size() < head_size || head.find('\0') == head.npos) return;
+    uint32_t count;
+    std::memcpy(&count, head.data() + 80, sizeof count);
+    const uintmax_t size = std::filesystem::file_size(file), needed = head_size + uintmax_t{count} * triangle_size;
+    if (size < needed)
+        throw std::runtime_error(
+            fmt::format("it is a binary .stl of {} triangles, which take {} bytes, and has {}", count, needed, size));
+}
+
 /** Opens the mesh file alone. Of an .obj's library of materials a sonar needs nothing: `usemtl` has their names, and
  *  assimp would give surfaces without a name its last one. */
 class OnlyThisFile final : public Assimp::DefaultIOSystem {
@@ -194,6 +214,7 @@ private:
 }  // namespace
 
 FileMeshes readByAssimp(const std::filesystem::path& file, MeshAxes axes) {
+    checkBegin(file);
     Assimp::Importer importer;
     importer.SetIOHandler(new OnlyThisFile(file.string()));  // the importer deletes it
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, axes == MeshAxes::AsStored);  // else y-up

@@ -1,5 +1,9 @@
 #include "components/nav/SensorTask.hpp"
 
+#include <fmt/format.h>
+
+#include <utility>
+
 namespace insonify::nav {
 
 bool DvlTask::configureHook() {
@@ -42,6 +46,7 @@ void DvlTask::measure(const Motion& motion) {
 bool PressureTask::configureHook() {
     cadence_ = Cadence(config->sensor.period);
     gauge_.emplace(*config);
+    was_deep_ = false;
     return true;
 }
 
@@ -52,6 +57,9 @@ void PressureTask::updateHook() {
     if (state() == framework::TaskState::RunTimeError) recover();
     if (!cadence_.isDue(body.time)) return;
     types::place(body, config->sensor.mount, placed);
+    if (const bool is_deep = config->water_surface - placed.position.z > deepest;
+        std::exchange(was_deep_, is_deep) < is_deep)
+        warn(fmt::format("pose: is deeper than {:g} m, of which the pressure is that of this depth", deepest));
     const types::Pressure reading = gauge_->measure(placed);
     pressure.write(reading);
     if (depth_samples.connected()) depth_samples.write(depthSample(reading, *config));

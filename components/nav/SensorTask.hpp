@@ -74,6 +74,7 @@ private:
 
     Cadence cadence_;
     std::optional<PressureGauge> gauge_;
+    bool was_deep_ = false;  ///< Whether the last pose was beyond `deepest`.
 };
 
 /** An inertial measurement unit with an attitude, from the poses of the body.

@@ -5,6 +5,8 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -21,6 +23,7 @@
 
 #include "components/scene/Scene.hpp"
 #include "types/text/ConfigError.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::sdf {
 namespace {
@@ -35,17 +38,54 @@ constexpr size_t max_sdf_depth = 50;
 /** Max size of a file [bytes]. */
 constexpr size_t max_sdf_bytes = size_t{64} << 20;
 
-/** Counts the work of libsdformat for a file, and collects the uris of its includes. */
+/** Elements that say nothing of shapes. */
+bool isNeedless(std::string_view element) {
+    static const std::set<std::string_view> names = {"inertial", "sensor",       "plugin",     "collision",
+                                                     "physics",  "gui",          "gripper",    "battery",
+                                                     "surface",  "audio_source", "audio_sink", "spherical_coordinates",
+                                                     "wind",     "light"};
+    return names.contains(element);
+}
+
+/** Counts the work of libsdformat for a file, and collects the uris of its includes and what it would cut without a
+ *  word: of `<radius>0,5</radius>` it reads 0. */
 class Work final : public tinyxml2::XMLVisitor {
 public:
-    explicit Work(const std::string& xml) {
+    explicit Work(const std::string& xml, std::string file) : file_(std::move(file)) {
+        if (types::isUtf16(xml)) throw types::ConfigError(file_, "", types::utf16_refusal);
         tinyxml2::XMLDocument document(true, tinyxml2::COLLAPSE_WHITESPACE);  // as libsdformat reads it
         if (document.Parse(xml.data(), xml.size()) == tinyxml2::XML_SUCCESS) document.Accept(this);
     }
     size_t amount = 0;
     std::vector<std::string> included;
+    types::Diagnostics faults;
 
 private:
+    /** Returns the names of the parts around an element, and its own: "model::link::visual.radius". */
+    static std::string getPath(const tinyxml2::XMLElement& element) {
+        std::string path;
+        for (const auto* part = element.Parent()->ToElement(); part; part = part->Parent()->ToElement())
+            if (const char* const name = part->Attribute("name"); name && std::string_view(part->Name()) != "world")
+                path = name + (path.empty() ? "" : "::" + path);
+        return (path.empty() ? "" : path + ".") + element.Name();
+    }
+    /** Checks the numbers of a pose or shape: libsdformat ends reading at the first that is none. */
+    void checkNumbers(const tinyxml2::XMLElement& element) {
+        static const std::set<std::string_view> names = {"pose",   "size",   "scale",       "radius",
+                                                         "length", "normal", "model_count", "radii"};
+        constexpr size_t max_reports = 20;
+        if (!names.contains(element.Name()) || !element.GetText() || faults.size() == max_reports) return;
+        std::istringstream words(element.GetText());
+        for (std::string word; words >> word;) {
+            if (!std::isnan(toNumber(word))) continue;
+            faults.push_back({getPath(element),
+                               fmt::format("is \"{}\": {} is no finite number; must be numbers such as 0.5, divided by "
+                                           "blanks",
+                                           element.GetText(), word),
+                               file_, element.GetLineNum()});
+            return;
+        }
+    }
     bool VisitEnter(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute* /*first*/) override {
         size_t parts = 0;
         for (const auto* part = element.FirstChildElement(); part; part = part->NextSiblingElement()) ++parts;
@@ -53,8 +93,19 @@ private:
         amount += 1 + parts * parts / 2000;
         const tinyxml2::XMLElement* uri = element.FirstChildElement("uri");
         if (std::string_view(element.Name()) == "include" && uri && uri->GetText()) included.push_back(uri->GetText());
+        if (within_ || isNeedless(element.Name()))
+            ++within_;
+        else
+            checkNumbers(element);
         return true;
     }
+    bool VisitExit(const tinyxml2::XMLElement& /*element*/) override {
+        within_ -= within_ ? 1 : 0;
+        return true;
+    }
+
+    const std::string file_;
+    size_t within_ = 0;  ///< Elements that are open from the outermost needless one.
 };
 
 class Includes {
@@ -69,13 +120,17 @@ public:
                 file.string(), "include",
                 fmt::format("models include each other {} deep; may be up to {}", max_sdf_depth + 1, max_sdf_depth));
         open_.push_back(file);
-        const Work own(toText(file));
+        Work own(toText(file), file.string());
+        if (!own.faults.empty() && open_.size() == 1) throw types::ConfigError(std::move(own.faults));
+        if (!own.faults.empty()) faults.push_back(std::move(own.faults.front()));
         size_t amount = own.amount;
         for (const std::string& uri : own.included)
             if (amount <= max_sdf_work) amount += workOfInclude(uri, file);
         open_.pop_back();
         return work_[file] = amount;
     }
+
+    types::Diagnostics faults;  ///< The first of each included file.
 
 private:
     size_t workOfInclude(const std::string& uri, const std::filesystem::path& from) {
@@ -105,10 +160,12 @@ private:
     std::map<std::filesystem::path, size_t> work_;
 };
 
-/** Follows the includes of an SDF file. Throws types::ConfigError where libsdformat would overflow its stack or run for
- *  minutes: at a model that includes itself, and beyond the max work. */
-void checkIncludes(const std::filesystem::path& file, const meshes::ModelPaths& paths) {
-    if (Includes(paths).measureWork(std::filesystem::canonical(file)) <= max_sdf_work) return;
+/** Follows the includes of an SDF file, and returns what is wrong in the numbers of included files. Throws
+ *  types::ConfigError for numbers of the file itself, and where libsdformat would overflow its stack or run for minutes:
+ *  at a model that includes itself, and beyond the max work. */
+types::Diagnostics checkIncludes(const std::filesystem::path& file, const meshes::ModelPaths& paths) {
+    Includes includes(paths);
+    if (includes.measureWork(std::filesystem::canonical(file)) <= max_sdf_work) return includes.faults;
     throw types::ConfigError(file.string(), "",
                              "would take minutes to read: with what it includes it may hold up to 100000 elements, or "
                              "14000 in one; divide it, or make one mesh of many shapes");
@@ -187,15 +244,11 @@ std::string withQuotes(const std::string& text) {
 
 /** Removes elements that say nothing of shapes, pads poses to six numbers, and makes relative files absolute. */
 void clean(tinyxml2::XMLElement& element, const std::filesystem::path& folder) {
-    static const std::set<std::string_view> needless = {
-        "inertial", "sensor",  "plugin",  "collision",    "physics",    "gui",
-        "gripper",  "battery", "surface", "audio_source", "audio_sink", "spherical_coordinates",
-        "wind",     "light"};
     for (tinyxml2::XMLElement* child = element.FirstChildElement(); child;) {
         tinyxml2::XMLElement* const next = child->NextSiblingElement();
         const std::string_view name = child->Name();
         const char* const words = child->GetText();
-        if (needless.contains(name)) {
+        if (isNeedless(name)) {
             element.DeleteChild(child);
         } else if (name == "pose" && words) {
             std::istringstream numbers(words);
@@ -507,6 +560,13 @@ void noteDiagnostics(const types::Diagnostics& diagnostics, meshes::WorldBuilder
 
 }  // namespace
 
+double toNumber(std::string_view word) {
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    return error == std::errc() && end == word.data() + word.size() && std::isfinite(number) ? number : std::nan("");
+}
+
 std::string toText(const std::filesystem::path& file) {
     std::error_code error;
     if (std::filesystem::file_size(file, error) > max_sdf_bytes && !error)
@@ -532,8 +592,11 @@ std::string CerrCapture::take() {
     if (!std::filesystem::is_regular_file(file))
         throw types::ConfigError(file.string(), "",
                                  "is not a file; give the path of a " + scene::sceneEndings("sdf") + " file");
-    checkIncludes(file, builder.paths());
     Reading reading(file, builder, text);
+    for (const types::Diagnostic& fault : checkIncludes(file, builder.paths())) {
+        reading.unreadable.insert(fault.file);
+        builder.notice(fault.text() + "; the model is omitted");
+    }
     while (true) {
         const SearchConfig search(file, builder.paths(), reading.unreadable, reading.models);
         ::sdf::Root root;

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <streambuf>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "components/meshes/WorldBuilder.hpp"
@@ -31,6 +32,9 @@ private:
 
 /** Returns the bytes of a file. Throws types::ConfigError for a file that is too large. */
 std::string toText(const std::filesystem::path& file);
+
+/** Returns the finite number that a word is; else NaN. */
+double toNumber(std::string_view word);
 
 /** Loads an SDF file with its includes, or `text` instead of the file unless `text` is empty. Diagnostics of
  *  libsdformat are notices of `builder` if there is still a world or a model, otherwise they are thrown as

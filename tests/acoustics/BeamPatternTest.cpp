@@ -166,7 +166,7 @@ TEST_F(BeamPatternTest, DiagnosticsOfATableHaveFileLineAndColumn) {
         return test::computeError<types::ConfigError>([&] { BeamPattern pattern(law); });
     };
     EXPECT_THAT(findDiagnostic("angle,level\n"),
-                HasSubstr("beam.csv:1:1: is 'angle,level'; the header must be angle_deg,level_db"));
+                HasSubstr("beam.csv:1:1: is 'angle,level'; the header must have angle_deg,level_db"));
     EXPECT_THAT(findDiagnostic("angle_deg,level_db\n0,0\n1,loud\n"), HasSubstr("beam.csv:3:3: level_db: is 'loud'"));
     EXPECT_THAT(findDiagnostic("angle_deg,level_db\n0,0\n0,-1\n"), HasSubstr("beam.csv:3:1: angle_deg: is not above"));
     EXPECT_THAT(findDiagnostic("angle_deg,level_db\n0,0\n1,-1,2\n"),

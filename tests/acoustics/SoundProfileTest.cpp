@@ -127,7 +127,7 @@ std::string findDiagnostic(const std::string& text) {
 TEST(SoundProfileTest, ReportsAnErrorInAFileWithItsPlace) {
     EXPECT_EQ(findDiagnostic("depth_m,sound_speed_m_s\n0,1500\n10,1490.5\n"), "");
     EXPECT_THAT(findDiagnostic("depth_m\n0\n10\n"),
-                HasSubstr("profile.csv:1:1: is 'depth_m'; the header must be depth_m,sound_speed_m_s"));
+                HasSubstr("profile.csv:1:1: is 'depth_m'; the header must have depth_m,sound_speed_m_s"));
     EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,1500\n20,1490\n10,1480\n"),
                 HasSubstr("profile.csv:4:1: depth_m: is not above that of the line before"));
     EXPECT_THAT(findDiagnostic("depth_m,sound_speed_m_s\n0,1500\n"),

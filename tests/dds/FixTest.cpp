@@ -297,7 +297,7 @@ TEST_F(FixTest, ReportsTheAbsenceOfOrientations) {
 
 namespace {
 
-const std::string vehicle = R"(schedule: realtime
+const std::string fix_vehicle = R"(schedule: realtime
 datum: {latitude_deg: 54.5, longitude_deg: 10.25, height_m: 40}
 tasks:
   boat: {type: pose::TrajectoryTask, activity: {period: 0.05}, properties: {waypoints: [{time: 0, position: [100, -50, 0.5], yaw_deg: 40}]}}
@@ -347,7 +347,7 @@ struct FixRunTest : FixTest {
 TEST_F(FixRunTest, AVehicleThatSendsItsFixesIsWhereItIs) {
     using namespace deployer;
     const TestFolder elsewhere;
-    writeFile(elsewhere / "vehicle.yml", vehicle);
+    writeFile(elsewhere / "vehicle.yml", fix_vehicle);
     writeFile(folder_ / "sonar.yml", sonar);
     const Process boat(insonifyWords({"run", "vehicle.yml", "--out", "out"}), elsewhere.path());
     const Outcome outcome = call({"run", "sonar.yml", "--out", "out", "--duration", "6"});

@@ -26,7 +26,7 @@ struct Collector : TaskContext {
     void updateHook() override {
         inputs.forEach([]<class Input>(Input& input) {
             for (typename Input::Carried sample{}; input.port.readNew(sample);)
-                input.kept.got.push_back(types::typeName<typename Input::Sample>());
+                input.kept.got.push_back(framework::typeName<typename Input::Sample>());
         });
     }
     std::vector<std::string> names() const {

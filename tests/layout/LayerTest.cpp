@@ -70,11 +70,12 @@ constexpr size_t max_units = 477, max_small_files = 71, max_folder = 25, max_lin
 
 /** Number of lines of the product, without pages. */
 size_t productLines() {
+    const std::set<std::string> binary{".glb", ".jpg", ".png", ".pyc"};
     size_t lines = 0;
     for (const char* folder : {"components", "types", "shaders", "ros2", "scripts"})
         for (const auto& entry : fs::recursive_directory_iterator(fs::path(insonify::test::source_dir) / folder)) {
             const std::string end = entry.path().extension();
-            if (!entry.is_regular_file() || end == ".md" || end == ".pyc" || end == ".png" || end == ".jpg") continue;
+            if (!entry.is_regular_file() || end == ".md" || binary.contains(end)) continue;
             lines += readSource(entry.path()).lines.size();
         }
     return lines;

@@ -239,6 +239,21 @@ TEST(ExportTest, CsvOfPosesIsATrajectory) {
     EXPECT_EQ(toText(folder / "x.csv"), "time,x,y,z,qw,qx,qy,qz\n1.500000,1,2,-3.5,0.5,0.5,-0.5,0.5\n");
 }
 
+TEST(ExportTest, CsvOfPosesHasTheVelocitiesOfThoseThatStateThem) {
+    types::Pose moving = pose();
+    moving.velocity = {0.5, -1, 2};
+    auto [folder, reader] = Logged("dvl.velocity_samples", {pose(), moving});
+    exportCsv(reader, "dvl.velocity_samples", folder / "x.csv");
+    EXPECT_EQ(toText(folder / "x.csv"),
+              "time,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n"
+              "1.500000,1,2,-3.5,0.5,0.5,-0.5,0.5,nan,nan,nan,nan,nan,nan\n"
+              "1.500000,1,2,-3.5,0.5,0.5,-0.5,0.5,0.5,-1,2,nan,nan,nan\n");
+    exportNpz(reader, "dvl.velocity_samples", folder / "x.npz");
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['velocity'][1].tolist(), x['angular_velocity'].shape"),
+              "[0.5, -1.0, 2.0] (2, 3)\n");
+}
+
 TEST(ExportTest, CsvOfNumbersHasTimeAndValue) {
     Folder folder;
     pocolog::Writer log(folder / "x.0.log");

@@ -305,6 +305,10 @@ TEST_F(MeshFileTest, ReportsADamagedMesh) {
         const Scene scene = world(model("m", "<mesh><uri>" + name + "</uri></mesh>"));
         EXPECT_TRUE(hasNotice(*scene.geometry, name)) << name;
     }
+    EXPECT_TRUE(hasNotice(*world(model("m", "<mesh><uri>cut.stl</uri></mesh>")).geometry,
+                          "is a binary .stl of 1000000 triangles, which take 50000084 bytes, and has 96"));
+    write("wide.obj", std::string("\xff\xfev\0 \0", 6));
+    EXPECT_TRUE(hasNotice(*world(model("m", "<mesh><uri>wide.obj</uri></mesh>")).geometry, "it is text in UTF-16"));
 }
 
 }  // namespace

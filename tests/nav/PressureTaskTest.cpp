@@ -41,6 +41,16 @@ TEST_F(PressureTaskTest, TheSameSeedAndPosesGiveTheSameBits) {
     EXPECT_NE(first[0], first[1]);
 }
 
+TEST_F(PressureTaskTest, WarnsOnceBelowItsDeepestWater) {
+    std::vector<std::string> warnings;
+    task_.environment().warn = [&](const std::string& text) { warnings.push_back(text); };
+    startWith({.density = 1000});
+    const float reading = answerTo(poseAt(1, {0, 0, -13'000})).pascal;
+    EXPECT_EQ(reading, static_cast<float>(pressureAt(deepest, {.density = 1000})));
+    answerTo(poseAt(2, {0, 0, -14'000}));
+    EXPECT_THAT(warnings, testing::ElementsAre(testing::HasSubstr("pose: is deeper than 12000 m")));
+}
+
 TEST_F(PressureTaskTest, RejectsAPoseThatIsNotFiniteUntilAValidPose) {
     startWith({});
     answerTo(poseAt(1, glm::dvec3(std::nan(""))));

@@ -296,7 +296,7 @@ TEST(TrajectoryTest, WrongFilesOfTumAndEurocAreRefusedWithLineAndColumn) {
                             {euroc + "1,0,0,inf,1,0,0,0\n", 2, 7, "'inf'"},
                             {"#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1]\n1,2,3\n", 1, 1,
                              "the header must begin with #timestamp,p_RS"},
-                            {"0,0,0,0,1,0,0,0\n", 1, 1, "the header must be time,"}}) {
+                            {"0,0,0,0,1,0,0,0\n", 1, 1, "the header must have time,"}}) {
         const types::Diagnostics diagnostics = findDiagnostics(text);
         ASSERT_EQ(diagnostics.size(), 1u) << text;
         EXPECT_EQ(diagnostics[0].line, line) << text;

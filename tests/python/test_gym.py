@@ -118,6 +118,7 @@ def test_a_stack_is_a_whole_number_from_1(deploy, stack):
         ("floor_db", 60, ValueError, "must be a number below 0"),
         ("max_speed", -1, ValueError, "must be a number from 0"),
         ("scatter", np.nan, ValueError, "must be a number from 0"),
+        ("reward", "x", TypeError, "must be a function"),
         ("start", np.eye(4), TypeError, "must be an insonify.Pose"),
     ],
 )

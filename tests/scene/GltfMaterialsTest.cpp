@@ -1,4 +1,6 @@
 // Acoustic extras and normal maps.
+#include <gmock/gmock.h>
+
 #include <array>
 
 #include "tests/scene/SceneFiles.hpp"

@@ -7,15 +7,15 @@ namespace insonify::scene {
 namespace {
 
 /** One triangle (0,0,0) (1,0,0) (0,2,0) as mesh 0. */
-const std::string triangle = R"("meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0}}]}],
+const std::string triangle_mesh = R"("meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0}}]}],
     "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
     "bufferViews":[{"buffer":0,"byteLength":36}],)" +
-                             buffers(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 2, 0}));
+                                  buffers(toBytes<float>({0, 0, 0, 1, 0, 0, 0, 2, 0}));
 
 struct GltfNodesTest : SceneFiles {
-    types::GeometryPtr nodes(const std::string& json) const { return load(R"("nodes":)" + json + "," + triangle); }
+    types::GeometryPtr nodes(const std::string& json) const { return load(R"("nodes":)" + json + "," + triangle_mesh); }
     std::string diagnosticOfNodes(const std::string& json) const {
-        return diagnosticOfGltf(R"("nodes":)" + json + "," + triangle);
+        return diagnosticOfGltf(R"("nodes":)" + json + "," + triangle_mesh);
     }
 };
 
@@ -88,7 +88,7 @@ TEST_F(GltfNodesTest, InstancesOfAnExtensionAreObjects) {
 TEST_F(GltfNodesTest, OnlyTheDefaultSceneIsLoaded) {
     const auto geometry = load(R"("scene":1,"scenes":[{"nodes":[0,1]},{"nodes":[1]}],
         "nodes":[{"mesh":0,"name":"a"},{"mesh":0,"name":"b"}],)" +
-                               triangle);
+                               triangle_mesh);
     ASSERT_EQ(geometry->objects.size(), 1u);
     EXPECT_EQ(geometry->objects[0].name, "b");
 }
@@ -129,7 +129,7 @@ TEST_F(GltfNodesTest, APartIsTheNodeWithoutItsPlaceAndRotationButWithItsScale) {
     const Scene scene = readScene(write("case.gltf", gltf(R"("nodes":[
         {"name":"boat","mesh":0,"translation":[9,9,9],"rotation":[0.6,0,0,0.8],"scale":[-2,3,4],"children":[1]},
         {"name":"mast","mesh":0,"translation":[0,5,0]},{"name":"quay","mesh":0}],)" +
-                                                          triangle)));
+                                                          triangle_mesh)));
     const std::vector<Part> parts = getParts(scene, findNode(scene, "boat"));
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_EQ(scene.geometry->objects[parts[1].object].name, "mast");
@@ -141,7 +141,7 @@ TEST_F(GltfNodesTest, APartIsTheNodeWithoutItsPlaceAndRotationButWithItsScale) {
 TEST_F(GltfNodesTest, AMatrixNodeKeepsItsMirrorAsAPart) {
     const Scene scene = readScene(write("case.gltf", gltf(R"("nodes":[
         {"name":"m","mesh":0,"matrix":[-2,0,0,0, 0,1,0,0, 0,0,1,0, 3,4,5,1]}],)" +
-                                                          triangle)));
+                                                          triangle_mesh)));
     const Part part = getParts(scene, 0).at(0);
     expectNear(glm::dvec3(part.body_from_object * glm::dvec4(1, 1, 0, 1)), {-2, 0, 1});
 }

@@ -23,6 +23,8 @@ TEST_F(SdfBadInputTest, ReportsFilesThatAreNotSdf) {
     expectDiagnostic(findDiagnostic(write("empty.sdf", "")), "is no XML: it is empty");
     expectDiagnostic(findDiagnostic(write("cut.sdf", "<sdf version='1.9'>\n<world name='w'>\n<model")),
                      "cut.sdf:3: is no XML: a tag is not finished (<model>)");
+    for (const char* const name : {"wide.sdf", "wide.urdf"})
+        expectDiagnostic(findDiagnostic(write(name, std::string("\xff\xfe<\0s\0d\0f\0", 10))), "is text in UTF-16");
     expectDiagnostic(findDiagnostic(write("page.world", "<html><body>404</body></html>")),
                      "holds neither a world nor a model");
     expectDiagnostic(findDiagnostic(write("none.world", "<sdf version='1.9'/>")), "holds neither a world nor a model");
@@ -31,11 +33,16 @@ TEST_F(SdfBadInputTest, ReportsFilesThatAreNotSdf) {
 }
 
 TEST_F(SdfBadInputTest, ReportsAnUnreadableValueWithItsLineAndReason) {
-    expectDiagnostic(
-        diagnosticOfWorld("<model name='m'>\n" + pose("1 2 x 0 0 0") + "<link name='l'/></model>"),
-        "case.world:3: /sdf/world[@name=\"w\"]/model[@name=\"m\"]/pose: Error reading element <pose>: Invalid");
+    expectDiagnostic(diagnosticOfWorld("<model name='m'>\n" + pose("1 2 x 0 0 0") + "<link name='l'/></model>"),
+                     "case.world:3: m.pose: is \"1 2 x 0 0 0\": x is no finite number; must be numbers");
+    // libsdformat reads 0 of it.
+    for (const char* const shape : {"<sphere><radius>0,5</radius></sphere>", "<box><size>1 2,5 3</size></box>",
+                                    "<cylinder><radius>1m</radius><length>2</length></cylinder>"})
+        expectDiagnostic(diagnosticOfWorld("\n" + model("m", shape)), "is no finite number; must be numbers");
+    expectDiagnostic(diagnosticOfWorld("\n" + model("m", "<sphere><radius>0,5</radius></sphere>")),
+                     "case.world:3: m::hull::skin.radius: is \"0,5\"");
     expectDiagnostic(diagnosticOfWorld("<model name='m'>" + pose("nan 0 0 0 0 0") + "<link name='l'/></model>"),
-                     "must be finite");
+                     "nan is no finite number");
     expectDiagnostic(diagnosticOfWorld("<model><link name='l'/></model>"), "Required attribute[name]");
     expectDiagnostic(diagnosticOfWorld("\n" + model("m", "<sphere><radius>-3</radius></sphere>")),
                      "case.world:3: m::hull::skin.radius: is -3; must not be negative");

@@ -324,7 +324,8 @@ TEST_F(SdfTest, OmitsAnUnreadableIncludeWithTheReason) {
     EXPECT_GE(findNode(scene, "good"), 0);
     EXPECT_LT(findNode(scene, "bad"), 0);
     EXPECT_TRUE(hasNotice(*scene.geometry, "1 2 east"));
-    EXPECT_TRUE(hasNotice(*scene.geometry, "bad/model.sdf]; omitted"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "bad/model.sdf:1: bad.pose: is "));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "the model is omitted"));
 }
 
 TEST_F(SdfTest, LibsdformatPrintsNothing) {

@@ -16,10 +16,12 @@ using acoustics::Weighting;
 using std::numbers::pi;
 using Complex = std::complex<double>;
 
-constexpr double wavelength = 0.002;
+constexpr double line_wavelength = 0.002;
 const Taper uniform(Weighting::Uniform);
 
-LineArray halfWave(size_t count, const Taper& taper = uniform) { return {count, wavelength / 2, wavelength, taper}; }
+LineArray halfWave(size_t count, const Taper& taper = uniform) {
+    return {count, line_wavelength / 2, line_wavelength, taper};
+}
 
 /** Cells of a complex Gaussian field, at sines from -0.9 to 0.9. */
 struct Cells {
@@ -57,10 +59,10 @@ TEST(LineArrayTest, ElementsReceiveTheSumOfEchoesWithThePhasesOfTheirPaths) {
     for (size_t m = 0; m < 16; ++m)
         for (size_t i = 0; i < 7; ++i) {
             Complex sum;
-            const double place = (static_cast<double>(m) - 7.5) * wavelength / 2;
+            const double place = (static_cast<double>(m) - 7.5) * line_wavelength / 2;
             for (size_t cell = 0; cell < 50; ++cell)
                 sum += Complex(cells.field.row(cell)[i]) *
-                       std::polar(1.0, 2 * pi / wavelength * place * cells.cones[cell].low);
+                       std::polar(1.0, 2 * pi / line_wavelength * place * cells.cones[cell].low);
             EXPECT_NEAR(std::abs(Complex(received.row(m)[i]) - sum), 0, 1e-4) << m << " " << i;
         }
 }
@@ -91,7 +93,7 @@ TEST(LineArrayTest, BeamsByTheTransformMatchTheSumsOverTheElements) {
                 Complex sum;
                 for (size_t m = 0; m < count; ++m)
                     sum += array.weights()[m] * Complex(received.row(m)[i]) *
-                           std::polar(1.0, -2 * pi / wavelength * array.position(m) * looking[k]);
+                           std::polar(1.0, -2 * pi / line_wavelength * array.position(m) * looking[k]);
                 worst = std::max(worst, std::abs(Complex(beams.row(k)[i]) - sum));
                 mean += std::abs(sum) / static_cast<double>(looking.size() * 5);
             }
@@ -130,7 +132,7 @@ TEST(LineArrayTest, WeightsMakeThePatternOfTheBeamLaw) {
 TEST(LineArrayTest, HannsWeightsAreARaisedCosine) {
     const LineArray array = halfWave(64, Taper(Weighting::Hann));
     for (size_t m = 0; m < 64; ++m)
-        EXPECT_NEAR(array.weights()[m], (1 + std::cos(2 * pi * array.position(m) / (32 * wavelength))) / 64, 1e-8);
+        EXPECT_NEAR(array.weights()[m], (1 + std::cos(2 * pi * array.position(m) / (32 * line_wavelength))) / 64, 1e-8);
 }
 
 TEST(LineArrayTest, AnArrayCannotMakeAGaussian) {
@@ -140,7 +142,8 @@ TEST(LineArrayTest, AnArrayCannotMakeAGaussian) {
 }
 
 TEST(LineArrayTest, ElementsFartherApartThanHalfAWaveHaveGratingLobes) {
-    const LineArray sparse(32, 1.25 * wavelength, wavelength, uniform), dense(80, wavelength / 2, wavelength, uniform);
+    const LineArray sparse(32, 1.25 * line_wavelength, line_wavelength, uniform),
+        dense(80, line_wavelength / 2, line_wavelength, uniform);
     const double grating = 0.1 + 1 / 1.25;  // path difference of one wavelength between neighbours
     EXPECT_NEAR(receivedPower(sparse, grating, 0.1), 1, 0.01) << "as loud as the axis";
     EXPECT_NEAR(receivedPower(sparse, 0.1, 0.1), 1, 0.01);

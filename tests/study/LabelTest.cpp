@@ -36,7 +36,7 @@ types::Snapshot tenObjects() {
     return snapshot;
 }
 
-sonar::SonarConfig fan() {
+sonar::SonarConfig labelFan() {
     return test::getSonar({.beams = 64, .width_deg = 90, .height_deg = 40, .bins = 250, .rows = 512, .columns = 4});
 }
 
@@ -123,7 +123,7 @@ std::vector<int32_t> labelsByNearestObject(const types::Snapshot& scene, const t
 class LabelTest : public testing::TestWithParam<sonar::Visibility> {};
 
 TEST_P(LabelTest, LabelsTenObjectsAsRaysDo) {
-    sonar::SonarConfig config = fan();
+    sonar::SonarConfig config = labelFan();
     config.visibility = GetParam();
     if (GetParam() == sonar::Visibility::Gl) config.device = "software";
     const types::Snapshot scene = tenObjects();

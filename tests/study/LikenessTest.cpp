@@ -7,6 +7,7 @@
 #include "components/device/OculusRecording.hpp"
 #include "components/study/likeness/Likeness.hpp"
 #include "tests/support/Paths.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/text/Hash.hpp"
 
 namespace insonify::study {
@@ -138,7 +139,7 @@ TEST(LikenessTest, PicturesOfOneCodeAndOfTheCosineDifferFromASpeckledPicture) {
 TEST(LikenessTest, RefusesAPictureThatIsTooSmall) {
     CodedPing ping = makePicture([](size_t, size_t) { return 0.1; });
     ping.beam_count = 16;
-    EXPECT_THROW(computeLooks(ping), std::invalid_argument);
+    EXPECT_THROW(computeLooks(ping), types::ConfigError);
     EXPECT_THROW(studyLikeness({}, nullptr), std::invalid_argument);
 }
 

@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "types/text/ConfigError.hpp"
 #include "types/text/DidYouMean.hpp"
@@ -41,8 +43,14 @@ std::string describeWanted(const CsvColumn& column) {
 class Reader {
 public:
     Reader(std::string file, const TableForm& form, const CsvValidator& validate)
-        : file_(std::move(file)), form_(form), columns_(form.columns), validate_(validate) {
+        : file_(std::move(file)),
+          form_(form),
+          columns_(form.columns),
+          validate_(validate),
+          fields_(columns_.size()),
+          order_(fields_) {
         has_header_ = form.header == TableForm::Header::None;
+        std::iota(order_.begin(), order_.end(), size_t{0});
     }
 
     std::vector<std::vector<double>> read(std::string_view text, size_t minimum) {
@@ -70,11 +78,20 @@ private:
         if (has_header_ && is_commented && trimmed(line).front() == '#') return;
         if (has_header_) return readRow(line);
         has_header_ = true;
-        const std::string wanted = makeHeader(columns_);
-        if (is_commented ? namesIn(line).starts_with("#" + wanted) : trimmed(line) == wanted) return;
+        const std::vector<std::string> names = namesIn(line);
+        fields_ = names.size();
+        for (size_t i = 0; i < columns_.size(); ++i) {
+            const auto found = std::ranges::find(names, columns_[i].name);
+            if (found == names.end() || std::find(found + 1, names.end(), *found) != names.end()) return refuse(line);
+            order_[i] = static_cast<size_t>(found - names.begin());
+        }
+        if (is_commented && trimmed(line).front() != '#') refuse(line);
+    }
+
+    void refuse(std::string_view header) {
         report(1, "",
-               "is '" + std::string(trimmed(line).substr(0, 80)) + "'; the header must " +
-                   (is_commented ? "begin with #" : "be ") + wanted);
+               "is '" + std::string(trimmed(header).substr(0, 80)) + "'; the header must " +
+                   (form_.header == TableForm::Header::Line ? "have " : "begin with #") + makeHeader(columns_));
         throw ConfigError(std::move(diagnostics_));  // the lines have other columns: their errors would be consequences
     }
 
@@ -90,22 +107,21 @@ private:
 
     bool readFields(std::string_view line, std::vector<double>& values, std::vector<int>& places) {
         const size_t before = diagnostics_.size();
-        const std::string count = "a line has " + std::to_string(columns_.size());
-        size_t begin = 0;
+        const std::string count = "a line has " + std::to_string(fields_);
+        std::vector<std::pair<size_t, size_t>> fields;  // where each begins and ends
+        for (size_t begin = skipped(line, 0); begin <= line.size(); begin = skipped(line, fields.back().second + 1))
+            fields.emplace_back(begin, std::min(line.find_first_of(separators(), begin), line.size()));
         for (size_t i = 0; i < columns_.size(); ++i) {
-            begin = skipped(line, begin);
-            if (begin > line.size()) {
+            if (order_[i] >= fields.size()) {
                 report(static_cast<int>(line.size()) + 1, columns_[i].name, "is missing; " + count + " fields");
                 return false;
             }
-            const size_t end = std::min(line.find_first_of(separators(), begin), line.size());
+            const auto [begin, end] = fields[order_[i]];
             places[i] = static_cast<int>(begin) + 1;
             readNumber(line.substr(begin, end - begin), places[i], columns_[i], values[i]);
-            begin = end + 1;
         }
-        begin = skipped(line, begin);
-        if (begin <= line.size() && form_.header != TableForm::Header::Comment)
-            report(static_cast<int>(begin) + 1, "", "has too many fields; " + count);
+        if (fields.size() > fields_ && form_.header != TableForm::Header::Comment)
+            report(static_cast<int>(fields[fields_].first) + 1, "", "has too many fields; " + count);
         return diagnostics_.size() == before;
     }
 
@@ -118,20 +134,24 @@ private:
         return next == line.npos ? line.size() + 1 : next;
     }
 
-    /** Returns a header without spaces, and without the units in brackets. */
-    static std::string namesIn(std::string_view line) {
-        std::string names;
+    /** Returns the names of a header without spaces, quotes, the units in brackets and the mark of a comment. */
+    static std::vector<std::string> namesIn(std::string_view line) {
+        std::vector<std::string> names(1);
         bool is_unit = false;
-        for (const char c : line) {
+        for (const char c : trimmed(line)) {
             is_unit |= c == '[';
-            if (!is_unit && c != ' ' && c != '\t' && c != '\r') names += c;
+            if (c == ',' && !is_unit)
+                names.emplace_back();
+            else if (!is_unit && std::string_view(" \t\r\"#").find(c) == std::string_view::npos)
+                names.back() += c;
             is_unit &= c != ']';
         }
         return names;
     }
 
     void readNumber(std::string_view field, int place, const CsvColumn& column, double& value) {
-        const std::string_view text = trimmed(field);
+        std::string_view text = trimmed(field);
+        if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
         const auto [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
         const bool is_number = code == std::errc() && stop == text.data() + text.size() && std::isfinite(value);
         if (is_number && value >= column.min && value <= column.max) return;
@@ -147,6 +167,8 @@ private:
     const TableForm& form_;
     const std::vector<CsvColumn>& columns_;
     const CsvValidator& validate_;
+    size_t fields_;                          ///< Of a line.
+    std::vector<size_t> order_;              ///< The field of each column.
     std::vector<std::vector<double>> rows_;  ///< Rows of valid numbers, with or without errors from `validate_`.
     Diagnostics diagnostics_;
     int line_number_ = 0;
@@ -178,6 +200,7 @@ std::vector<std::vector<double>> readTable(const std::filesystem::path& file,
     if (!stream || std::filesystem::is_directory(file))
         throw ConfigError(file.string(), "", "cannot be read" + permissionReason(errno) + "; it " + wanted());
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (isUtf16(text)) throw ConfigError(file.string(), "", utf16_refusal);
     const std::string_view content = std::string_view(text).substr(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
     const TableForm written = form(content);
     return Reader(file.string(), written, validate).read(content, minimum);

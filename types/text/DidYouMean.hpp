@@ -24,6 +24,10 @@ inline std::string lowered(std::string text) {
     return text;
 }
 
+/** Returns whether a file's text begins with a mark of UTF-16, as some programs on Windows save it. */
+constexpr bool isUtf16(std::string_view text) { return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"); }
+constexpr const char* utf16_refusal = "is text in UTF-16; save it as UTF-8";
+
 /** Returns a text such as "did you mean range? " for a name that is close to a name in `known`, else empty. A name is
  *  close if at most a third of its letters are missing, added, changed or swapped with a neighbour, ignoring case; a
  * name of three letters or fewer must also begin with the same letter. A part of exactly one known name is close, too.

@@ -36,12 +36,14 @@ def _whole(name: str, number) -> None:
         raise ValueError(f"{name}: is {number!r}; must be a whole number from 1")
 
 
-def _check(start, max_steps: int, floor_db: float, **from_0: float) -> None:
+def _check(start, max_steps: int, floor_db: float, reward, **from_0: float) -> None:
     if not isinstance(start, Pose):
         raise TypeError(f"start: is a {type(start).__name__}; must be an insonify.Pose")
     _whole("max_steps", max_steps)
     if not -np.inf < floor_db < 0:
         raise ValueError(f"floor_db: is {floor_db!r}; must be a number below 0")
+    if reward is not None and not callable(reward):
+        raise TypeError(f"reward: is {reward!r}; must be a function")
     for name, number in from_0.items():
         if not 0 <= number < np.inf:
             raise ValueError(f"{name}: is {number!r}; must be a number from 0")
@@ -139,7 +141,7 @@ class SonarEnv(gymnasium.Env):
         reward: Callable[[Ping, Pose, Pose], float] | None = None,
         render_mode: str | None = None,
     ) -> None:
-        _check(start, max_steps, floor_db, max_speed=max_speed, max_turn=max_turn, scatter=scatter, collision_range=collision_range)
+        _check(start, max_steps, floor_db, reward, max_speed=max_speed, max_turn=max_turn, scatter=scatter, collision_range=collision_range)
         self.render_mode = render_mode
         self._made_of = (str(deployment), dict(overrides or {}))
         self._start, self._scatter, self._period = start, scatter, period
@@ -218,7 +220,7 @@ class SonarVectorEnv(gymnasium.vector.VectorEnv):
         stack: int = 1,
         reward: Callable[[Pings, np.ndarray, np.ndarray], np.ndarray] | None = None,
     ) -> None:
-        _check(start, max_steps, floor_db, max_speed=max_speed, max_turn=max_turn, scatter=scatter, collision_range=collision_range)
+        _check(start, max_steps, floor_db, reward, max_speed=max_speed, max_turn=max_turn, scatter=scatter, collision_range=collision_range)
         self.num_envs = num_envs
         self._start, self._scatter, self._period = start, scatter, period
         self._speeds = np.array([max_speed, max_speed, max_speed, max_turn])

@@ -21,7 +21,7 @@
 namespace insonify::study {
 namespace {
 
-struct Options {
+struct ErrorCommandOptions {
     std::string deployment, out;
     std::vector<std::string> scenes;
     uint64_t ping = 1;
@@ -71,7 +71,7 @@ StudyScene studied(const std::string& file, const deployer::SonarAt& sonar) {
     return {getName(file), file, plain(sonar.config, file), sonar.snapshot, {}};
 }
 
-std::vector<StudyScene> makeScenes(const Options& options) {
+std::vector<StudyScene> makeScenes(const ErrorCommandOptions& options) {
     const std::vector<std::string> names = sceneNames();
     for (const std::string& name : options.scenes)
         if (std::ranges::count(names, name) == 0)
@@ -157,7 +157,7 @@ Json toJson(const ErrorResult& result) {
     return json;
 }
 
-int runStudy(Options options) {
+int runStudy(ErrorCommandOptions options) {
     const std::vector<StudyScene> scenes = makeScenes(options);
     console::OutputFolder folder(options.out, "study_error");
     console::StudyProgress progress(!options.quiet, scenes.size());
@@ -191,7 +191,7 @@ int runStudy(Options options) {
 }  // namespace
 
 void addErrorStudy(CLI::App& study, console::Action& action) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ErrorCommandOptions>();
     CLI::App* command = study.add_subcommand("error", "Error against run time, for each way to estimate an echo");
     command->add_option(
         "DEPLOYMENT", options->deployment,

@@ -67,11 +67,12 @@ int runFit(const FitOptions& options) {
     const RecordingFit fit = fitRecording(recorded, std::move(at.chain), options.scene_is == "rough",
                                           [&](const std::string& doing) { progress(doing); });
     progress.end();
-    const std::vector<std::string> head{"Fitted by insonify fit to " +
-                                            fs::path(recorded.front().file).filename().string() +
-                                            fmt::format(": {} pings.", recorded.size()),
-                                        "Intervals are of 95 %. Properties that the recording does not determine have "
-                                        "values consistent with the others."};
+    const std::vector<std::string> head{
+        "Fitted by insonify fit to " + fs::path(recorded.front().file).filename().string() +
+            (recorded.front().is_waterfall ? fmt::format(": {} lines.", recorded.front().beam_count)
+                                           : fmt::format(": {} pings.", recorded.size())),
+        "Intervals are of 95 %. Properties that the recording does not determine have "
+        "values consistent with the others."};
     std::vector<deployer::CommentedSetting> settings;
     for (const FitSetting& each : getSettings(fit, at.tasks)) settings.push_back({each.path, each.value, each.comment});
     std::ofstream file(options.out, std::ios::binary);

@@ -221,6 +221,7 @@ int runStudy(const LikenessOptions& options) {
         ofOneKind(recordedPings(options.real, law ? &*law : nullptr, readLog), options.side);
     std::optional<CodedPing> simulated;
     if (law) simulated = simulatedLike(recorded.front(), options);
+    if (simulated) simulated->file = options.deployment;
     const LikenessResult result = studyLikeness(recorded, simulated ? &*simulated : nullptr);
     console::OutputFolder folder(options.out, "study_likeness");
     folder.keep();

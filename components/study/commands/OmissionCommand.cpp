@@ -327,7 +327,7 @@ namespace {
 
 using console::Json;
 
-struct Options {
+struct OmissionOptions {
     std::string deployment, out;
     uint64_t ping = 1;
     int pings = 30;
@@ -373,7 +373,7 @@ std::string sheet(const std::string& deployment, const std::vector<OmissionRow>&
     return text;
 }
 
-int runStudy(const Options& options) {
+int runStudy(const OmissionOptions& options) {
     const deployer::SonarAt sonar = deployer::sonarAt(options.deployment, options.ping);
     console::OutputFolder folder(options.out, "study_omission");
     console::StudyProgress progress(!options.quiet);
@@ -395,7 +395,7 @@ int runStudy(const Options& options) {
 }  // namespace
 
 void addOmissionStudy(CLI::App& study, console::Action& action) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<OmissionOptions>();
     CLI::App* command = study.add_subcommand("omission", "Bins and time with and without each omission of the plan");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file whose sonar and scene are studied")->required();
     command->add_option("--out", options->out, "folder of omission.md and omission.json");

@@ -13,7 +13,7 @@
 namespace insonify::study {
 namespace {
 
-struct Options {
+struct RaysOptions {
     std::string deployment;
     uint64_t ping = 1;
     int pings = 30;
@@ -59,7 +59,7 @@ RayTimes timeRays(const sonar::SonarConfig& config, const types::Snapshot& scene
     return result;
 }
 
-int runStudy(const Options& options) {
+int runStudy(const RaysOptions& options) {
     const deployer::SonarAt sonar = deployer::sonarAt(options.deployment, options.ping);
     const RayTimes times = timeRays(sonar.config, sonar.snapshot, options.pings);
     console::print({{"rays", times.rays},
@@ -74,7 +74,7 @@ int runStudy(const Options& options) {
 }  // namespace
 
 void addRaysStudy(CLI::App& study, console::Action& action) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RaysOptions>();
     CLI::App* command =
         study.add_subcommand("rays", "Times ray tracing (Embree) with the number of rays of a sonar's quality");
     command->group("");  // not documented

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "components/output/PictureFiles.hpp"
+#include "types/text/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {
@@ -283,7 +284,11 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 Looks computeLooks(const CodedPing& ping) {
     if (ping.beam_count < 2 * patch || ping.bin_count < 4 * patch)
-        throw std::invalid_argument(ping.name + " has too few beams or bins for these statistics");
+        throw types::ConfigError(
+            ping.file, ping.name,
+            fmt::format("has {} beams (or lines) x {} bins; these statistics need at least {} x {}, of a sonar of the "
+                        "recording's kind",
+                        ping.beam_count, ping.bin_count, 2 * patch, 4 * patch));
     Looks looks;
     const Picture picture(ping);
     addCodes(ping, looks);

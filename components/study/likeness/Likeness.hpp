@@ -77,7 +77,7 @@ struct LikenessResult {
 };
 
 /** Compares pings. @param simulated null: only the recordings and the wrong pictures
- *  @throws std::invalid_argument if a ping has too few beams or bins */
+ *  @throws types::ConfigError if a ping has too few beams or bins */
 LikenessResult studyLikeness(const std::vector<CodedPing>& recorded, const CodedPing* simulated);
 
 /** The name and the value of a statistic in a row of likeness.csv. */

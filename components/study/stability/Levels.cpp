@@ -82,7 +82,7 @@ Outcome twoMegahertz(int bins, bool in_coarse_bins) {
             worst, echoes.isSound() && reported && worst <= bound ? Verdict::Pass : Verdict::Fail};
 }
 
-Outcome gain(double gain_db, double tolerance) {
+Outcome gain(double gain_db, double bound) {
     receiver::ReceiverConfig config;
     config.tvg = {.log_coefficient = 1000, .db_per_m = 1000, .max_db = gain_db};
     const Probe echoes = probe(fan(60, 40, 8, 20), lookingAt(makeScene({levelGround(-5)})));
@@ -95,7 +95,7 @@ Outcome gain(double gain_db, double tolerance) {
         worst = std::max(
             worst, off(ping.bins[i], std::min(echoes.ping.bins[i] * factor, echoes.ping.bins[i] > 0 ? ceiling : 0)));
     return within(
-        tolerance, receiver.notices().empty() ? INFINITY : worst,
+        bound, receiver.notices().empty() ? INFINITY : worst,
         fmt::format("a gain of {} dB: clamped there, and reported; intensities at most the max float", gain_db),
         echoes);
 }
