@@ -276,6 +276,10 @@ scene::WorldSonars sonarsIn(const Asked& asked) {
     std::string others;
     for (size_t i = 0; i < std::min<size_t>(found.others.size(), 8); ++i)
         others += (i == 0 ? "; its sensors are " : ", ") + found.others[i];
+    // A world that libsdformat refuses is read without its sensors, and the notice says why.
+    const auto why = std::ranges::find_if(
+        found.notices, [](const std::string& text) { return text.starts_with("read without what a sonar"); });
+    if (why != found.notices.end()) others += "; it is " + *why;
     throw types::ConfigError(asked.world, "",
                              "has no sonar, <sensor type=\"custom\" gz:type=\"insonify\"> (Fortress: ignition:type)" +
                                  (others.empty() ? ", and no other sensor" : others));

@@ -41,7 +41,7 @@ std::string loggedPings(const framework::Deployment& deployment) {
     for (const framework::Connection& connection : deployment.connections()) {
         const framework::TaskSpec* const reader = deployment.spec().task(connection.to->owner().name());
         if (reader && reader->type == "logger::LoggerTask" &&
-            connection.from->typeName() == framework::typeName<types::Sonar>())
+            connection.from->typeName() == framework::typeName<types::Sonar>() && connection.from->written() > 0)
             stream = framework::streamName(*connection.from).path();
     }
     return stream;

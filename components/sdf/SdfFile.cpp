@@ -79,10 +79,10 @@ private:
         for (std::string word; words >> word;) {
             if (!std::isnan(toNumber(word))) continue;
             faults.push_back({getPath(element),
-                               fmt::format("is \"{}\": {} is no finite number; must be numbers such as 0.5, divided by "
-                                           "blanks",
-                                           element.GetText(), word),
-                               file_, element.GetLineNum()});
+                              fmt::format("is \"{}\": {} is no finite number; must be numbers such as 0.5, divided by "
+                                          "blanks",
+                                          element.GetText(), word),
+                              file_, element.GetLineNum()});
             return;
         }
     }
@@ -161,8 +161,8 @@ private:
 };
 
 /** Follows the includes of an SDF file, and returns what is wrong in the numbers of included files. Throws
- *  types::ConfigError for numbers of the file itself, and where libsdformat would overflow its stack or run for minutes:
- *  at a model that includes itself, and beyond the max work. */
+ *  types::ConfigError for numbers of the file itself, and where libsdformat would overflow its stack or run for
+ * minutes: at a model that includes itself, and beyond the max work. */
 types::Diagnostics checkIncludes(const std::filesystem::path& file, const meshes::ModelPaths& paths) {
     Includes includes(paths);
     if (includes.measureWork(std::filesystem::canonical(file)) <= max_sdf_work) return includes.faults;

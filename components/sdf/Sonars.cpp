@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <sdf/Element.hh>
 #include <sdf/Joint.hh>
@@ -81,6 +82,8 @@ public:
             addModel(model, "");
         }
         if (!diagnostics_.empty()) throw types::ConfigError(std::move(diagnostics_));
+        if (found_.sonars.empty())
+            std::ranges::move(types::lines(builder.notices()), std::back_inserter(found_.notices));
         return std::move(found_);
     }
 

@@ -259,6 +259,11 @@ TEST(SupervisionTest, APlaceThatCannotBeUsedIsRefused) {
     for (const char* port : {"0", "65536", "99999999999", "localhost:80", "1.2.3:80", ":80"})
         EXPECT_THAT(refused(port), isRefused(HasSubstr("--health: is " + std::string(port) + "; may be a file, or ")));
     EXPECT_THAT(refused("nowhere/x.json"), isRefused(HasSubstr("which cannot be written: No such file")));
+    fs::create_symlink("target.json", folder / "link.json");
+    for (const char* other : {"/dev/null", "link.json"}) {
+        EXPECT_THAT(refused(other), isRefused(HasSubstr("it is no regular file")));
+        EXPECT_FALSE(fs::is_regular_file(fs::symlink_status(fs::path(folder.path()) / other))) << "it is not replaced";
+    }
     EXPECT_THAT(refused("."), isRefused(HasSubstr("which cannot be written")));
     EXPECT_THAT(refused("192.0.2.1:8080"), isRefused(HasSubstr("where no requests can be taken: ")));
     const uint16_t port = freePort();

@@ -305,6 +305,8 @@ TEST_F(GazeboSensorTest, WrongSensorsAreRefusedWithTheirPlace) {
         {"<sensor name='c' type='camera'><camera/></sensor>",
          "has no sonar, <sensor type=\"custom\" gz:type=\"insonify\">"},
         {"<sensor name='c' type='custom' gz:type='odometer'/>", "its sensors are red::hull::c (odometer)"},
+        {sensor("fls", properties, "<update_rate>ten</update_rate>"), "Unable to set value [ten"},
+        {sensor("fls", properties, "<pose>nan 0 0 0 0 0</pose>" + rate), "has no sonar"},
         {"", "has no sonar"}};
     for (const auto& [elements, message] : wrong) EXPECT_THAT(call(worldWith(elements)), isRefused(HasSubstr(message)));
     EXPECT_THAT(call("<sdf version='1.9'><model name='m'><link name='l'/></model></sdf>"),
