@@ -260,7 +260,7 @@ public:
         if constexpr (std::is_same_v<T, types::Pose>)
             log.forEach<T>(stream, [this](const T& pose, const SampleRef&) {
                 const auto& [v, w] = std::tie(pose.velocity, pose.angular_velocity);
-                has_velocity_ |= !std::isnan(v.x + v.y + v.z) || !std::isnan(w.x + w.y + w.z);
+                for (const double each : {v.x, v.y, v.z, w.x, w.y, w.z}) has_velocity_ |= !std::isnan(each);
             });
     }
     void forEach(const T& sample, auto&& visit) const {

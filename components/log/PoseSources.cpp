@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <map>
 #include <set>
 
@@ -160,18 +161,25 @@ std::vector<types::Attitude> findAttitudes(Reader& log, const std::string& sourc
 types::Notices renamePoses(Reader& log, const PoseSource& asked, size_t stream) {
     const size_t count = log.streams()[stream].count;
     types::Pose pose;
+    std::exception_ptr undecodable;  // the first
     log.keepSamples(stream, [&](SampleRef& at) {
-        log.read(at, pose);
+        try {
+            log.read(at, pose);
+        } catch (const types::ConfigError&) {
+            if (!undecodable) undecodable = std::current_exception();
+            return false;
+        }
         at.time = types::sampleTime(pose, at.time);
         return types::isUsable(pose);
     });
     const size_t kept = log.streams()[stream].count;
+    if (kept == 0 && undecodable) std::rethrow_exception(undecodable);
     if (kept == 0) refuseSource(log, asked, "has no pose that is finite and has an orientation");
     log.rename(stream, asked.stream);
     if (kept == count) return {};
     return {types::warning(
-        fmt::format("{} of {} poses of {} are omitted: they are not finite, or their orientation has no length",
-                    count - kept, count, asked.source))};
+        fmt::format("{} of {} poses of {} are omitted: they are not finite, or their orientation has no length{}",
+                    count - kept, count, asked.source, undecodable ? ", or their messages cannot be decoded" : ""))};
 }
 
 /** Follows one frame in another through a log. */

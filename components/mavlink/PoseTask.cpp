@@ -43,7 +43,8 @@ bool PoseTask::startHook() {
     network_->take();  // drops datagrams from before the start
     peers_.clear();
     requested_ = {};
-    has_written_ = false;
+    has_written_ = silence_is_reported_ = false;
+    heard_.clear();
     outputs_.forEach([this](auto& output) {
         output.kept.body = std::make_unique<Body>(*findEntry(output.port.name()), config->origin);
     });
@@ -81,6 +82,25 @@ void PoseTask::take(const Frame& frame, device::Client client) {
         output.port.write(*taken.pose);
     });
     if (is_wanted && !is_of_one) others_.add(toText(frame));
+    if (frame.message == Heartbeat::kind.message && !has_written_ && !silence_is_reported_ && others_.summary().empty())
+        noteSilence(frame.system, frame.component);
+}
+
+void PoseTask::noteSilence(uint8_t system, uint8_t component) {
+    constexpr types::Time patience{5'000'000};
+    bool is_ours = false;
+    outputs_.forEach([&](auto& output) {
+        const Body& body = *output.kept.body;
+        is_ours |= body.config().system_id == system && body.missing(now()).size() == 2 &&
+                   body.config().component_id.value_or(component) == component;
+    });
+    if (!is_ours) return;
+    const types::Time first = heard_.try_emplace(system, now()).first->second;
+    silence_is_reported_ = types::elapsed(first, now()) > patience;
+    if (silence_is_reported_)
+        warn("system " + std::to_string(system) + " sends HEARTBEAT, but neither " + AttitudeQuaternion::name +
+             " nor " + LocalPositionNed::name +
+             (config->request ? ", although they are requested" : "; set `request`, or the rates of its streams"));
 }
 
 void PoseTask::request(types::Time now) {

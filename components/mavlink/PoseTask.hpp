@@ -46,6 +46,8 @@ private:
     void take(const device::NetworkEvent& event);
     void take(const Frame& frame, device::Client client);
     void request(types::Time now);
+    /** Warns of a vehicle that sends heartbeats, and no pose comes from any system. */
+    void noteSilence(uint8_t system, uint8_t component);
     void requestFor(const Body& body, device::Client client, types::Time now);
     /** Sends a message as a ground station. */
     void send(const auto& message, device::Client client);
@@ -55,7 +57,8 @@ private:
     std::map<device::Client, uint8_t>
         peers_;  ///< Senders of frames, and the sequence number of the next frame to them.
     types::Time requested_;
-    bool has_written_ = false;
+    std::map<uint8_t, types::Time> heard_;  ///< The first heartbeat of each system.
+    bool has_written_ = false, silence_is_reported_ = false;
 };
 
 /** Registers the tasks of this folder. */

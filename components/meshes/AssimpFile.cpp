@@ -176,7 +176,9 @@ void checkBegin(const std::filesystem::path& file) {
     stream.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<size_t>(stream.gcount()));
     if (types::isUtf16(head)) throw std::runtime_error(std::string("it ") + types::utf16_refusal);
-    if (scene::getExtension(file) != ".stl" || head.size() < head_size || head.find('\0') == head.npos) return;
+    if (scene::getExtension(file) != ".stl" || head.size() < head_size || head.find('\0') == head.npos ||
+        head.starts_with("solid"))
+        return;
     uint32_t count;
     std::memcpy(&count, head.data() + 80, sizeof count);
     const uintmax_t size = std::filesystem::file_size(file), needed = head_size + uintmax_t{count} * triangle_size;

@@ -399,7 +399,7 @@ std::string SceneTask::staleness() const {
     const auto text = [this](const auto& port, types::Time newest, types::Time arrived) {
         const double behind = (arrived - newest).seconds();
         const bool arrives =
-            types::elapsed(arrived, now()).seconds() <= poseTimeout() && std::abs(behind) > poseTimeout();
+            types::elapsed(arrived, now()).seconds() <= poseTimeout() && 2 * std::abs(behind) > poseTimeout();
         return fmt::format("{}: no pose in the last {:g} s (pose_timeout){}", port.path(), poseTimeout(),
                            arrives
                                ? fmt::format("; the poses that arrive have stamps {:.3g} s {} this clock; if they "

@@ -52,7 +52,7 @@ bool isNeedless(std::string_view element) {
 class Work final : public tinyxml2::XMLVisitor {
 public:
     explicit Work(const std::string& xml, std::string file) : file_(std::move(file)) {
-        if (types::isUtf16(xml)) throw types::ConfigError(file_, "", types::utf16_refusal);
+        if (types::isUtf16(xml)) faults.push_back({"", types::utf16_refusal, file_, 0});
         tinyxml2::XMLDocument document(true, tinyxml2::COLLAPSE_WHITESPACE);  // as libsdformat reads it
         if (document.Parse(xml.data(), xml.size()) == tinyxml2::XML_SUCCESS) document.Accept(this);
     }
@@ -71,12 +71,13 @@ private:
     }
     /** Checks the numbers of a pose or shape: libsdformat ends reading at the first that is none. */
     void checkNumbers(const tinyxml2::XMLElement& element) {
-        static const std::set<std::string_view> names = {"pose",   "size",   "scale",       "radius",
-                                                         "length", "normal", "model_count", "radii"};
+        static const std::set<std::string_view> names = {"pose",   "size",        "scale", "radius", "length",
+                                                         "normal", "model_count", "radii", "pos"};
         constexpr size_t max_reports = 20;
         if (!names.contains(element.Name()) || !element.GetText() || faults.size() == max_reports) return;
         std::istringstream words(element.GetText());
         for (std::string word; words >> word;) {
+            if (std::string_view(element.Name()) == "pose" && word.ends_with(',')) word.pop_back();  // is read right
             if (!std::isnan(toNumber(word))) continue;
             faults.push_back({getPath(element),
                               fmt::format("is \"{}\": {} is no finite number; must be numbers such as 0.5, divided by "
@@ -93,7 +94,8 @@ private:
         amount += 1 + parts * parts / 2000;
         const tinyxml2::XMLElement* uri = element.FirstChildElement("uri");
         if (std::string_view(element.Name()) == "include" && uri && uri->GetText()) included.push_back(uri->GetText());
-        if (within_ || isNeedless(element.Name()))
+        const std::string_view name = element.Name();  // a texture's <normal> is a file
+        if (within_ || isNeedless(name) || name == "texture" || name.find(':') != name.npos)
             ++within_;
         else
             checkNumbers(element);
@@ -593,10 +595,8 @@ std::string CerrCapture::take() {
         throw types::ConfigError(file.string(), "",
                                  "is not a file; give the path of a " + scene::sceneEndings("sdf") + " file");
     Reading reading(file, builder, text);
-    for (const types::Diagnostic& fault : checkIncludes(file, builder.paths())) {
-        reading.unreadable.insert(fault.file);
-        builder.notice(fault.text() + "; the model is omitted");
-    }
+    for (const types::Diagnostic& fault : checkIncludes(file, builder.paths()))
+        builder.notice(fault.text() + "; of such a model the number is cut there, or the model is omitted");
     while (true) {
         const SearchConfig search(file, builder.paths(), reading.unreadable, reading.models);
         ::sdf::Root root;

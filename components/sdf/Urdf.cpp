@@ -205,8 +205,8 @@ private:
         size_t good = 0, all = 0;
         std::string joined;
         for (std::string word; words >> word; ++all) {
-            if (word.front() == '+') word.erase(0, 1);
             const double number = toNumber(word);
+            if (word.front() == '+') word.erase(0, 1);
             good += !std::isnan(number) && (sign == Any || number >= 0) ? 1 : 0;
             joined += (joined.empty() ? "" : " ") + word;
         }

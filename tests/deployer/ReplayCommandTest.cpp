@@ -93,6 +93,21 @@ TEST(ReplayCommandTest, TheOnlyPosesOfAForeignBagDriveTheSonar) {
     }
 }
 
+TEST(ReplayCommandTest, APoseThatCannotBeDecodedIsOmittedAndTheOthersDriveTheSonar) {
+    const WallFolder folder;
+    insonify::test::Bag bag = approach(false);
+    bag.cut(2, 40);
+    bag.writeMcap(folder / "bag.mcap");
+    const Outcome outcome = callInsonify(folder, {"replay", "bag.mcap", "wall.yml", "--out", "again"});
+    ASSERT_THAT(outcome, succeeds());
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 of 5 poses of /odom are omitted"), HasSubstr("cannot be decoded")));
+    EXPECT_EQ(wallRanges(folder, "again/wall.0.log"), "[10, 9, 7, 6]\n");
+    for (size_t i = 0; i < 5; ++i) bag.cut(i, 40);
+    bag.writeMcap(folder / "all.mcap");
+    EXPECT_THAT(callInsonify(folder, {"replay", "all.mcap", "wall.yml", "--out", "none"}),
+                isRefused(HasSubstr("the message ends within")));
+}
+
 TEST(ReplayCommandTest, OneOfSeveralSourcesOfPosesIsChosen) {
     const WallFolder folder;
     approach(true).writeMcap(folder / "bag.mcap");

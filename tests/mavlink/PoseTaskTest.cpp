@@ -1,8 +1,10 @@
 // Vehicles by PyPI's pymavlink, and the task that reads their poses.
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "components/mavlink/PoseTask.hpp"
 #include "tests/mavlink/Vehicle.hpp"
@@ -76,6 +78,19 @@ TEST_F(PoseTaskTest, RequestsPosesFromAVehicleThatOnlySendsHeartbeats) {
     startWith([](PoseConfig& config) { config.request = {.rate = 50}; });
     const Vehicle vehicle(task.port(), "heartbeat");
     expectPoses(25);
+}
+
+TEST_F(PoseTaskTest, AVehicleThatOnlySendsHeartbeatsIsReportedWithTheRemedy) {
+    std::atomic<bool> is_reported{false};
+    task.environment().warn = [&](const std::string& text) {
+        is_reported =
+            is_reported || text.find(
+                               "system 1 sends HEARTBEAT, but neither ATTITUDE_QUATERNION nor LOCAL_POSITION_NED; set "
+                               "`request`, or") != std::string::npos;
+    };
+    startWith();
+    const Vehicle vehicle(task.port(), "heartbeat");
+    EXPECT_TRUE(becomesTrue([&] { return is_reported.load(); }));
 }
 
 TEST_F(PoseTaskTest, ReportsDamageAndReadsTheFramesBetween) {

@@ -35,6 +35,14 @@ TEST_F(SdfBadInputTest, ReportsFilesThatAreNotSdf) {
 TEST_F(SdfBadInputTest, ReportsAnUnreadableValueWithItsLineAndReason) {
     expectDiagnostic(diagnosticOfWorld("<model name='m'>\n" + pose("1 2 x 0 0 0") + "<link name='l'/></model>"),
                      "case.world:3: m.pose: is \"1 2 x 0 0 0\": x is no finite number; must be numbers");
+    // Commas behind the numbers of a pose, and texts that are no numbers, are read as before.
+    EXPECT_EQ(diagnosticOfWorld("<model name='m'>" + pose("1, 2, 3, 0, 0, 0") + "<link name='l'/></model>"), "");
+    EXPECT_EQ(diagnosticOfWorld(model("m", "<box><size>1 2 3</size><my:size>large</my:size></box>")), "");
+    EXPECT_EQ(diagnosticOfWorld(model("m",
+                                      "<heightmap><uri>h.png</uri><texture><size>1</size><normal>flat.png</normal>"
+                                      "</texture></heightmap>"))
+                  .find("finite"),
+              std::string::npos);
     // libsdformat reads 0 of it.
     for (const char* const shape : {"<sphere><radius>0,5</radius></sphere>", "<box><size>1 2,5 3</size></box>",
                                     "<cylinder><radius>1m</radius><length>2</length></cylinder>"})

@@ -26,6 +26,8 @@ public:
         order_.push_back({topic, received.microseconds * 1000, {}});
         ros::encode(message, order_.back().bytes);
     }
+    /** Damages a message: it keeps only its first bytes. */
+    void cut(size_t number, size_t bytes) { order_.at(number).bytes.resize(bytes); }
     void writeMcap(const std::filesystem::path& path) const {
         log::mcap::ChunkWriter out(path);
         std::map<std::string, uint16_t> channels;

@@ -52,6 +52,8 @@ TEST(CsvTest, ColumnsMayBeInAnyOrderAmongOthers) {
                     "4:5: time: is '+-1'; it must be a finite number", "5:7: : has too many fields; a line has 3"));
     EXPECT_THAT(findDiagnostics("time,time,level_db\n0,0,0\n"),
                 ElementsAre("1:1: : is 'time,time,level_db'; the header must have time,level_db"));
+    EXPECT_THAT(findDiagnostics("time [ms],level_db\n0,0\n"),
+                ElementsAre("1:1: : is 'time [ms],level_db'; the header must have time,level_db"));
     std::mt19937 engine(1);
     for (int draw = 0; draw < 100; ++draw) {
         std::vector<std::string> names{"time", "level_db", "a", "b", "c"};

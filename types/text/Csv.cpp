@@ -78,7 +78,7 @@ private:
         if (has_header_ && is_commented && trimmed(line).front() == '#') return;
         if (has_header_) return readRow(line);
         has_header_ = true;
-        const std::vector<std::string> names = namesIn(line);
+        const std::vector<std::string> names = namesIn(line, is_commented);
         fields_ = names.size();
         for (size_t i = 0; i < columns_.size(); ++i) {
             const auto found = std::ranges::find(names, columns_[i].name);
@@ -134,15 +134,17 @@ private:
         return next == line.npos ? line.size() + 1 : next;
     }
 
-    /** Returns the names of a header without spaces, quotes, the units in brackets and the mark of a comment. */
-    static std::vector<std::string> namesIn(std::string_view line) {
+    /** Returns the names of a header without spaces and quotes; of a commented one without its mark and the units in
+     *  brackets, which are those of its format. */
+    static std::vector<std::string> namesIn(std::string_view line, bool is_commented) {
         std::vector<std::string> names(1);
         bool is_unit = false;
         for (const char c : trimmed(line)) {
-            is_unit |= c == '[';
+            is_unit |= is_commented && c == '[';
             if (c == ',' && !is_unit)
                 names.emplace_back();
-            else if (!is_unit && std::string_view(" \t\r\"#").find(c) == std::string_view::npos)
+            else if (!is_unit &&
+                     std::string_view(is_commented ? " \t\r\"#" : " \t\r\"").find(c) == std::string_view::npos)
                 names.back() += c;
             is_unit &= c != ']';
         }

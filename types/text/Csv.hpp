@@ -29,8 +29,8 @@ using CsvValidator =
 struct TableForm {
     std::vector<CsvColumn> columns;
     /** Where the names of the columns are: in the first line, in the first line as a comment, as "#time, x [m]", or
-     *  nowhere. They may be in any order, with units in brackets and with names of other columns, which are not used.
-     *  Lines that begin with # are comments, except in the first. */
+     *  nowhere. They may be in any order and with names of other columns, which are not used; a comment's names may
+     * have units. Lines that begin with # are comments, except in the first. */
     enum class Header : uint8_t { Line, Comment, None } header = Header::Line;
     char separator = ',';  ///< A space: fields are separated by spaces and tabs.
 };
