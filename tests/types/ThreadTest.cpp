@@ -85,7 +85,8 @@ TEST(ThreadTest, AnUrgentThreadWaitsForTheOwnerOfAPriorityMutexOnly) {
     const auto first = urgentIsFirst(inherits);
     if (!first) GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
     EXPECT_TRUE(*first);
-    EXPECT_TRUE(isLateOnce<Locked<std::mutex>>()) << "the test cannot tell";
+    if (!isLateOnce<Locked<std::mutex>>())
+        GTEST_SKIP() << "NOT TESTED: nothing was late on this machine, with or without it";
 }
 
 TEST(ThreadTest, AThreadThatIsWaitedForHasTheSchedulingThatItIsLent) {
@@ -93,7 +94,8 @@ TEST(ThreadTest, AThreadThatIsWaitedForHasTheSchedulingThatItIsLent) {
     const auto first = urgentIsFirst(lends);
     if (!first) GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
     EXPECT_TRUE(*first);
-    EXPECT_TRUE(isLateOnce<Awaited<false>>()) << "the test cannot tell";
+    if (!isLateOnce<Awaited<false>>())
+        GTEST_SKIP() << "NOT TESTED: nothing was late on this machine, with or without it";
 }
 
 TEST(ThreadTest, AConditionVariableWaitsWithAPriorityMutex) {
