@@ -177,12 +177,6 @@ void refuseUnwritable(const RunOptions& options, const std::string& deployment) 
     for (const auto& [option, file] : {std::pair("--summary", &options.summary), {"--health", &options.health}})
         if (std::error_code none; fs::equivalent(*file, deployment, none))
             throw types::ConfigError(*file, option, "is the deployment itself; give another file");
-    // Its file is replaced by the next one, and with it would be a device or a link. Digits are a port.
-    const bool is_port = options.health.find_first_not_of("0123456789") == std::string::npos;
-    if (std::error_code none; !is_port && fs::exists(fs::symlink_status(options.health, none)) &&
-                              !fs::is_regular_file(fs::symlink_status(options.health, none)))
-        throw types::ConfigError(options.health, "--health",
-                                 "is " + options.health + ", which cannot be written: it is no regular file");
     const fs::path summary_file = options.summary;
     const fs::path folder = summary_file.has_parent_path() ? summary_file.parent_path() : ".";
     const fs::path evaluated = fs::exists(summary_file) ? summary_file : folder;

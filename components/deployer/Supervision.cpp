@@ -91,9 +91,13 @@ void Supervision::listenOn(const std::string& where) {
     const auto address = portIn(where);
     if (!address) {
         file_ = std::filesystem::absolute(where);
+        // Each report replaces the file, and would replace a device or a link.
+        const std::filesystem::file_status state = std::filesystem::symlink_status(file_);
+        if (std::filesystem::exists(state) && !std::filesystem::is_regular_file(state))
+            throw types::ConfigError("", "--health",
+                                     fmt::format("is {}, which cannot be written: it is no regular file", where));
         std::ofstream draft(file_.string() + ".part");
-        if (!draft || std::filesystem::is_directory(file_))
-            refuse(where, "which cannot be written", draft ? EISDIR : errno);
+        if (!draft) refuse(where, "which cannot be written", errno);
         return;
     }
     listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);

@@ -73,7 +73,7 @@ struct Awaited {
 /** Returns whether an urgent thread is late in one of several tries: on a busy machine not in each. */
 template <class Shared>
 bool isLateOnce() {
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 64; ++i) {  // a loaded machine may move the urgent thread in time
         Shared shared;
         if (!*urgentIsFirst(shared)) return true;
     }
@@ -85,8 +85,7 @@ TEST(ThreadTest, AnUrgentThreadWaitsForTheOwnerOfAPriorityMutexOnly) {
     const auto first = urgentIsFirst(inherits);
     if (!first) GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
     EXPECT_TRUE(*first);
-    if (!isLateOnce<Locked<std::mutex>>())
-        GTEST_SKIP() << "NOT TESTED: nothing was late on this machine, with or without it";
+    EXPECT_TRUE(isLateOnce<Locked<std::mutex>>()) << "the test cannot tell";
 }
 
 TEST(ThreadTest, AThreadThatIsWaitedForHasTheSchedulingThatItIsLent) {
@@ -94,8 +93,7 @@ TEST(ThreadTest, AThreadThatIsWaitedForHasTheSchedulingThatItIsLent) {
     const auto first = urgentIsFirst(lends);
     if (!first) GTEST_SKIP() << "SKIPPED: SCHED_FIFO is not permitted";
     EXPECT_TRUE(*first);
-    if (!isLateOnce<Awaited<false>>())
-        GTEST_SKIP() << "NOT TESTED: nothing was late on this machine, with or without it";
+    EXPECT_TRUE(isLateOnce<Awaited<false>>()) << "the test cannot tell";
 }
 
 TEST(ThreadTest, AConditionVariableWaitsWithAPriorityMutex) {
