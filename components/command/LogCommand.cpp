@@ -240,6 +240,8 @@ Paths exportTo(log::Reader& log, LogOptions options) {
     const fs::path to = options.to;
     const log::Stream& stream = log.streams()[log.findIndex(options.stream)];
     options.stream = stream.name;
+    for (const std::string& lost : log.dropDamaged(log.findIndex(options.stream)))
+        console::printDiagnostic("lost: {}\n", lost);
     const ExportFormat* const format = types::findFormat(export_formats, to);
     const std::string_view ending = format ? format->ending : "";
     if (options.ground && ending != ".png") throw types::ConfigError("", "--ground", "is for pictures: --to FILE.png");

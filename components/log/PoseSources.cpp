@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -22,36 +22,41 @@ constexpr std::string_view arrow = "->";
 
 bool hasFixes(const Stream& stream) { return stream.holds<types::Fix>(); }
 
-/** Calls `use(at, message)` for each sample of the streams for which `wanted` is true. Throws ConfigError for a message
- *  that cannot be decoded. */
-template <class Message>
-void forEachMessage(Reader& log, auto&& wanted, auto&& use) {
-    std::vector<bool> is_wanted;
-    for (const Stream& stream : log.streams())
-        is_wanted.push_back(stream.message == Message::type_name && wanted(stream));
-    if (std::ranges::none_of(is_wanted, [](bool each) { return each; })) return;
-    Message message;
-    for (const SampleRef& at : log.samples()) {
-        if (!is_wanted[at.stream]) continue;
-        try {
-            ros::decode(log.toBytes(at), message);
-        } catch (const ros::CdrError& error) {
-            throw types::ConfigError(
-                log.path(), log.streams()[at.stream].name,
-                fmt::format("message {} of the log is not of its type: {}", at.number, error.what()));
+/** Calls `use(at, transform, is_static)` for each transform, those of /tf_static first. Returns what is wrong with the
+ *  messages that cannot be decoded. */
+std::vector<std::string> forEachTransform(Reader& log, auto&& use) {
+    std::vector<std::string> lost;
+    ros::TFMessage message;
+    for (const bool is_static : {true, false})
+        for (const SampleRef& at : log.samples()) {
+            const Stream& stream = log.streams()[at.stream];
+            if (stream.message != ros::TFMessage::type_name || stream.topic.ends_with("tf_static") != is_static)
+                continue;
+            try {
+                ros::decode(log.toBytes(at), message);
+            } catch (const ros::CdrError& error) {
+                lost.push_back(fmt::format("message {} of the log is not of its type: {}", at.number, error.what()));
+                continue;
+            }
+            for (const ros::TransformStamped& transform : message.transforms) use(at, transform, is_static);
         }
-        use(at, std::as_const(message));
-    }
+    return lost;
 }
 
-/** Calls `use(at, transform, is_static)` for each transform, those of /tf_static first. */
-void forEachTransform(Reader& log, auto&& use) {
-    for (const bool is_static : {true, false})
-        forEachMessage<ros::TFMessage>(
-            log, [&](const Stream& stream) { return stream.topic.ends_with("tf_static") == is_static; },
-            [&](const SampleRef& at, const ros::TFMessage& message) {
-                for (const ros::TransformStamped& transform : message.transforms) use(at, transform, is_static);
-            });
+/** @param why of each that is lost */
+types::Notices omissions(const std::vector<std::string>& why, const std::string& of) {
+    if (why.empty()) return {};
+    return {types::warning(
+        fmt::format("messages of {} are omitted: {}, the first because: {}", of, why.size(), why.front()))};
+}
+
+/** Calls dropDamaged(). */
+types::Notices dropDamaged(Reader& log, size_t stream, const std::string& source) {
+    return omissions(log.dropDamaged(stream), source);
+}
+
+void append(types::Notices& notices, types::Notices more) {
+    notices.insert(notices.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
 }
 
 types::Time getStamp(const ros::Time& stamp, types::Time otherwise) {
@@ -144,42 +149,39 @@ std::vector<types::Attitude> readAttitudes(Reader& log, size_t stream) {
     return attitudes;
 }
 
-/** Returns the orientations of a body over time, in their order. */
-std::vector<types::Attitude> findAttitudes(Reader& log, const std::string& source) {
-    const Stream& stream = log.streams()[log.findIndex(source)];
+/** Returns the orientations of a body over time, in their order, and adds to the notices. */
+std::vector<types::Attitude> findAttitudes(Reader& log, const std::string& source, types::Notices& notices) {
+    const size_t index = log.findIndex(source);
+    const Stream& stream = log.streams()[index];
     const auto refuse = [&](const std::string& what) {
         throw types::ConfigError(log.path(), source, "is the orientation, and " + what);
     };
     const auto read = stream.holds<types::Imu>() ? readAttitudes<types::Imu> : readAttitudes<types::Pose>;
     if (!stream.holds<types::Imu>() && !stream.holds<types::Pose>())
         refuse("holds " + stream.type + "; may be a stream of poses or of sensor_msgs/msg/Imu");
-    auto attitudes = read(log, static_cast<size_t>(&stream - log.streams().data()));
+    append(notices, dropDamaged(log, index, source));
+    auto attitudes = read(log, index);
     if (attitudes.empty()) refuse("has none that is known");
     return attitudes;
 }
 
 types::Notices renamePoses(Reader& log, const PoseSource& asked, size_t stream) {
+    types::Notices notices = dropDamaged(log, stream, asked.source);
     const size_t count = log.streams()[stream].count;
     types::Pose pose;
-    std::exception_ptr undecodable;  // the first
     log.keepSamples(stream, [&](SampleRef& at) {
-        try {
-            log.read(at, pose);
-        } catch (const types::ConfigError&) {
-            if (!undecodable) undecodable = std::current_exception();
-            return false;
-        }
+        log.read(at, pose);
         at.time = types::sampleTime(pose, at.time);
         return types::isUsable(pose);
     });
     const size_t kept = log.streams()[stream].count;
-    if (kept == 0 && undecodable) std::rethrow_exception(undecodable);
     if (kept == 0) refuseSource(log, asked, "has no pose that is finite and has an orientation");
     log.rename(stream, asked.stream);
-    if (kept == count) return {};
-    return {types::warning(
-        fmt::format("{} of {} poses of {} are omitted: they are not finite, or their orientation has no length{}",
-                    count - kept, count, asked.source, undecodable ? ", or their messages cannot be decoded" : ""))};
+    if (kept < count)
+        notices.push_back(types::warning(
+            fmt::format("{} of {} poses of {} are omitted: they are not finite, or their orientation has no length",
+                        count - kept, count, asked.source)));
+    return notices;
 }
 
 /** Follows one frame in another through a log. */
@@ -248,22 +250,25 @@ types::Notices followFrames(Reader& log, const PoseSource& asked, types::WorldFr
     });
     Follower follower(getName(asked.source.substr(0, middle)), getName(asked.source.substr(middle + arrow.size())),
                       frame, stamped);
-    forEachTransform(log, [&](const SampleRef& at, const ros::TransformStamped& transform, bool is_static) {
-        follower.add(at, transform, is_static);
-    });
+    const std::vector<std::string> lost =
+        forEachTransform(log, [&](const SampleRef& at, const ros::TransformStamped& transform, bool is_static) {
+            follower.add(at, transform, is_static);
+        });
     follower.take();
     if (follower.made().poses.empty())
-        refuseSource(log, asked, "gives no poses: " + follower.reason() + "; " + choices(log));
+        refuseSource(
+            log, asked,
+            fmt::format("gives no poses: {}; {}", lost.empty() ? follower.reason() : lost.front(), choices(log)));
     Stream stream;
     stream.name = asked.stream;
-    const types::Notices notices = follower.notices();
+    types::Notices notices = omissions(lost, "tf");
+    append(notices, follower.notices());
     log.addPoses(std::move(stream), std::move(follower.made()));
     return notices;
 }
 
-/** Returns what there is to say of fixes that became poses. */
-types::Notices getNotices(Reader& log, const PoseSource& asked, size_t omitted, glm::dvec3 first) {
-    types::Notices notices;
+/** Adds what there is to say of fixes that became poses. */
+void addNotices(Reader& log, const PoseSource& asked, size_t omitted, glm::dvec3 first, types::Notices& notices) {
     if (omitted > 0)
         notices.push_back(
             types::warning(fmt::format("{} messages of {} are omitted: they have no fix", omitted, asked.source)));
@@ -278,7 +283,6 @@ types::Notices getNotices(Reader& log, const PoseSource& asked, size_t omitted, 
     if (glm::length(first) > types::far_from_datum)
         notices.push_back(types::warning(fmt::format("{} begins {:.0f} km from the datum; is that of another place?",
                                                      asked.source, glm::length(first) / 1e3)));
-    return notices;
 }
 
 /** Returns the datum of a source, or else of the world. */
@@ -301,8 +305,9 @@ types::Datum findDatum(Reader& log, const PoseSource& asked, const std::optional
 
 types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream,
                           const std::optional<types::Datum>& world) {
+    types::Notices notices = dropDamaged(log, stream, asked.source);
     std::vector<types::Attitude> attitudes;
-    if (!asked.orientation.empty()) attitudes = findAttitudes(log, asked.orientation);
+    if (!asked.orientation.empty()) attitudes = findAttitudes(log, asked.orientation, notices);
     Reader::MadePoses made;
     std::optional<types::Datum> datum;
     types::Fix fix;
@@ -326,7 +331,8 @@ types::Notices placeFixes(Reader& log, const PoseSource& asked, size_t stream,
     Stream placed;
     placed.name = asked.stream;
     log.addPoses(std::move(placed), std::move(made));
-    return getNotices(log, asked, omitted, first);
+    addNotices(log, asked, omitted, first, notices);
+    return notices;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <exception>
 #include <iterator>
 
 #include "components/log/Stream.hpp"
@@ -78,6 +79,23 @@ void Reader::keepSamples(size_t stream, const std::function<bool(SampleRef&)>& k
             changed.note(at.time), samples_.push_back(at);
 }
 
+std::vector<std::string> Reader::dropDamaged(size_t stream) {
+    std::vector<std::string> lost;
+    std::exception_ptr first;
+    keepSamples(stream, [&](SampleRef& at) {
+        try {
+            verify(at);
+        } catch (const types::ConfigError& error) {
+            if (!first) first = std::current_exception();
+            lost.emplace_back(error.what());
+            return false;
+        }
+        return true;
+    });
+    if (first && streams_[stream].count == 0) std::rethrow_exception(first);
+    return lost;
+}
+
 void Reader::readMade(const SampleRef& at, const MadePoses& made, types::Pose& pose) {
     const MadePose& found = *std::ranges::lower_bound(made.poses, at.number, {}, &MadePose::after);
     pose = {};
@@ -100,9 +118,9 @@ void Reader::readInto(const SampleRef& at, types::SampleRoom room) try {
 } catch (const types::CheckFailure&) {
     throw;
 } catch (const std::runtime_error& error) {
-    failSample(at, error.what());
+    failSample(at, std::string("cannot be decoded: ") + error.what());
 } catch (const std::logic_error& error) {
-    failSample(at, error.what());
+    failSample(at, std::string("cannot be decoded: ") + error.what());
 }
 
 types::SampleView Reader::sampleAt(const SampleRef& at) {

@@ -57,6 +57,9 @@ public:
     void addPoses(Stream stream, MadePoses made);
     /** Keeps those samples of a stream for which `keep` returns true; it may change their times. */
     void keepSamples(size_t stream, const std::function<bool(SampleRef&)>& keep);
+    /** Removes the samples of a stream that cannot be decoded or contradict themselves, and returns why, one text each.
+     *  Throws ConfigError, as verify(), where no sample is left of them. */
+    std::vector<std::string> dropDamaged(size_t stream);
     void rename(size_t stream, const std::string& name) { streams_[stream].name = name; }
 
     /** Decodes one sample into `sample`, reusing its memory. Throws ConfigError for a sample of another type or one

@@ -100,8 +100,13 @@ TEST(ReplayCommandTest, APoseThatCannotBeDecodedIsOmittedAndTheOthersDriveTheSon
     bag.writeMcap(folder / "bag.mcap");
     const Outcome outcome = callInsonify(folder, {"replay", "bag.mcap", "wall.yml", "--out", "again"});
     ASSERT_THAT(outcome, succeeds());
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 of 5 poses of /odom are omitted"), HasSubstr("cannot be decoded")));
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("messages of /odom are omitted: 1, "), HasSubstr("cannot be decoded")));
     EXPECT_EQ(wallRanges(folder, "again/wall.0.log"), "[10, 9, 7, 6]\n");
+    const Outcome exported =
+        callInsonify(folder, {"log", "export", "bag.mcap", "--stream", "/odom", "--to", "again/poses.csv"});
+    ASSERT_THAT(exported, succeeds());
+    EXPECT_THAT(exported.err, AllOf(HasSubstr("lost: "), HasSubstr("cannot be decoded")));
+    EXPECT_EQ(std::ranges::count(readFile(folder / "again/poses.csv"), '\n'), 1 + 4);
     for (size_t i = 0; i < 5; ++i) bag.cut(i, 40);
     bag.writeMcap(folder / "all.mcap");
     EXPECT_THAT(callInsonify(folder, {"replay", "all.mcap", "wall.yml", "--out", "none"}),

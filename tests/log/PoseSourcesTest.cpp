@@ -431,6 +431,43 @@ TEST(PoseSourcesTest, FixesWithoutADatumOrAnOrientationSayWhatIsMissing) {
     });
 }
 
+TEST(PoseSourcesTest, AMessageThatCannotBeDecodedIsOmittedWhateverNeedsIt) {
+    constexpr size_t fix = 0, imu = 1, tf = 2, odometry = 3, count = 4;
+    for (const size_t damaged : {fix, imu, tf, odometry, count}) {
+        SCOPED_TRACE(damaged);
+        test::Bag bag;
+        Draws draws(9);
+        for (int i = 0; i < 6; ++i) {
+            ros::Imu turn;
+            types::Imu level;
+            level.orientation = draws.turn();
+            ros::convert(level, types::WorldFrame::Enu, "imu", turn);
+            ros::Odometry pose;
+            ros::convert(draws.pose(i), types::WorldFrame::Enu, pose);
+            bag.add("/fix", seconds(i), fixAt(i, 54.5, 10.25, i));
+            bag.add("/imu", seconds(i), turn);
+            bag.add("/tf", seconds(i), ros::TFMessage{{makeTransform("map", "base", draws.pose(i))}});
+            bag.add("/odom", seconds(i), pose);
+        }
+        if (damaged < count) bag.cut(3 * count + damaged, 20);
+        inEachStorage(bag, types::WorldFrame::Enu, [&](Reader& log) {
+            const types::Datum datum{54.5, 10.25, 0};
+            const auto expectPoses = [&](const PoseSource& source, bool is_damaged, size_t poses) {
+                const types::Notices notices = addPoses(log, source, types::WorldFrame::Enu);
+                EXPECT_EQ(notices.size(), is_damaged ? 1u : 0u);
+                for (const types::Notice& notice : notices)
+                    EXPECT_THAT(notice.text, HasSubstr(" are omitted: 1, the first because: "));
+                EXPECT_EQ(getPoses(log, source.stream).size(), poses);
+            };
+            expectPoses({"map->base", "of_tf"}, damaged == tf, damaged == tf ? 5 : 6);
+            expectPoses({"/odom", "of_odometry"}, damaged == odometry, damaged == odometry ? 5 : 6);
+            if (!getRefusal(log, {"/fix", "placed", datum}).empty()) GTEST_SKIP() << "this build has no GeographicLib";
+            log.rename(log.findIndex("placed"), "level");
+            expectPoses({"/fix", "placed", datum, "/imu"}, damaged == imu, damaged == fix ? 5 : 6);
+        });
+    }
+}
+
 TEST(PoseSourcesTest, AStreamThatHasTheNameAlreadyIsKeptUnderAnother) {
     test::Bag bag;
     Draws draws(9);
