@@ -36,6 +36,14 @@ std::string toText(const std::filesystem::path& file);
 /** Returns the finite number that a word is; else NaN. */
 double toNumber(std::string_view word);
 
+/** Whether an element says nothing of shapes. */
+bool isNeedless(std::string_view element);
+
+/** Follows the includes of an SDF file, and returns what is wrong in the numbers of included files. Throws
+ *  types::ConfigError for numbers of the file itself, and where libsdformat would overflow its stack or run for
+ * minutes: at a model that includes itself, and beyond the max work. */
+types::Diagnostics checkIncludes(const std::filesystem::path& file, const meshes::ModelPaths& paths);
+
 /** Loads an SDF file with its includes, or `text` instead of the file unless `text` is empty. Diagnostics of
  *  libsdformat are notices of `builder` if there is still a world or a model, otherwise they are thrown as
  *  types::ConfigError. An include that is missing or unreadable is omitted. */

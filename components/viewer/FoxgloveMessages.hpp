@@ -120,17 +120,8 @@ struct CubePrimitive {
     }
 };
 
-struct SpherePrimitive {
+struct SpherePrimitive : CubePrimitive {
     static constexpr const char* type_name = "foxglove_msgs/msg/SpherePrimitive";
-    ros::Pose pose;
-    ros::Vector3 size;
-    Color color;
-
-    static void describe(auto& self, auto& visit) {
-        visit({"pose"}, self.pose);
-        visit({"size", "m"}, self.size);
-        visit({"color"}, self.color);
-    }
 };
 
 struct CylinderPrimitive {

@@ -5,8 +5,7 @@
 
 #include "components/device/DriverLine.hpp"
 #include "components/device/Probe.hpp"
-#include "components/device/ping/Ping1dTask.hpp"
-#include "components/device/ping/Ping360Task.hpp"
+#include "components/device/ping/PingTasks.hpp"
 #include "tests/device/PingBench.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"

@@ -1,7 +1,7 @@
 // Pictures of fans whose beams have random bearings, in any order.
 #include <gmock/gmock.h>
 
-#include "components/output/maps/ScanMap.hpp"
+#include "components/output/maps/ScanMosaic.hpp"
 #include "components/output/pictures/FanImage.hpp"
 #include "components/output/pictures/PlainPicture.hpp"
 #include "components/output/pictures/TruthImage.hpp"

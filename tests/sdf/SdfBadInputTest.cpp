@@ -45,7 +45,10 @@ TEST_F(SdfBadInputTest, ReportsAnUnreadableValueWithItsLineAndReason) {
               std::string::npos);
     // libsdformat reads 0 of it.
     for (const char* const shape : {"<sphere><radius>0,5</radius></sphere>", "<box><size>1 2,5 3</size></box>",
-                                    "<cylinder><radius>1m</radius><length>2</length></cylinder>"})
+                                    "<cylinder><radius>1m</radius><length>2</length></cylinder>",
+                                    "<polyline><point>0,5 1</point><height>1</height></polyline>",
+                                    "<polyline><point>0 1</point><height>1,5</height></polyline>",
+                                    "<heightmap><uri>h.png</uri><sampling>two</sampling></heightmap>"})
         expectDiagnostic(diagnosticOfWorld("\n" + model("m", shape)), "is no finite number; must be numbers");
     expectDiagnostic(diagnosticOfWorld("\n" + model("m", "<sphere><radius>0,5</radius></sphere>")),
                      "case.world:3: m::hull::skin.radius: is \"0,5\"");
