@@ -194,8 +194,9 @@ int listPoses(log::Reader& log) {
     if (found.empty())
         throw types::ConfigError(log.path(), "",
                                  "has no stream that could be poses; `insonify log info` lists its streams");
-    console::printResult("{}: could be the poses of a body:\n{}choose: insonify replay {} DEPLOYMENT --pose '{}'\n",
-                         log.path().string(), log::makeTable(found), log.path().string(), found.front().source);
+    console::printResult("{}: could be the poses of a body:\n{}choose: insonify replay {} DEPLOYMENT --pose {}\n",
+                         log.path().string(), log::makeTable(found), console::shellWord(log.path().string()),
+                         console::shellWord(found.front().source));
     return 0;
 }
 

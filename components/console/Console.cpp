@@ -11,6 +11,7 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -19,6 +20,7 @@
 #include <utility>
 
 #include "types/Thread.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::console {
 namespace {
@@ -278,6 +280,17 @@ void dropText() noexcept try { console().dropOne(); } catch (...) {
 
 uint64_t droppedDiagnostics() noexcept try { return console().dropped(); } catch (...) {
     return 0;
+}
+
+std::string shellWord(const std::string& text) {
+    const auto isPlain = [](char c) {
+        return types::isLetter(c) || types::isDigit(c) || static_cast<unsigned char>(c) >= 0x80 ||
+               std::strchr("/._-+,:@%", c);
+    };
+    if (!text.empty() && std::ranges::all_of(text, isPlain)) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+    return word + "'";
 }
 
 }  // namespace insonify::console

@@ -51,4 +51,7 @@ void printDiagnostic(fmt::format_string<T...> format, T&&... values) noexcept tr
     dropText();
 }
 
+/** Returns a text as a word of the shell: in quotes if it has letters with a meaning there. */
+std::string shellWord(const std::string& text);
+
 }  // namespace insonify::console

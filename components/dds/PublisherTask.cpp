@@ -75,6 +75,13 @@ void PublisherTask::check(types::Diagnostics& diagnostics) const {
             diagnostics.push_back(
                 {path + "port", "is " + topic.port + "; no connection leads to " + name() + "." + topic.port});
     }
+    const auto* const deployment = dynamic_cast<framework::Deployment*>(environment().deployment);
+    if (!deployment || !config->lifecycle) return;
+    std::vector<std::string> others = deployment->spec().taskNames();
+    std::erase(others, name());
+    if (std::ranges::count(others, *config->lifecycle) == 0)
+        diagnostics.push_back({"lifecycle", "is " + *config->lifecycle + "; must be another task, " +
+                                                framework::suggestion(*config->lifecycle, others)});
 }
 
 types::Notices PublisherTask::notices() const {
@@ -128,12 +135,6 @@ void PublisherTask::serve(const PublisherConfig& named, framework::Deployment& d
     };
     if (lines_) reports_.emplace(*server_, deployment, counts, lines_, named.sends_diagnostics, named.sends_rosout);
     if (!named.lifecycle) return;
-    std::vector<std::string> others = deployment.spec().taskNames();
-    std::erase(others, name());
-    if (std::ranges::count(others, *named.lifecycle) == 0)
-        throw types::ConfigError(
-            "", "lifecycle",
-            "is " + *named.lifecycle + "; must be another task, " + framework::suggestion(*named.lifecycle, others));
     lifecycle_.emplace(*server_, *named.lifecycle, deployment,
                        [lines = lines_, task = *named.lifecycle](const std::string& refused) {
                            if (lines) lines->add(LogLines::error, task + ": " + refused);

@@ -48,6 +48,7 @@ struct Environment {
     bool is_shard = false;   ///< Only some samples of the run are made, see RunLimits::shard.
     /** This instant is before the shard: see framework::Divisible. */
     bool rehearsing = false;
+    bool is_refused = false;  ///< The deployment has errors, so that no task needs to wait for another program.
     std::string deployment_text;                   ///< The YAML as read, for the log's metadata.
     uint64_t seed = 0;                             ///< Seed of the run (`--seed`), 0 when not given.
     types::RosNames names;                         ///< Namespace and frame prefix of the deployment.
@@ -76,7 +77,7 @@ class OutputPort;
 class PropertiesBase;
 class OperationBase;
 
-/** An error of TaskContext::makeOutput() that TaskContext::check() reports as well: a log that cannot be read. */
+/** An error of a port that is made which TaskContext::check() reports as well: a log that cannot be read. */
 struct ReportedByCheck : types::ConfigError {
     using ConfigError::ConfigError;
 };

@@ -67,6 +67,7 @@ Graph Wiring::make(uint64_t seed) {
     loadLibraries();
     makeTasks();
     loadProperties(seed);
+    environment_->is_refused = !diagnostics_.empty();
     connect();
     checkTasks();
     checkLoops();
@@ -325,6 +326,7 @@ InputPortBase* Wiring::findInput(const ConnectionSpec& connection, OutputPortBas
         std::ranges::copy(aliasesOfPorts(*spec_.task(task->name()), false), std::back_inserter(known));
         report(place, connection.path + ".to",
                fmt::format("{} has no input port {}; {}", task->name(), name, suggestion(name, known)));
+    } catch (const ReportedByCheck&) {  // by checkTasks()
     } catch (const std::exception& error) {
         if (!isUnreliable(*task)) report(place, connection.path + ".to", error.what());
     }

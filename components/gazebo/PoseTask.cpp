@@ -11,9 +11,8 @@
 namespace insonify::gazebo {
 namespace {
 
-constexpr auto between_reports = std::chrono::minutes(1);  ///< Of changes of the world.
-
-constexpr types::Time patience{5'000'000};  ///< Time until the warning that nobody offers a topic.
+constexpr types::Time between_reports{60'000'000};  ///< Of changes of the world.
+constexpr types::Time patience{5'000'000};          ///< Time until the warning that nobody offers a topic.
 
 /** Returns a text such as "crate, lid and 3 more". */
 std::string list(const std::vector<std::string>& names) {
@@ -74,7 +73,7 @@ bool PoseTask::startHook() {
     started_ = now();
     is_silence_reported_ = false;
     changed_ = {};
-    next_report_ = {};
+    reported_.reset();
     return true;
 }
 
@@ -102,8 +101,8 @@ void PoseTask::gather(WorldWatch::Change& change) {
 }
 
 void PoseTask::reportChanges() {
-    if (changed_.isEmpty() || std::chrono::steady_clock::now() < next_report_) return;
-    next_report_ = std::chrono::steady_clock::now() + between_reports;
+    if (changed_.isEmpty() || (reported_ && !types::due(*reported_, between_reports, now()))) return;
+    reported_ = now();
     const WorldWatch::Change change = std::exchange(changed_, {});
     if (!change.came.empty())
         warn("world " + config->world + " has entities that the scene does not have: " + list(change.came) +

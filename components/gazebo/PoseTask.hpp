@@ -1,5 +1,4 @@
 #pragma once
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,7 +54,7 @@ private:
     types::Time started_;
     bool is_silence_reported_ = false;
     WorldWatch::Change changed_;  ///< Changes that are not reported yet.
-    std::chrono::steady_clock::time_point next_report_;
+    std::optional<types::Time> reported_;  ///< When changes were last reported.
 };
 
 /** Registers the tasks of this folder. */

@@ -147,6 +147,7 @@ std::shared_ptr<const Scene> SceneTask::loadModels() const {
         if (scene_gazebo_ != config->gazebo) gazebo_failure_.reset();
         scene_gazebo_ = config->gazebo;
         if (gazebo_failure_) throw types::ConfigError(*gazebo_failure_);
+        if (environment().is_refused) throw framework::ReportedByCheck(types::Diagnostics{});
         try {
             models = sharedWorld(*config->gazebo, inputPath(""));
         } catch (const types::ConfigError& error) {

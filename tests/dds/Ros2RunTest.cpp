@@ -469,8 +469,9 @@ TEST_F(Ros2RunTest, ALifecycleNodeMakesTheTransitionsOfItsTaskAndRefusesOthers) 
 TEST_F(Ros2RunTest, TheLifecycleIsThatOfAnotherTask) {
     for (const char* name : {"sonr", "ros", "\"\""}) {
         writeFile(folder / "x.yml", servingNode(std::string("lifecycle: ") + name));
-        EXPECT_THAT(callInsonify(folder, {"run", "x.yml", "--out", "out"}),
-                    isRefused(HasSubstr("tasks.ros.properties.lifecycle: is ")));
+        for (const std::string command : {"run", "check"})
+            EXPECT_THAT(callInsonify(folder, {command, "x.yml"}),
+                        isRefused(HasSubstr("tasks.ros.properties.lifecycle: is ")));
     }
 }
 

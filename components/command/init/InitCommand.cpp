@@ -1,10 +1,8 @@
 // insonify init DIR [--sonar NAME]
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -14,7 +12,6 @@
 #include "components/command/init/Starter.hpp"
 #include "components/console/Console.hpp"
 #include "types/text/ConfigError.hpp"
-#include "types/text/DidYouMean.hpp"
 
 namespace insonify::command {
 
@@ -59,18 +56,6 @@ void write(const std::vector<NewFile>& files) {
     }
 }
 
-/** Returns a text as a word of the shell: in quotes if it has letters with a meaning there. */
-std::string shellWord(const std::string& text) {
-    const auto isPlain = [](char c) {
-        return types::isLetter(c) || types::isDigit(c) || static_cast<unsigned char>(c) >= 0x80 ||
-               std::strchr("/._-+,:@%", c);
-    };
-    if (!text.empty() && std::ranges::all_of(text, isPlain)) return text;
-    std::string word = "'";
-    for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
-    return word + "'";
-}
-
 int init(const fs::path& folder, const std::string& sonar) {
     const sonars::SonarFigures& figures = starterSonar(sonar);
     const std::string deployment = starterDeployment(figures);
@@ -86,11 +71,11 @@ int init(const fs::path& folder, const std::string& sonar) {
     fs::permissions(folder / "make_scene.py", fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add, error);
     for (const NewFile& file : files) console::printResult("{}\n", file.path.string());
-    const std::string word = shellWord(folder.string());
+    const std::string word = console::shellWord(folder.string());
     console::printResult("next: insonify run {}\n", word);
     if (figures.isFan())
         console::printResult("or:   insonify dataset {} --sweep {} --out set\n", word,
-                             shellWord((folder / "sweep.yml").string()));
+                             console::shellWord((folder / "sweep.yml").string()));
     return 0;
 }
 
