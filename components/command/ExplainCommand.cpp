@@ -178,6 +178,7 @@ Json explainedJson(const ExplainedBin& bin, double intensity, const ExplainOptio
             {"intensity", intensity},
             {"explained", all.intensity},
             {"is_mean", all.is_mean},
+            {"depends_on_past", all.depends_on_past},
             {"parts", parts},
             {"why_no_surface", all.why_no_surface},
             {"later", later}};
@@ -189,7 +190,8 @@ void printText(const ExplainedBin& bin, double intensity, const ExplainOptions& 
                          bin.sonar, options.ping, bin.ping->time.seconds(), options.beam,
                          types::degrees(bin.ping->bearings[options.beam].rad), options.bin, all.near_edge, all.far_edge,
                          sonar::intensityText(intensity));
-    if (!all.is_mean && std::abs(all.intensity - intensity) > 1e-4 * std::max(all.intensity, intensity))
+    if (!all.is_mean && !all.depends_on_past &&
+        std::abs(all.intensity - intensity) > 1e-4 * std::max(all.intensity, intensity))
         console::printResult("  the sonar has changed its quality after this ping; with that it is {}\n",
                              sonar::intensityText(all.intensity));
     console::addResult(sonar::text(all));

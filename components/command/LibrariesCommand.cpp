@@ -46,9 +46,17 @@ std::set<std::string> neededBy(const framework::DeploymentSpec& spec) {
     return names;
 }
 
+/** Returns why a library cannot be loaded; empty: it can be. */
+std::string findDamage(const std::string& name) try {
+    loader::load(name);
+    return "";
+} catch (const types::ConfigError& error) {
+    return error.diagnostics().front().text();
+}
+
 int listLacking(const std::string& deployment) {
     for (const std::string& name : neededBy(framework::DeploymentSpec::load(deployment)))
-        if (!loader::isPresent(name)) console::printResult("{}\n", name);
+        if (!findDamage(name).empty()) console::printResult("{}\n", name);
     return 0;
 }
 
@@ -60,12 +68,7 @@ int list(bool json) {
     for (const loader::Component& component : loader::components()) names.insert(component.name);
     for (const std::string& name : names) {
         const loader::Component* const known = loader::findComponent(name);
-        std::string wrong;
-        if (loader::isPresent(name)) try {
-                loader::load(name);
-            } catch (const types::ConfigError& error) {
-                wrong = error.diagnostics().front().text();
-            }
+        const std::string wrong = loader::isPresent(name) ? findDamage(name) : "";
         const char* const state = !loader::isPresent(name) ? "absent" : wrong.empty() ? "here" : "broken";
         all.push_back({{"name", name},
                        {"state", state},

@@ -31,10 +31,8 @@ std::string whyNot(const Input& input, const TopicOut& topic) {
 
 /** Sends a sample to all topics of its input. */
 template <class Input>
-void send(Input& input, const typename Input::Carried& sample, framework::TaskContext& task,
-          types::ThrottledWarning& drops) {
+void send(Input& input, const typename Input::Carried& sample, framework::TaskContext& task) {
     const auto* const content = types::carriedSample(sample);
-    if (!content) return drops.add(input.port.path() + ": a sample is null");
     for (const auto& publication : input.kept.publications)
         if (publication->publish(*content)) reportLatency(task, *content);
 }
@@ -199,7 +197,7 @@ void PublisherTask::updateHook() {
     inputs_.forEach([this]<class Input>(Input& input) {
         auto start = Clock::now();
         for (typename Input::Carried sample{}; input.port.readNew(sample); start = Clock::now()) {
-            send(input, sample, *this, drops_);
+            send(input, sample, *this);
             for (const auto& publication : input.kept.publications)
                 if (const std::string warning = publication->consumeSizeWarning(); !warning.empty()) warn(warning);
             recordStage("send", std::chrono::duration<double>(Clock::now() - start).count());

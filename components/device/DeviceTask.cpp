@@ -7,7 +7,7 @@
 
 #include "components/device/micron/MicronTask.hpp"
 #include "components/device/oculus/OculusTask.hpp"
-#include "components/device/ping/PingTasks.hpp"
+#include "components/device/ping/PingDeviceTask.hpp"
 #include "components/device/sonar3d/Sonar3dTask.hpp"
 #include "types/text/ConfigError.hpp"
 

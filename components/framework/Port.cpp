@@ -1,6 +1,17 @@
 #include "components/framework/Port.hpp"
 
+#include <cxxabi.h>
+
+#include <cstdlib>
+
 namespace insonify::framework {
+
+std::string demangled(const std::type_info& type) {
+    int failed = 0;
+    const std::unique_ptr<char, decltype(&std::free)> name(abi::__cxa_demangle(type.name(), nullptr, nullptr, &failed),
+                                                           &std::free);
+    return failed == 0 ? name.get() : type.name();
+}
 
 ChannelBase::ChannelBase(OutputPortBase& source, ConnPolicy policy)
     : capacity_(policy.type == ConnPolicy::Data ? 1 : policy.size), source_(source), type_(policy.type) {}

@@ -11,6 +11,7 @@
 // sample takes, whatever their priorities are: the mutexes of a port have priority inheritance.
 #include <atomic>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <typeinfo>
@@ -39,6 +40,9 @@ concept Counted = requires {
     requires Pointee<T>::type::counted;
 };
 
+/** Returns the name of a type in C++: "std::vector<double, std::allocator<double> >". */
+std::string demangled(const std::type_info& type);
+
 /** Returns the name of a type on a port; a shared pointer has the name of its sample: "/base/samples/Imu". */
 template <class T>
 std::string typeName() {
@@ -55,8 +59,10 @@ std::string typeName() {
         return "/int64_t";
     else if constexpr (std::is_same_v<Value, bool>)
         return "/bool";
-    else
+    else if constexpr (std::is_same_v<Value, std::string>)
         return "/std/string";
+    else
+        return demangled(typeid(Value));
 }
 
 class OutputPortBase;
@@ -271,7 +277,10 @@ class OutputPort final : public OutputPortBase {
 public:
     using OutputPortBase::OutputPortBase;
 
+    /** Throws std::logic_error for a null pointer to a sample, which no reader expects. */
     void write(const T& sample) {
+        if constexpr (requires { sample->time.microseconds; })
+            if (!sample) throw std::logic_error(path() + ": a null pointer was written; a sample is needed");
         writeFrom(&sample);
         if constexpr (
             requires { sample->time.microseconds; } || requires { sample.time.microseconds; })

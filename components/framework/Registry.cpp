@@ -6,16 +6,43 @@
 
 #include "components/framework/config/DeploymentSpec.hpp"
 #include "components/loader/ComponentLibrary.hpp"
+#include "types/text/DidYouMean.hpp"
 
 namespace insonify::framework {
 
+namespace {
+
+/** Returns the reason of the exception that is being handled. Lets types::ConfigError pass. */
+std::string reasonUnlessReported() try { throw; } catch (const types::ConfigError&) {
+    throw;
+} catch (const std::exception& failure) {
+    return types::getReason(failure);
+} catch (...) {
+    return "an exception without a reason";
+}
+
+}  // namespace
+
 void Registry::add(Entry entry) {
-    const auto same = [&](const Entry& other) { return other.type == entry.type; };
-    const auto found = std::find_if(entries_.begin(), entries_.end(), same);
-    if (found == entries_.end())
-        entries_.push_back(std::move(entry));
-    else
-        *found = std::move(entry);
+    const auto isPart = [](char c) { return types::isLetter(c) || types::isDigit(c) || c == '_' || c == ':'; };
+    if (entry.type.empty() || !std::ranges::all_of(entry.type, isPart))
+        throw types::ConfigError(
+            "", "", fmt::format("adds the type \"{}\"; must be a name such as example::MeanEchoTask", entry.type));
+    if (const Entry* const same = find(entry.type))
+        throw types::ConfigError("", "",
+                                 fmt::format("adds the type {}, which {} has; choose another name", entry.type,
+                                             same->library.empty()        ? "Insonify"
+                                             : same->library == entering_ ? "it"
+                                                                          : same->library));
+    entry.library = entering_;
+    entry.make = [make = std::move(entry.make), type = entry.type](const std::string& name) {
+        try {
+            return make(name);
+        } catch (...) {
+            throw types::ConfigError("", "", "has a constructor that throws: " + reasonUnlessReported());
+        }
+    };
+    entries_.push_back(std::move(entry));
 }
 
 const Registry::Entry* Registry::find(const std::string& type) const {
@@ -63,8 +90,25 @@ types::Diagnostics Registry::loadAll() {
 
 /** A library may have other contents than tasks. */
 void Registry::enter(const loader::ComponentLibrary& library) {
-    if (!entered_.insert(library.file().string()).second) return;
-    if (const auto enter = library.entry<void(Registry&)>("insonify_register")) enter(*this);
+    const std::string file = library.file().string();
+    if (entered_.contains(file)) return;
+    const size_t before = entries_.size();
+    entering_ = file;
+    try {
+        if (const auto enter = library.entry<void(Registry&)>("insonify_register")) enter(*this);
+        entered_.insert(file);
+        entering_.clear();
+    } catch (...) {
+        entries_.resize(before);
+        entering_.clear();
+        std::string why;
+        try {
+            why = "has a function insonify_register that throws: " + reasonUnlessReported();
+        } catch (const types::ConfigError& error) {
+            why = error.diagnostics().front().text();
+        }
+        throw types::ConfigError(file, "", why);
+    }
 }
 
 }  // namespace insonify::framework

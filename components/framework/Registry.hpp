@@ -24,10 +24,12 @@ public:
     struct Entry {
         std::string type;  ///< "noise::NoiseTask"
         std::string doc;   ///< One line.
+        /** Makes a task. Throws types::ConfigError, as does a constructor that throws anything else. */
         std::function<std::unique_ptr<TaskContext>(const std::string& name)> make;
+        std::string library{};  ///< File of the component library; empty: the core.
     };
 
-    /** Adds a type, or replaces the type of that name. */
+    /** Adds a type. Throws types::ConfigError for a name that is no word, or one that is there already. */
     template <class Task>
     void add(const std::string& type, const std::string& doc) {
         add({type, doc, [](const std::string& name) { return std::make_unique<Task>(name); }});
@@ -38,6 +40,7 @@ public:
      *  loaded. */
     std::unique_ptr<TaskContext> make(const std::string& type, const std::string& name);
     const std::vector<Entry>& list() const { return entries_; }  ///< In order of registration.
+    const Entry* find(const std::string& type) const;            ///< Of the list; null: it has no such type.
 
     /** Loads a shared object and calls its `extern "C" void insonify_register(insonify::framework::Registry&)`. It
      *  stays loaded until the process ends. Throws types::ConfigError when the file is missing, cannot be loaded, or
@@ -50,11 +53,11 @@ public:
     types::Diagnostics loadAll();
 
 private:
-    const Entry* find(const std::string& type) const;
     void enter(const loader::ComponentLibrary& library);
 
     std::vector<Entry> entries_;
     std::set<std::string> entered_;  ///< Component libraries, by file.
+    std::string entering_;           ///< The library that is being entered.
 };
 
 }  // namespace insonify::framework

@@ -99,6 +99,7 @@ void Wiring::consequence(const YAML::Node& place, const std::string& path, const
 void Wiring::loadLibraries() {
     const types::Diagnostics wrong = registry_.loadLibraries(spec_, environment_->input_folder);
     diagnostics_.insert(diagnostics_.end(), wrong.begin(), wrong.end());
+    lacks_libraries_ = !wrong.empty();
 }
 
 /** Null, with a diagnostic, when there is no such type. */
@@ -109,7 +110,19 @@ std::unique_ptr<TaskContext> Wiring::makeTask(const TaskSpec& spec) {
     try {
         if (auto task = registry_.make(spec.type, spec.name)) return task;
         registry_.loadAll();  // for suggestions
-        refuse("; " + suggestion(spec.type, getTypes(registry_)));
+        const std::string owner = spec.type.substr(0, spec.type.find(':'));
+        const std::string known = suggestion(spec.type, getTypes(registry_));
+        if (const Registry::Entry* const other = registry_.find(spec.type))
+            refuse(fmt::format(", which is in {}; the file must be called {}.so, or be one of `libraries`",
+                               other->library, owner));
+        else if (lacks_libraries_)
+            consequence(child(spec.place, "type"), spec.path() + ".type", "is " + spec.type + ", which is not known");
+        else
+            refuse("; " + known +
+                   (known.starts_with("did you mean")
+                        ? ""
+                        : "; a task of your own is in a file that `libraries` names, or in " + owner +
+                              ".so in a folder of INSONIFY_COMPONENT_PATH"));
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& each : error.diagnostics())
             refuse(each.file.empty() && each.path.empty() ? ", which " + each.message : ": " + each.text());
@@ -150,7 +163,11 @@ void Wiring::loadProperties(uint64_t seed) {
         reader.setFallback(spec.place.Mark());
         const std::string path = spec.path() + ".properties";
         const YAML::Node known = withoutUnknown(*task, spec, reader);
-        for (PropertiesBase* properties : task->properties()) properties->load(reader, known, path);
+        try {
+            for (PropertiesBase* properties : task->properties()) properties->load(reader, known, path);
+        } catch (const std::exception& failure) {
+            reader.report(spec.place, path, "cannot be checked: " + types::getReason(failure));
+        }
         if (task->properties().empty()) reader.refuseUnknown(spec.properties, path, {});
         if (reader.diagnostics().empty()) {
             seedTask(*task, spec, seed);
@@ -342,7 +359,11 @@ void Wiring::checkTasks() {
             ConfigReader reader(spec_.file, spec_.origins);
             reader.setFallback(spec.place.Mark());
             types::Diagnostics diagnostics;
-            task->check(diagnostics);
+            try {
+                task->check(diagnostics);
+            } catch (const std::exception& failure) {
+                reader.report(spec.place, spec.path(), "cannot be checked: " + types::getReason(failure));
+            }
             reader.report(spec.properties, spec.path() + ".properties", diagnostics);
             diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());
         }

@@ -59,6 +59,7 @@ private:
     Registry& registry_;
     Graph graph_;
     types::Diagnostics diagnostics_, consequences_;
+    bool lacks_libraries_ = false;  ///< Some of `libraries` cannot be loaded.
     std::vector<const TaskContext*> unreliable_;
     std::optional<std::pair<types::Datum, std::string>> origin_;  ///< The datum of all tasks, and where it is written.
 };

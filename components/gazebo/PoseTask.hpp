@@ -53,7 +53,7 @@ private:
     types::ThrottledWarning drops_{"message", "dropped"};
     types::Time started_;
     bool is_silence_reported_ = false;
-    WorldWatch::Change changed_;  ///< Changes that are not reported yet.
+    WorldWatch::Change changed_;           ///< Changes that are not reported yet.
     std::optional<types::Time> reported_;  ///< When changes were last reported.
 };
 

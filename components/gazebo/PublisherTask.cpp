@@ -156,10 +156,6 @@ void PublisherTask::updateHook() {
     inputs_.forEach([this]<class Input>(Input& input) {
         for (typename Input::Carried sample{}; input.port.readNew(sample);) {
             const auto* const content = types::carriedSample(sample);
-            if (!content) {
-                drops_.add(input.port.path() + ": a sample is null");
-                continue;
-            }
             send(input.port.name(), *content, input.kept.returns);
             framework::noteLatency(*this, content->time);
         }

@@ -63,7 +63,10 @@ std::vector<PropertyAlias> makeAliases(const LoggerTask& logger, const std::vect
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
     if (framework::InputPortBase* const made = inputs_.make(port, source, framework::streamName(source))) return made;
-    throw types::ConfigError("", "", source.path() + " is " + source.typeName() + ", which a log cannot hold");
+    throw types::ConfigError("", "",
+                             source.path() + " is " + source.typeName() +
+                                 ", which a log cannot hold; it holds numbers, texts and samples as " +
+                                 "components/framework/README.md, A component of your own, says");
 }
 
 types::Notices LoggerTask::notices() const {

@@ -14,7 +14,7 @@ namespace {
 /** Returns what is wrong with a sample; empty if nothing is. */
 template <class T>
 std::string findDiagnostic(const T* sample) {
-    const char* const what = sample ? types::findDiagnostic(*sample) : "is null";
+    const char* const what = types::findDiagnostic(*sample);
     return what ? what : "";
 }
 

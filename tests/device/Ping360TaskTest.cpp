@@ -5,7 +5,7 @@
 
 #include "components/device/DriverLine.hpp"
 #include "components/device/Probe.hpp"
-#include "components/device/ping/PingTasks.hpp"
+#include "components/device/ping/PingDeviceTask.hpp"
 #include "tests/device/PingBench.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"

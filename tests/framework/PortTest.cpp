@@ -1,9 +1,13 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include <set>
 
 #include "components/framework/Port.hpp"
 #include "components/framework/execution/Activity.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/samples/Pose.hpp"
+#include "types/samples/Sonar.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -96,6 +100,25 @@ TEST(PortTest, InitHandsTheLastSampleToALaterReader) {
     int32_t value = 0;
     EXPECT_TRUE(late.port.readNew(value));
     EXPECT_EQ(value, 5);
+}
+
+TEST(PortTest, ANullPointerToASampleIsRefused) {
+    test::Writer<types::SonarPtr> writer("source");
+    test::Reader<types::SonarPtr> reader;
+    writer.port.connectTo(reader.port, ConnPolicy::buffer(2));
+    EXPECT_EQ(test::computeError<std::logic_error>([&] { writer.port.write(nullptr); }),
+              "source.port: a null pointer was written; a sample is needed");
+    EXPECT_FALSE(reader.port.hasNew());
+}
+
+TEST(PortTest, EachTypeHasItsOwnName) {
+    struct Own {};
+    const std::set<std::string> names{typeName<std::string>(),         typeName<uint64_t>(),
+                                      typeName<std::vector<double>>(), typeName<Own>(),
+                                      typeName<types::SonarPtr>(),     typeName<int32_t>()};
+    EXPECT_EQ(names.size(), 6u);
+    EXPECT_THAT(typeName<Own>(), testing::HasSubstr("Own"));
+    EXPECT_EQ(typeName<std::string>(), "/std/string");
 }
 
 TEST(PortTest, ASharedSampleIsTheSameAddressAtBothEnds) {

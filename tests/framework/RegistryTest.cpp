@@ -41,7 +41,32 @@ TEST(RegistryTest, NamesALibraryThatIsMissingOrHasNoEntry) {
                                             testing::HasSubstr("nowhere.so: cannot be loaded")),
                              testing::AllOf(testing::HasSubstr("plugin.yml:1:25: libraries[1]: is "),
                                             testing::HasSubstr("has no function insonify_register")),
-                             testing::HasSubstr("is b::C; ")));
+                             testing::HasSubstr("tasks.a.type: is b::C, which is not known")));
+}
+
+struct Throwing final : TaskContext {
+    explicit Throwing(const std::string& name) : TaskContext(name) { throw std::runtime_error("out of order"); }
+};
+
+TEST(RegistryTest, ATypeIsAddedOnceAndHasAName) {
+    Registry registry = test::testRegistry();
+    const size_t before = registry.list().size();
+    EXPECT_THAT(test::refused([&] { registry.add<test::Relay>("test::Source", ""); }),
+                testing::ElementsAre(testing::HasSubstr("adds the type test::Source, which Insonify has")));
+    for (const char* name : {"", "a b::C", "a::C\n", "a::\xc3\xa4"})
+        EXPECT_THAT(test::refused([&] { registry.add<test::Relay>(name, ""); }),
+                    testing::ElementsAre(testing::HasSubstr("must be a name such as")));
+    EXPECT_EQ(registry.list().size(), before);
+}
+
+TEST(RegistryTest, AConstructorThatThrowsIsReportedAtItsTask) {
+    Registry registry = test::testRegistry();
+    registry.add<Throwing>("own::Throwing", "");
+    EXPECT_THAT(test::refused([&] {
+                    Deployment(DeploymentSpec::parse("tasks: {a: {type: own::Throwing}}\n", "a.yml"), registry);
+                }),
+                testing::ElementsAre(testing::HasSubstr("a.yml:1:19: tasks.a.type: is own::Throwing, which has a "
+                                                        "constructor that throws: out of order")));
 }
 
 }  // namespace

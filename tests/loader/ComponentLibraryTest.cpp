@@ -305,6 +305,8 @@ TEST_F(ComponentLibraryTest, ListsTheMissingLibrariesOfADeployment) {
   fan: {type: output::FanImageTask, properties: {file: fan.mp4}}
 )");
     EXPECT_EQ(call({"libraries", "a.yml"}).out, "dds\ngazebo\nsdf\nsurvey\nvideo\n");
+    writeFile(installed("nav"), "no library\n");
+    EXPECT_EQ(call({"libraries", "a.yml"}).out, "dds\ngazebo\nnav\nsdf\nsurvey\nvideo\n") << "a broken one too";
 }
 
 TEST_F(ComponentLibraryTest, ASceneOrVideoNeedsTheLibraryOfItsEnding) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "components/sonar/plan/Effect.hpp"
+#include "components/sonar/plan/Effects.hpp"
 #include "components/sonar/renderer/BinExplanation.hpp"
 #include "components/sonar/renderer/SonarRenderer.hpp"
 #include "tests/support/EveryRenderer.hpp"
@@ -272,6 +274,38 @@ TEST(BinExplanationTest, ExplainingChangesNoPing) {
     explainBin(config, plateOnGround(), 8, 52);
     renderer.render(plateOnGround(), after);
     EXPECT_EQ(before.bins, after.bins);
+}
+
+/** Adds a number that grows from ping to ping. */
+struct GrowingEffect final : Effect {
+    struct Growing final : PingEffect {
+        void addToBins(types::Sonar& ping) override {
+            for (float& bin : ping.bins) bin += static_cast<float>(pings);
+            ++pings;
+        }
+        int pings = 0;
+    };
+    std::string key() const override { return "growing"; }
+    bool plan(const types::Geometry&, RenderPlan& plan) const override {
+        return plan.config.effects.contains("growing");
+    }
+    std::unique_ptr<PingEffect> make(const RenderPlan&, const types::Geometry&) const override {
+        return std::make_unique<Growing>();
+    }
+};
+
+TEST(BinExplanationTest, APingThatDependsOnEarlierOnesHasNoParts) {
+    addEffect(std::make_unique<GrowingEffect>());
+    const types::Snapshot scene = test::makeSnapshot(test::makeScene({test::wall(3)}));
+    SonarConfig config =
+        test::getSonar({.beams = 4, .width_deg = 20, .height_deg = 20, .bins = 40, .rows = 40, .columns = 2});
+    config.visibility = Visibility::Cpu;
+    EXPECT_FALSE(explainBin(config, scene, 1, 15).depends_on_past);
+    config.effects["growing"];
+    const BinExplanation explained = explainBin(config, scene, 1, 15);
+    EXPECT_TRUE(explained.depends_on_past);
+    EXPECT_TRUE(explained.parts.empty());
+    EXPECT_THAT(text(explained), testing::HasSubstr("an effect remembers earlier pings"));
 }
 
 }  // namespace

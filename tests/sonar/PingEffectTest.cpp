@@ -117,6 +117,7 @@ enum class Wrong {
     NowhereEcho,   ///< Adds an echo at no range.
     CellBeyond,    ///< Adds energies to a cell behind the last.
     ThreadBeyond,  ///< Uses the buffer of a thread that does not exist.
+    Throws,
 };
 
 class BreaksPings final : public PingEffect {
@@ -137,6 +138,7 @@ public:
     void addToBins(types::Sonar& ping) override {
         if (wrong_ == Wrong::NotANumber) ping.bins[7] = std::numeric_limits<float>::quiet_NaN();
         if (wrong_ == Wrong::FewerBins) ping.bins.pop_back();
+        if (wrong_ == Wrong::Throws) throw std::runtime_error("out of order");
     }
 
 private:
@@ -173,14 +175,16 @@ std::string failure(Wrong wrong, bool coherent) {
     const types::Snapshot snapshot = test::makeSnapshot(test::makeScene({test::wall(3)}));
     SonarRenderer renderer(config, snapshot.geometry, {.threads = 2});
     types::Sonar ping;
-    return test::computeError<types::CheckFailure>([&] { renderer.render(snapshot, ping); });
+    return test::computeError<std::exception>([&] { renderer.render(snapshot, ping); });
 }
 
 TEST(SeamCheckTest, WhatAnEffectDoesWrongIsFoundAtTheSeam) {
     using testing::EndsWith;
     using testing::HasSubstr;
-    EXPECT_THAT(failure(Wrong::NotANumber, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 7, nan")));
-    EXPECT_THAT(failure(Wrong::Negative, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 39, -1")));
+    EXPECT_THAT(failure(Wrong::NotANumber, false), EndsWith("effects.breaker: leaves a bin of nan; must be finite and "
+                                                            "not negative"));
+    EXPECT_THAT(failure(Wrong::Negative, false), HasSubstr("effects.breaker: leaves a bin of -1; "));
+    EXPECT_EQ(failure(Wrong::Throws, false), "effects.breaker: out of order");
     EXPECT_THAT(failure(Wrong::FewerBins, false), AllOf(HasSubstr("SonarRenderer.cpp:"), EndsWith(": 159, 4, 40")));
     EXPECT_THAT(failure(Wrong::BinBeyond, false),
                 AllOf(HasSubstr("Effects.cpp:"), EndsWith("bin < ping.bins.size() does not hold; bin, "

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <stdexcept>
 
 #include "components/sonar/plan/EchoRules.hpp"
 #include "types/Check.hpp"
+#include "types/text/ConfigError.hpp"
 #include "types/text/DidYouMean.hpp"
 
 namespace insonify::sonar {
@@ -100,6 +102,18 @@ void checkNumbers(const std::string& path, const std::vector<types::Field>& fiel
     }
 }
 
+/** Calls a part of an effect; its exceptions get the effect's name. */
+void calling(const Effect& effect, auto&& part) {
+    try {
+        part();
+    } catch (const types::CheckFailure&) {  // names its place
+        throw;
+    } catch (const std::exception& failure) {
+        if (effect.key().empty()) throw;
+        throw std::runtime_error(fmt::format("effects.{}: {}", effect.key(), types::getReason(failure)));
+    }
+}
+
 }  // namespace
 
 std::span<const Effect* const> effects() { return list().all(); }
@@ -115,7 +129,7 @@ void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics) {
         else
             checkNumbers("effects." + key + ".", (*found)->numbers(), numbers, diagnostics);
     }
-    for (const Effect* effect : effects()) effect->check(config, diagnostics);
+    for (const Effect* effect : effects()) calling(*effect, [&] { effect->check(config, diagnostics); });
 }
 
 void PingInMaking::report(size_t bin, bool passes_walls) const {
@@ -135,10 +149,12 @@ void checkPlaces(const char* path, const std::vector<uint32_t>& list, size_t cou
 
 PingEffects::PingEffects(const RenderPlan& plan, const types::Geometry& geometry) : selection_(plan.options.selection) {
     for (const Effect* effect : plan.effects)
-        if (auto made = effect->make(plan, geometry)) {
-            all_.push_back(std::move(made));
-            kinds_.push_back(effect);
-        }
+        calling(*effect, [&] {
+            if (auto made = effect->make(plan, geometry)) {
+                all_.push_back(std::move(made));
+                kinds_.push_back(effect);
+            }
+        });
 }
 
 void PingEffects::updateQuality() {
@@ -155,7 +171,7 @@ void PingEffects::updateShapes(const types::Snapshot& snapshot) {
 
 void PingEffects::begin(const PingStart& start) {
     for (size_t i = 0; selection_ && i < all_.size(); ++i) all_[i]->is_silent = !selection_->adds(*kinds_[i]);
-    for (const auto& effect : all_) effect->begin(start);
+    for (size_t i = 0; i < all_.size(); ++i) calling(*kinds_[i], [&] { all_[i]->begin(start); });
 }
 
 void PingEffects::giveRules(EchoRules& rules) const {
@@ -196,12 +212,19 @@ void PingEffects::addToTruth(const TracedPing& ping, types::SonarTruth& truth) {
 }
 
 void PingEffects::addEchoes(PingInMaking& ping) {
-    for (const auto& effect : all_)
-        if (!effect->is_silent) effect->addEchoes(ping);
+    for (size_t i = 0; i < all_.size(); ++i)
+        if (!all_[i]->is_silent) calling(*kinds_[i], [&] { all_[i]->addEchoes(ping); });
 }
 
 void PingEffects::addToBins(types::Sonar& ping) {
-    for (const auto& effect : all_) effect->addToBins(ping);
+    for (size_t i = 0; i < all_.size(); ++i)
+        calling(*kinds_[i], [&] {
+            all_[i]->addToBins(ping);
+            const auto wrong =
+                std::ranges::find_if_not(ping.bins, [](float bin) { return bin >= 0 && std::isfinite(bin); });
+            if (wrong != ping.bins.end() && !kinds_[i]->key().empty())
+                throw std::runtime_error(fmt::format("leaves a bin of {}; must be finite and not negative", *wrong));
+        });
 }
 
 void PingEffects::addAlike(types::Sonar& bins) {

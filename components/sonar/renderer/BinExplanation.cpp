@@ -145,7 +145,10 @@ public:
     BinExplanation explain() {
         selection_.on_echo = [this](const EchoPart& echo) { record(echo); };
         explained_.intensity = render();
+        selection_.on_echo = [](const EchoPart&) {};  // all echoes, once more
+        explained_.depends_on_past = isMore(render() - explained_.intensity);
         selection_.on_echo = nullptr;
+        if (explained_.depends_on_past) return std::move(explained_);
         std::vector<Item> effects, surfaces;
         for (const Effect* effect : plan().effects) effects.push_back({{}, effect});
         for (const auto& [kind, record] : records_) surfaces.push_back({kind, nullptr});
@@ -330,6 +333,8 @@ std::string text(const BinExplanation& explanation) {
                              part.of_surface ? ", " + part.of_surface->path : "");
         if (part.of_surface) lines += surfaceText(*part.of_surface);
     }
+    if (explanation.depends_on_past)
+        lines += "  an effect remembers earlier pings, so the parts of the bin are unknown\n";
     if (!explanation.why_no_surface.empty()) lines += "  no surface: " + explanation.why_no_surface + "\n";
     return lines;
 }

@@ -44,6 +44,7 @@ struct BinExplanation {
     bool is_mean = false;                ///< Echoes interfere: the intensity is the mean over all speckle.
     std::vector<BinPart> parts;          ///< Strongest first.
     std::string why_no_surface;          ///< Why no surface has an echo in the bin; empty: one has.
+    bool depends_on_past = false;        ///< Rendered twice, the bin differs: an effect remembers pings. No parts.
 };
 
 /** Explains one bin of one beam, in the order of the ping; no beam: of the sum over all beams. Renders the scene once

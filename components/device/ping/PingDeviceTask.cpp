@@ -1,4 +1,4 @@
-#include "components/device/ping/PingTasks.hpp"
+#include "components/device/ping/PingDeviceTask.hpp"
 
 #include <algorithm>
 #include <array>
