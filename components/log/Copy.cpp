@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -133,6 +135,11 @@ void refuseOtherTypes(const Readers& logs, const Selection& selection) {
         }
 }
 
+std::string bytesOf(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 }  // namespace
 
 Copied copyLog(const std::vector<std::filesystem::path>& logs, const std::filesystem::path& to,
@@ -149,15 +156,22 @@ Copied copyLog(const std::vector<std::filesystem::path>& logs, const std::filesy
 }
 
 std::string copyProperties(const std::filesystem::path& log, const std::filesystem::path& to) {
-    const auto source = openLog(log, AtDamage::Skip), cut = openLog(to);
-    const auto properties = propertyLog(*source);
-    if (!properties || propertyLog(*cut)) return "";
-    const std::filesystem::path copied = to.parent_path() / properties->filename();
-    if (std::filesystem::exists(copied))
-        return fmt::format("{} is of another run: {} is not copied next to {}; give that a folder of its own",
-                           copied.string(), properties->string(), to.string());
-    copyLog({*properties}, copied, {.at_damage = AtDamage::Skip});
-    return fmt::format("{} is copied with it", copied.string());
+    const auto properties = propertyLog(*openLog(log, AtDamage::Skip));
+    if (!properties) return "";
+    const std::filesystem::path copied = to.parent_path() / properties->filename(), fresh = copied.string() + ".new";
+    if (std::error_code none; std::filesystem::equivalent(copied, *properties, none)) return "";
+    copyLog({*properties}, fresh, {.at_damage = AtDamage::Skip});
+    if (!std::filesystem::exists(copied)) {
+        std::filesystem::rename(fresh, copied);
+        return fmt::format("{} is copied with it", copied.string());
+    }
+    const bool is_same = bytesOf(fresh) == bytesOf(copied);
+    std::filesystem::remove(fresh);
+    if (is_same) return "";
+    return fmt::format(
+        "{} is of another run: {} is not copied next to {}; give that a folder of its own, or replays of "
+        "it take wrong properties",
+        copied.string(), properties->string(), to.string());
 }
 
 }  // namespace insonify::log

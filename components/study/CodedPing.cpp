@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <string>
 
 #include "components/recordings/RecordingReader.hpp"
 #include "components/study/PictureFile.hpp"
@@ -18,8 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 using recordings::RecordingReader;
 
-/** Returns the named files, and the files of the named folders. */
-std::vector<fs::path> getFiles(const std::vector<std::string>& names) {
+/** Returns the named files, and the files of the named folders: of the folder of a run only what may be a recording. */
+std::vector<fs::path> getFiles(const std::vector<std::string>& names, bool with_pictures) {
+    static const std::set<std::string> others{".idx", ".yml", ".yaml", ".json", ".csv", ".npz", ".md", ".html", ".txt"};
+    const auto isOther = [&](const fs::path& file) {
+        return others.contains(file.extension()) || file.filename() == "properties.0.log" ||
+               (!with_pictures && isPicture(file));
+    };
     std::vector<fs::path> files;
     for (const fs::path name : names) {
         if (!fs::is_directory(name)) {
@@ -27,7 +34,7 @@ std::vector<fs::path> getFiles(const std::vector<std::string>& names) {
             continue;
         }
         for (const auto& entry : fs::directory_iterator(name))
-            if (entry.is_regular_file()) files.push_back(entry.path());
+            if (entry.is_regular_file() && !isOther(entry.path())) files.push_back(entry.path());
     }
     std::ranges::sort(files);
     return files;
@@ -247,7 +254,7 @@ std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, cons
                                      const ReadLog& readLog, const PictureConfig* pictures) {
     const receiver::CodeConfig assumed = law ? *law : receiver::CodeConfig{.law = receiver::CodeLaw::Sqrt};
     std::vector<CodedPing> pings;
-    for (const fs::path& file : getFiles(names)) {
+    for (const fs::path& file : getFiles(names, pictures != nullptr)) {
         const bool is_picture = isPicture(file);
         const std::optional<LoggedPings> logged = readLog && !is_picture ? readLog(file) : std::nullopt;
         for (CodedPing& coded : is_picture ? pingsOfPicture(file, assumed, pictures)
@@ -260,7 +267,7 @@ std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, cons
             if (std::ranges::none_of(pings, isSame)) pings.push_back(std::move(coded));
         }
     }
-    if (pings.empty()) throw types::ConfigError(names.front(), "--real", "is a folder without a file");
+    if (pings.empty()) throw types::ConfigError(names.front(), "--real", "is a folder without a recording");
     return pings;
 }
 

@@ -101,6 +101,8 @@ TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
     EXPECT_TRUE(fs::exists(folder / "cut.0.idx"));
     for (const char* fresh : {"none.0.log", "none.mcap"}) {
         EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", fresh, "--from", "7"}).code, 2);
+        EXPECT_THAT(callInsonify(folder, {"log", "cut", log, "--to", fresh, "--from", "-1"}),
+                    isRefused(HasSubstr("--from: is -1; must not be negative")));
         EXPECT_FALSE(fs::exists(folder / fresh)) << fresh;
     }
     EXPECT_THAT(cut({"--samples", "2:1"}).err, HasSubstr("--samples: is 2:1; FIRST must be less than LAST"));

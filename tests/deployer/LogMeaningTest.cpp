@@ -46,9 +46,10 @@ print(d['range_m'].shape, numpy.allclose(d['range_m'], ranges, rtol=1e-6)))"),
 }
 
 TEST_F(LogMeaningTest, ArraysHaveTheMeaningOfTheirNumbers) {
-    EXPECT_EQ(
-        exported("receiver.ping", "print(meta['output'], meta['tvg'], meta['model'], meta['mount'], meta['seed'])"),
-        "level_db {'log_coefficient': 40} physical {'pitch_deg': 3} 5\n");
+    EXPECT_EQ(exported("receiver.ping",
+                       "print(meta['output'], meta['tvg']['log_coefficient'], meta['model'], "
+                       "meta['mount']['pitch_deg'], meta['seed'])"),
+              "level_db 40 physical 3 5\n");
     EXPECT_EQ(exported("receiver.ping", "print(meta['noise']['speckle']['law'], meta['quaternion_order'])"),
               "rayleigh w, x, y, z\n");
     EXPECT_THAT(exported("receiver.ping", "print(meta['bins'])"), HasSubstr("10 log10 of: received intensity"));
@@ -56,6 +57,15 @@ TEST_F(LogMeaningTest, ArraysHaveTheMeaningOfTheirNumbers) {
     EXPECT_THAT(exported("receiver.ping", "print(meta['frame'])"), HasSubstr("positive to port"));
     EXPECT_EQ(exported("sonar.ping", "print(meta['output'], meta['tvg'], meta['noise'])"), "intensity None None\n");
     EXPECT_EQ(exported("vehicle.pose", "print(meta['quaternion_order'])"), "w, x, y, z\n");
+}
+
+TEST_F(LogMeaningTest, SettingsFromOutsideAreKnownFromThePropertyLog) {
+    ASSERT_EQ(
+        folder_.run({"--pings", "2", "--set", "receiver.tvg.log_coefficient=30", "--set", "receiver.gain_db=7"}).code,
+        0);
+    EXPECT_EQ(exported("receiver.ping", "print(meta['tvg']['log_coefficient'], meta['gain_db'])"), "30 7\n");
+    fs::remove(folder_ / "out/properties.0.log");
+    EXPECT_EQ(exported("receiver.ping", "print(meta['tvg'], meta['gain_db'])"), "{'log_coefficient': 40} None\n");
 }
 
 TEST_F(LogMeaningTest, InfoShowsDeploymentSeedPlanAndUnits) {

@@ -163,6 +163,14 @@ TEST_F(ReplayLiveTest, CutAndRepairCopyThePropertyLog) {
         EXPECT_THAT(score(to + "/y.0.log").err, HasSubstr("as in the log: sonar.range=15\n"));
         expectAllSame(3);
     }
+    // Both logs have the same deployment and seed.
+    ASSERT_EQ(call({"run", "wall.yml", "--out", "plain", "--pings", "3"}).code, 0);
+    EXPECT_THAT(call({"log", "cut", "plain/wall.0.log", "--to", "cut/z.0.log"}).err,
+                HasSubstr("cut/properties.0.log is of another run"));
+    EXPECT_THAT(call({"log", "cut", "out/wall.0.log", "--to", "cut/again.0.log"}).err,
+                testing::Not(HasSubstr("properties.0.log")))
+        << "it is there";
+    EXPECT_FALSE(fs::exists(folder_ / "cut/properties.0.log.new"));
     ASSERT_EQ(call({"run", "wall.yml", "--out", "again", "--pings", "1", "--seed", "3"}).code, 0);
     const Outcome other = call({"log", "cut", "out/wall.0.log", "--to", "again/y.0.log"});
     EXPECT_THAT(other.err, HasSubstr("again/properties.0.log is of another run"));

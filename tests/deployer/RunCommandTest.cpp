@@ -106,7 +106,9 @@ TEST(RunCommandTest, OperationsAreCalledByName) {
     EXPECT_THAT(folder.run({"--call", "snar.start"}).err, HasSubstr("there is no task snar; did you mean sonar?"));
     const Outcome refused = folder.run({"--call", "sonar.configure", "--call", "sonar.recover"});
     EXPECT_EQ(refused.code, 1);
-    EXPECT_THAT(refused.err, HasSubstr("insonify: cannot recover: sonar is Stopped"));
+    EXPECT_THAT(refused.err, HasSubstr("insonify: --call sonar.recover: cannot recover: sonar is Stopped"));
+    EXPECT_THAT(folder.run({"--call", "sonar.setRange=-1"}), isRefused(HasSubstr("--call: is sonar.setRange=-1: ")));
+    EXPECT_THAT(folder.run({"--call", "sonar.setRange"}), isRefused(HasSubstr("--call: is sonar.setRange: ")));
     ASSERT_THAT(folder.run({"--pings", "1", "--call", "sonar.setRange=12", "--call", "noise.clamped"}),
                 prints(HasSubstr("noise.clamped: 0\n")));
 }

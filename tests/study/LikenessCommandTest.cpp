@@ -57,6 +57,32 @@ TEST(LikenessCommandTest, WithoutADeploymentDescribesTheRecordings) {
     EXPECT_EQ(json::parse(readFile(folder / "report/likeness.json"))["pings"].size(), 4u);
 }
 
+/** Returns the speckle contrast of the amplitudes of a recording's first ping. */
+double contrastOf(const WallFolder& folder, const std::string& log) {
+    EXPECT_THAT(callInsonify(folder, {"study", "likeness", "--real", log, "--out", "report"}), succeeds());
+    const json contrast = json::parse(readFile(folder / "report/likeness.json"))["pings"][0]["contrast"];
+    return contrast.is_number() ? contrast.get<double>() : -1;
+}
+
+TEST(LikenessCommandTest, TheLawOfALogIsThatOfItsRunWithWhatWasSetFromOutside) {
+    constexpr double rayleigh = 0.5227;  // sqrt(4 / pi - 1), of amplitudes
+    const WallFolder folder;
+    std::string text =
+        replaced(codedWall(), "from: sonar.ping, to: receiver.intensity", "from: noise.noisy, to: receiver.intensity") +
+        "  - {from: receiver.ping, to: log.ping, policy: {type: buffer, size: 64}}\n";
+    writeFile(folder / "coded.yml",
+              replaced(text, "code: {law: sqrt, gamma: 0.5}", "code: {law: sqrt, gamma: 0.5, bits: 16}"));
+    for (const std::string gamma : {"0.5", "1"}) {
+        ASSERT_THAT(callInsonify(folder, {"run", "coded.yml", "--pings", "1", "--out", "run" + gamma, "--set",
+                                          "receiver.code.gamma=" + gamma, "--set", "noise.ambient={level_db: -40}"}),
+                    succeeds());
+        EXPECT_NEAR(contrastOf(folder, "run" + gamma + "/wall.0.log"), rayleigh, 0.05);
+    }
+    EXPECT_NEAR(contrastOf(folder, "run1"), rayleigh, 0.05) << "its pictures and other files are no recordings";
+    fs::remove(folder / "run1/properties.0.log");  // the deployment's text has 0.5
+    EXPECT_GT(std::abs(contrastOf(folder, "run1/wall.0.log") - rayleigh), 0.15);
+}
+
 TEST(LikenessCommandTest, ReadsALogOfCodesLikeARecording) {
     const WallFolder folder;
     writeFile(folder / "coded.yml",
@@ -160,7 +186,7 @@ TEST(LikenessCommandTest, RefusesWhatCannotBeCompared) {
     EXPECT_THAT(outcome, isRefused(HasSubstr("wall.yml: --real: holds no ping of an Oculus")));
     fs::create_directory(folder / "empty");
     outcome = callInsonify(folder, {"study", "likeness", "--real", "empty", "--out", "report"});
-    EXPECT_THAT(outcome, isRefused(HasSubstr("is a folder without a file")));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("is a folder without a recording")));
     const auto small = OculusMessage{}.bytes();
     writeFile(folder / "small.raw", std::string(small.begin(), small.end()));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "small.raw", "--out", "report"});

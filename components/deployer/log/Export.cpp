@@ -9,6 +9,7 @@
 
 #include "components/console/Console.hpp"
 #include "components/deployer/log/LoggedTrack.hpp"
+#include "components/deployer/log/RecordedSettings.hpp"
 #include "components/deployer/log/ReplaySpec.hpp"
 #include "components/framework/config/DeploymentSpec.hpp"
 #include "components/loader/ComponentLibrary.hpp"
@@ -154,7 +155,8 @@ DeploymentSpec getDeployment(const log::Reader& log) try {
 Json readMeaning(const log::Reader& log, const log::Stream& stream) {
     Json meaning = {{"stream", stream.name}};
     if (log::holdsPings(stream)) {
-        const DeploymentSpec spec = getDeployment(log);
+        DeploymentSpec spec = getDeployment(log);
+        setRecorded(log, spec);
         meaning.update(pingMeaning(spec, findWriter(spec, stream.name)));
         addRecorded(stream, meaning);
     } else if (stream.holds<types::Pose>())

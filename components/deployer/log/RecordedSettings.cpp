@@ -280,6 +280,22 @@ std::optional<uint64_t> recordedSeed(const log::Reader& log) {
     return std::strtoull(seed.c_str(), nullptr, 10);
 }
 
+void setRecorded(const log::Reader& log, framework::DeploymentSpec& spec) {
+    const auto file = log::propertyLog(log);
+    if (!file) return;
+    std::set<std::string> tasks;
+    for (const framework::TaskSpec& task : spec.tasks) tasks.insert(task.name);
+    for (const auto& [property, values] : readHistories(*log::openLog(*file), tasks)) {
+        const auto [task, name] = splitPort(property);
+        YAML::Node properties = spec.task(task)->properties;
+        const std::string& value = values.front().second;
+        if (value == absent_value)
+            properties.remove(name);
+        else
+            properties[name] = YAML::Load(value);
+    }
+}
+
 RecordedSettings recordedSettings(const log::Reader& log, const framework::DeploymentSpec& spec,
                                   const std::vector<std::string>& set, std::optional<uint64_t> seed, double from) {
     framework::Registry registry = coreTasks();

@@ -13,6 +13,9 @@ namespace insonify::deployer {
 /** Returns the seed that a log was recorded with; none: unknown. */
 std::optional<uint64_t> recordedSeed(const log::Reader& log);
 
+/** Sets the properties of a log's deployment to those at the log's start, by the property log next to it. */
+void setRecorded(const log::Reader& log, framework::DeploymentSpec& spec);
+
 /** A property of a task that contributes to pings, with its values while the log was recorded. */
 struct RecordedProperty {
     std::string task, name;

@@ -34,7 +34,8 @@ sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     if (!config.bearings_deg.empty() || config.beam_geometry != sonar::BeamGeometry::Planar)
         throw types::ConfigError(
             file, "tasks",
-            "has a sonar with bearings_deg or conical beams; a study of the error takes a regular planar fan");
+            "has a sonar with bearings_deg, with a beam_width_deg other than their spacing or with conical beams; a "
+            "study of the error takes a regular planar fan");
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     config.range = grid.bin_width * grid.bin_count;
     config.speed_of_sound = grid.speed_of_sound;

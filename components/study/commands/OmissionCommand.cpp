@@ -173,8 +173,14 @@ private:
         const types::Omission words = sonar::describe(what, sonar::makeBinGrid(planned_.config));
         progress_(words.name);
         OmissionRow row{words.name, words.reason, {}, {}, "", false};
-        Setup with = planned_;
-        if (putBack(what, with, row)) row.measured = compared(planned_, with, pings_);
+        Setup without = planned_;
+        if (what.effect == std::string_view("absorption inside a bin")) {  // whose bins no other effect may join
+            without.config.pulse.reset();
+            without.config.imperfections.reset();
+            without.snapshot.targets.clear();
+        }
+        Setup with = without;
+        if (putBack(what, with, row)) row.measured = compared(without, with, pings_);
         return row;
     }
 
@@ -197,8 +203,10 @@ private:
                  return bound(0, "change: 0 dB/m");
              }},
             {"range point-spread",
-             [&] { return planned_.config.model == sonar::Model::Physical && neutralPulse(with, row); }},
-            {"transmit ring-down", [&] { return weakRingDown(with, row); }},
+             [&] {
+                 return planned_.config.model == sonar::Model::Physical && !hasPoints() && neutralPulse(with, row);
+             }},
+            {"transmit ring-down", [&] { return !hasPoints() && weakRingDown(with, row); }},
             {"point targets",
              [&] {
                  if (what.reason != sonar::Reason::NoneInScene) return false;
@@ -219,7 +227,7 @@ private:
             {"motion within a ping",
              [&] {
                  with.config.motion_in_ping = true;
-                 return planned_.config.tracesRays() && bound(0, "change: a sonar at rest");
+                 return planned_.config.tracesRays() && omits("thin walls") && bound(0, "change: a sonar at rest");
              }},
             {"absorption inside a bin", [&] { return splitBins(with, row); }},
             {"further slabs",
@@ -233,6 +241,12 @@ private:
         const auto setup = ways.find(what.effect);
         return setup != ways.end() && setup->second();
     }
+
+    bool omits(std::string_view effect) const {
+        return std::ranges::any_of(omitted_, [&](const sonar::Omitted& what) { return what.effect == effect; });
+    }
+    /** Whether there may be echoes of points, which a tone as long as a bin puts into two bins. */
+    bool hasPoints() const { return !planned_.snapshot.targets.empty() || planned_.config.multipath.has_value(); }
 
     /** Adds a tone as long as a bin, which changes nothing. */
     bool neutralPulse(Setup& with, OmissionRow& row) const {
@@ -263,8 +277,8 @@ private:
         with.config.range = grid.range_max;
         with.config.range_rounding = sonar::RangeRounding::Exact;
         with.bins_in_one = parts;
-        row.bound = std::expm1(sonar::makeAbsorption(config).intensityPerMetre() * grid.bin_width / 2);
-        row.bound_of = "change: of an echo at the edge of its bin";
+        row.bound = std::expm1(sonar::makeAbsorption(config).intensityPerMetre() * grid.bin_width / 2) + quality_;
+        row.bound_of = "rel_l2_tvg: an echo at the edge of its bin, and what twice the rows and columns change";
         return true;
     }
 
@@ -272,7 +286,8 @@ private:
         const SonarConfig& config = planned_.config;
         for (const sonar::Effect* effect : sonar::effects()) {
             Setup without = planned_;
-            if (const std::string name = effect->removeFrom(without.config); !name.empty()) keep(name, without);
+            const std::string name = effect->removeFrom(without.config);
+            if (!name.empty() && std::ranges::count(omitted_, name, &sonar::Omitted::effect) == 0) keep(name, without);
         }
         Setup without = planned_;
         if (config.model == sonar::Model::Physical && !planned_.snapshot.targets.empty()) {

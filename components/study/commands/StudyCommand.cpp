@@ -52,20 +52,15 @@ std::vector<types::Sonar> readCodes(log::Reader& log, size_t stream) {
     return pings;
 }
 
-/** Reads the code of the receiver that writes a stream from the log's own deployment. */
-void readLaw(const log::Reader& log, const std::string& stream, CodedLog& coded) {
-    const std::string text = log.metadatum("insonify_deployment");
-    if (text.empty()) return;
-    try {
-        framework::Registry registry = coreTasks();
-        const framework::Deployment deployment(framework::DeploymentSpec::parse(text, log.path().string()), registry);
-        const auto* receiver =
-            dynamic_cast<const receiver::ReceiverTask*>(deployment.task(framework::splitPort(stream).first));
-        if (!receiver || !receiver->config->code) return;
-        coded.code = *receiver->config->code;
-        coded.law_known = text.find("law:") != std::string::npos;  // an import omits what it does not know
-    } catch (const types::ConfigError&) {                          // the deployment's files or libraries are elsewhere
-    }
+/** Reads the code of the receiver that writes a stream from the log's own deployment, whose other files are not needed.
+ */
+void readLaw(const log::Reader& log, const log::Stream& stream, CodedLog& coded) {
+    const Json code = readMeaning(log, stream)["code"];
+    receiver::CodeConfig found;
+    framework::ConfigReader reader("");
+    if (!code.is_object() || !reader.read(YAML::Load(code.dump()), "", found) || !reader.diagnostics().empty()) return;
+    coded.code = found;
+    coded.law_known = code.contains("law");  // an import omits what it does not know
 }
 
 /** Reads the sonar's place at each ping, as far as the log has it. */
@@ -88,7 +83,7 @@ std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
         if (!stream.holds<types::Sonar>()) continue;
         CodedLog coded{.pings = readCodes(*log, i)};
         if (coded.pings.empty()) continue;
-        readLaw(*log, stream.name, coded);
+        readLaw(*log, stream, coded);
         readPlaces(*log, stream, coded);
         if (const auto at = stream.metadata.find("insonify_frequency_khz"); at != stream.metadata.end())
             std::from_chars(at->second.data(), at->second.data() + at->second.size(), coded.frequency_khz);
