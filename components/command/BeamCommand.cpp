@@ -11,6 +11,7 @@
 #include "components/framework/Deployment.hpp"
 #include "components/sonar/bins/EchoGrid.hpp"
 #include "components/sonar/tasks/PingTask.hpp"
+#include "components/sonar/tasks/SideScanTask.hpp"
 #include "types/geometry/Angle.hpp"
 
 namespace insonify::command {
@@ -97,6 +98,7 @@ void printCut(const char* name, const Cut& cut) {
 
 struct BeamOptions {
     std::string deployment, task;
+    std::vector<std::string> set;
     bool json = false;
 };
 
@@ -108,16 +110,20 @@ const sonar::PingTask& getSonar(const framework::Deployment& deployment, const B
         if (sonar) names += (names.empty() ? "" : ", ") + task->name();
     }
     const std::string has = names.empty() ? "there is none" : "may be " + names;
+    if (options.task.empty()) throw types::ConfigError(options.deployment, "", "has no sonar");
     throw types::ConfigError(options.deployment, "--task", fmt::format("is {}, no sonar; {}", options.task, has));
 }
 
 int showBeam(const BeamOptions& options) {
     framework::Registry registry = coreTasks();
     const std::string file = deploymentIn(options.deployment);
-    const framework::Deployment deployment(framework::DeploymentSpec::load(file), registry);
-    const sonar::RenderPlan plan =
-        sonar::makeRenderPlan(getSonar(deployment, options).locatedConfig(), types::Geometry{});
-    const Cut azimuth = azimuthCut(plan), elevation = elevationCut(plan);
+    framework::DeploymentSpec spec = framework::DeploymentSpec::load(file);
+    for (const std::string& assignment : options.set) spec.set(assignment);
+    const framework::Deployment deployment(std::move(spec), registry);
+    const sonar::PingTask& sonar = getSonar(deployment, options);
+    const sonar::RenderPlan plan = sonar::makeRenderPlan(sonar.locatedConfig(), types::Geometry{});
+    Cut azimuth = azimuthCut(plan), elevation = elevationCut(plan);
+    if (dynamic_cast<const sonar::SideScanTask*>(&sonar)) std::swap(azimuth, elevation);  // rendered as a turned fan
     if (options.json) {
         print(Json{{"azimuth", cutJson(azimuth)}, {"elevation", cutJson(elevation)}});
     } else {
@@ -134,6 +140,10 @@ void addBeamCommand(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("beam", "Shows a sonar's beam, two way, as its echoes are weighed");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     command->add_option("--task", options->task, "the sonar; absent: the first");
+    command
+        ->add_option("--set", options->set,
+                     "task.property.path=value: a property other than in the file; may be repeated")
+        ->allow_extra_args(false);
     command->add_flag("--json", options->json, "for machines");
     command->callback([options, &action] { action = [options] { return showBeam(*options); }; });
 }

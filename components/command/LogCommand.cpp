@@ -326,6 +326,8 @@ log::Selection makeSelection(const LogOptions& options) {
     selection.streams = {options.streams.begin(), options.streams.end()};
     if (!options.from.empty() || !options.until.empty()) {
         const types::Time start = getSpan(options.files).value_or(std::pair<types::Time, types::Time>{}).first;
+        for (const auto& [name, text] : {std::pair("--from", options.from), {"--until", options.until}})
+            if (text.starts_with('-')) throw types::ConfigError("", name, "is " + text + "; must not be negative");
         if (!options.from.empty()) selection.from = log::readTime(options.from, "--from", start);
         if (!options.until.empty()) selection.until = log::readTime(options.until, "--until", start);
         if (selection.from >= selection.until)

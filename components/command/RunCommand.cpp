@@ -234,9 +234,16 @@ std::vector<std::string> argumentsIn(const std::string& text) {
 void callAll(framework::Deployment& deployment, const RunOptions& options) {
     for (const std::string& call : options.calls) {
         const size_t equals = call.find('=');
-        const std::string result =
-            deployment.call(call.substr(0, equals), equals == std::string::npos ? std::vector<std::string>{}
-                                                                                : argumentsIn(call.substr(equals + 1)));
+        const auto arguments =
+            equals == std::string::npos ? std::vector<std::string>{} : argumentsIn(call.substr(equals + 1));
+        std::string result;
+        try {
+            result = deployment.call(call.substr(0, equals), arguments);
+        } catch (const types::ConfigError& error) {
+            throw types::ConfigError("", "--call", "is " + call + ": " + error.diagnostics().front().text());
+        } catch (const std::exception& failure) {
+            throw std::runtime_error("--call " + call + ": " + types::getReason(failure));
+        }
         if (!options.quiet && !result.empty()) console::printResult("{}: {}\n", call, result);
     }
 }

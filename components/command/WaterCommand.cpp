@@ -37,7 +37,7 @@ void check(const WaterOptions& options) {
     require("--depth", options.water.depth, 0, 1e5);
     require("--ph", options.water.ph, 0, 14);
     require("--latitude-deg", options.water.latitude_deg, -90, 90);
-    for (const double frequency : options.frequencies_khz) require("--frequency-khz", frequency, 0, 1e7);
+    for (const double frequency : options.frequencies_khz) require("--frequency-khz", frequency, 0.001, 1e7);
 }
 
 /** Calls `visit(name, law)` for each law. */
