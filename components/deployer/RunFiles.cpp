@@ -54,8 +54,8 @@ std::string drawingCommand(const fs::path& folder, const Files& files, const fra
     const auto log = std::ranges::find_if(
         files, [](const fs::path& file) { return log::findLogFormat(file) && file.filename() != "properties.0.log"; });
     if (pings.empty() || log == files.end()) return {};
-    return fmt::format("insonify log export {} --stream {} --to {}", console::shellWord((folder / *log).string()), pings,
-                       console::shellWord((folder / "ping.png").string()));
+    return fmt::format("insonify log export {} --stream {} --to {}", console::shellWord((folder / *log).string()),
+                       pings, console::shellWord((folder / "ping.png").string()));
 }
 
 }  // namespace

@@ -48,10 +48,10 @@ struct Environment {
     bool is_shard = false;   ///< Only some samples of the run are made, see RunLimits::shard.
     /** This instant is before the shard: see framework::Divisible. */
     bool rehearsing = false;
-    bool is_refused = false;  ///< The deployment has errors, so that no task needs to wait for another program.
-    std::string deployment_text;                   ///< The YAML as read, for the log's metadata.
-    uint64_t seed = 0;                             ///< Seed of the run (`--seed`), 0 when not given.
-    types::RosNames names;                         ///< Namespace and frame prefix of the deployment.
+    bool is_refused = false;      ///< The deployment has errors, so that no task needs to wait for another program.
+    std::string deployment_text;  ///< The YAML as read, for the log's metadata.
+    uint64_t seed = 0;            ///< Seed of the run (`--seed`), 0 when not given.
+    types::RosNames names;        ///< Namespace and frame prefix of the deployment.
     std::function<void(const std::string&)> warn;  ///< Warns the user at once; empty outside of a deployment.
     /** Returns the last published record of each task, in file order, without waiting for any task. Empty for a task
      *  outside of a deployment. */

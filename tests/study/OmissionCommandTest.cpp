@@ -75,3 +75,15 @@ TEST(OmissionCommandTest, RefusesUnsuitableDeployments) {
                 isRefused(HasSubstr("none.yml")));
     EXPECT_FALSE(fs::exists(folder / "report"));
 }
+
+TEST(OmissionCommandTest, NoOmissionOfADeviceFails) {
+    for (const std::string device : {"ping360", "micron", "sonar_3d_15"}) {
+        SCOPED_TRACE(device);
+        const TestFolder folder;
+        ASSERT_THAT(callInsonify(folder, {"init", "dive", "--sonar", device}), succeeds());
+        ASSERT_THAT(callInsonify(folder, {"study", "omission", "dive", "--pings", "1", "--out", "report"}), succeeds());
+        const json rows = json::parse(readFile(folder / "report/omission.json"));
+        for (const json& row : rows) EXPECT_NE(row["verdict"], "FAIL") << row;
+        EXPECT_EQ(getRow(rows, "absorption inside a bin")["verdict"], "pass");
+    }
+}

@@ -177,6 +177,7 @@ private:
         if (what.effect == std::string_view("absorption inside a bin")) {  // whose bins no other effect may join
             without.config.pulse.reset();
             without.config.imperfections.reset();
+            without.config.speckle.reset();
             without.snapshot.targets.clear();
         }
         Setup with = without;
@@ -245,8 +246,11 @@ private:
     bool omits(std::string_view effect) const {
         return std::ranges::any_of(omitted_, [&](const sonar::Omitted& what) { return what.effect == effect; });
     }
-    /** Whether there may be echoes of points, which a tone as long as a bin puts into two bins. */
-    bool hasPoints() const { return !planned_.snapshot.targets.empty() || planned_.config.multipath.has_value(); }
+    /** Whether there are echoes of points or scatterers, which a tone as long as a bin puts into two bins. */
+    bool hasPoints() const {
+        const bool interferes = planned_.config.speckle && planned_.config.speckle->coherent;
+        return interferes || !planned_.snapshot.targets.empty() || planned_.config.multipath.has_value();
+    }
 
     /** Adds a tone as long as a bin, which changes nothing. */
     bool neutralPulse(Setup& with, OmissionRow& row) const {
