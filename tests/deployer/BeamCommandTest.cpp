@@ -60,7 +60,28 @@ TEST_F(BeamCommandTest, WithoutAPatternABeamIsABox) {
     EXPECT_THAT(cuts["azimuth"]["level_db"], testing::ElementsAre(0, 0));
 }
 
+TEST_F(BeamCommandTest, ASideScanHasTheAxesOfItsProperties) {
+    writeFile(folder_ / "wall.gltf", wallGltf());
+    writeFile(folder_ / "abeam.yml",
+              replaced(sonarWith(""), "sonar::SonarTask, properties: {beam_count: 64, field_of_view_deg: 64}",
+                       "sonar::SideScanTask, properties: {beam_width_deg: 0.5, beam_height_deg: 60, beam_pattern: "
+                       "{receive: {elevation: {width_deg: 50}}}}"));
+    const Outcome outcome = callInsonify(folder_, {"beam", "abeam.yml", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json cuts = json::parse(outcome.out);
+    EXPECT_NEAR(cuts["azimuth"]["width_3db_deg"], 0.5, 1e-6) << "along the track";
+    EXPECT_NEAR(cuts["elevation"]["width_3db_deg"], 50, 0.1) << "across it";
+}
+
 TEST_F(BeamCommandTest, ReportsWhatCannotBeShown) {
+    const Outcome set = call("beam_height_deg: 14", {"--set", "sonar.beam_height_deg=9", "--json"});
+    ASSERT_EQ(set.code, 0) << set.err;
+    EXPECT_NEAR(json::parse(set.out)["elevation"]["width_3db_deg"], 9, 1e-9);
+    EXPECT_THAT(call("", {"--set", "sonar.beam_hight_deg=9"}), isRefused(HasSubstr("did you mean beam_height_deg?")));
+    writeFile(folder_ / "none.yml",
+              "tasks: {vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: "
+              "0, position: [0, 0, 0]}]}}}\n");
+    EXPECT_THAT(callInsonify(folder_, {"beam", "none.yml"}), isRefused(HasSubstr("none.yml: has no sonar")));
     EXPECT_THAT(call("", {"--task", "sona"}), isRefused(HasSubstr("may be sonar")));
     EXPECT_THAT(call("beam_pattern: {receive: {azimuth: {file: none.csv}}}", {}), isRefused(HasSubstr("none.csv")));
     writeFile(folder_ / "table.csv", "angle_deg,level_db\n0,0\n1,abc\n");
