@@ -15,6 +15,7 @@
 #include "components/deployer/Json.hpp"
 #include "components/deployer/log/Export.hpp"
 #include "components/deployer/log/Import.hpp"
+#include "components/deployer/log/LoggedTrack.hpp"
 #include "components/deployer/log/RecordedSettings.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/Export.hpp"
@@ -240,8 +241,6 @@ Paths exportTo(log::Reader& log, LogOptions options) {
     const fs::path to = options.to;
     const log::Stream& stream = log.streams()[log.findIndex(options.stream)];
     options.stream = stream.name;
-    for (const std::string& lost : log.dropDamaged(log.findIndex(options.stream)))
-        console::printDiagnostic("lost: {}\n", lost);
     const ExportFormat* const format = types::findFormat(export_formats, to);
     const std::string_view ending = format ? format->ending : "";
     if (options.ground && ending != ".png") throw types::ConfigError("", "--ground", "is for pictures: --to FILE.png");
@@ -250,11 +249,13 @@ Paths exportTo(log::Reader& log, LogOptions options) {
     if (!to.has_extension() || fs::is_directory(to)) {
         makeFolder(to);
         options.to = to / (options.stream + ".npz");
+        dropDamaged(log, options.stream);
         return writeNpz(log, options);
     }
     makeParentFolder(to);
     if (!format)
         throw types::ConfigError(to, "--to", "may be a folder, or end in " + types::alternativeEndings(export_formats));
+    dropDamaged(log, options.stream);
     return format->write(log, options);
 }
 

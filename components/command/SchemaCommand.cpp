@@ -130,7 +130,8 @@ Json blockSchema(const std::vector<PropertyInfo>& fields) {
 
 std::vector<PropertyInfo> getProperties(const framework::Registry::Entry& entry) {
     std::vector<PropertyInfo> all;
-    const auto task = entry.make("task");
+    const auto task = framework::Registry::example(entry);
+    if (!task) return all;
     for (const auto* properties : task->properties())
         for (PropertyInfo& info : properties->list()) all.push_back(std::move(info));
     return all;

@@ -39,10 +39,16 @@ void Registry::add(Entry entry) {
         try {
             return make(name);
         } catch (...) {
-            throw types::ConfigError("", "", "has a constructor that throws: " + reasonUnlessReported());
+            throw types::ConfigError("", type, "has a constructor that throws: " + reasonUnlessReported());
         }
     };
     entries_.push_back(std::move(entry));
+}
+
+std::unique_ptr<TaskContext> Registry::example(const Entry& entry) try {
+    return entry.make("task");
+} catch (const types::ConfigError&) {
+    return nullptr;
 }
 
 const Registry::Entry* Registry::find(const std::string& type) const {
@@ -105,7 +111,8 @@ void Registry::enter(const loader::ComponentLibrary& library) {
         try {
             why = "has a function insonify_register that throws: " + reasonUnlessReported();
         } catch (const types::ConfigError& error) {
-            why = error.diagnostics().front().text();
+            why = error.diagnostics().empty() ? "has a function insonify_register that throws"
+                                              : error.diagnostics().front().text();
         }
         throw types::ConfigError(file, "", why);
     }

@@ -41,6 +41,8 @@ public:
     std::unique_ptr<TaskContext> make(const std::string& type, const std::string& name);
     const std::vector<Entry>& list() const { return entries_; }  ///< In order of registration.
     const Entry* find(const std::string& type) const;            ///< Of the list; null: it has no such type.
+    /** Makes a task to look at; null where its constructor throws. */
+    static std::unique_ptr<TaskContext> example(const Entry& entry);
 
     /** Loads a shared object and calls its `extern "C" void insonify_register(insonify::framework::Registry&)`. It
      *  stays loaded until the process ends. Throws types::ConfigError when the file is missing, cannot be loaded, or

@@ -115,7 +115,7 @@ std::unique_ptr<TaskContext> Wiring::makeTask(const TaskSpec& spec) {
         if (const Registry::Entry* const other = registry_.find(spec.type))
             refuse(fmt::format(", which is in {}; the file must be called {}.so, or be one of `libraries`",
                                other->library, owner));
-        else if (lacks_libraries_)
+        else if (lacks_libraries_ && !known.starts_with("did you mean"))
             consequence(child(spec.place, "type"), spec.path() + ".type", "is " + spec.type + ", which is not known");
         else
             refuse("; " + known +
@@ -125,7 +125,8 @@ std::unique_ptr<TaskContext> Wiring::makeTask(const TaskSpec& spec) {
                               ".so in a folder of INSONIFY_COMPONENT_PATH"));
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& each : error.diagnostics())
-            refuse(each.file.empty() && each.path.empty() ? ", which " + each.message : ": " + each.text());
+            refuse(each.file.empty() && (each.path.empty() || each.path == spec.type) ? ", which " + each.message
+                                                                                      : ": " + each.text());
     }
     return nullptr;
 }
@@ -147,7 +148,8 @@ std::string Wiring::otherOwners(const std::string& key) const {
     std::vector<std::string> owners;
     registry_.loadAll();
     for (const Registry::Entry& entry : registry_.list()) {
-        const auto task = entry.make("task");
+        const auto task = Registry::example(entry);
+        if (!task) continue;
         const auto has = [&](const PropertiesBase* each) { return std::ranges::count(topLevel(*each), key) > 0; };
         if (std::ranges::any_of(task->properties(), has)) owners.push_back(entry.type);
     }
@@ -167,6 +169,8 @@ void Wiring::loadProperties(uint64_t seed) {
             for (PropertiesBase* properties : task->properties()) properties->load(reader, known, path);
         } catch (const std::exception& failure) {
             reader.report(spec.place, path, "cannot be checked: " + types::getReason(failure));
+        } catch (...) {
+            reader.report(spec.place, path, "cannot be checked: an exception without a reason");
         }
         if (task->properties().empty()) reader.refuseUnknown(spec.properties, path, {});
         if (reader.diagnostics().empty()) {
@@ -355,6 +359,7 @@ void Wiring::checkTasks() {
         const TaskSpec& spec = *spec_.task(task->name());
         checkInputs(*task, spec);
         const size_t before = diagnostics_.size();
+        environment_->is_refused = !diagnostics_.empty();
         if (!isUnreliable(*task)) {
             ConfigReader reader(spec_.file, spec_.origins);
             reader.setFallback(spec.place.Mark());
@@ -363,6 +368,8 @@ void Wiring::checkTasks() {
                 task->check(diagnostics);
             } catch (const std::exception& failure) {
                 reader.report(spec.place, spec.path(), "cannot be checked: " + types::getReason(failure));
+            } catch (...) {
+                reader.report(spec.place, spec.path(), "cannot be checked: an exception without a reason");
             }
             reader.report(spec.properties, spec.path() + ".properties", diagnostics);
             diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "components/log/Files.hpp"
+
 namespace insonify::log {
 namespace {
 
@@ -158,15 +160,16 @@ Copied copyLog(const std::vector<std::filesystem::path>& logs, const std::filesy
 std::string copyProperties(const std::filesystem::path& log, const std::filesystem::path& to) {
     const auto properties = propertyLog(*openLog(log, AtDamage::Skip));
     if (!properties) return "";
-    const std::filesystem::path copied = to.parent_path() / properties->filename(), fresh = copied.string() + ".new";
-    if (std::error_code none; std::filesystem::equivalent(copied, *properties, none)) return "";
-    copyLog({*properties}, fresh, {.at_damage = AtDamage::Skip});
+    const std::filesystem::path copied = to.parent_path() / properties->filename();
     if (!std::filesystem::exists(copied)) {
-        std::filesystem::rename(fresh, copied);
+        copyLog({*properties}, copied, {.at_damage = AtDamage::Skip});
         return fmt::format("{} is copied with it", copied.string());
     }
+    if (bytesOf(copied) == bytesOf(*properties)) return "";
+    const std::filesystem::path fresh = to.parent_path() / "properties.new.0.log";
+    copyLog({*properties}, fresh, {.at_damage = AtDamage::Skip});
     const bool is_same = bytesOf(fresh) == bytesOf(copied);
-    std::filesystem::remove(fresh);
+    removeLog(fresh);
     if (is_same) return "";
     return fmt::format(
         "{} is of another run: {} is not copied next to {}; give that a folder of its own, or replays of "

@@ -22,20 +22,26 @@ using recordings::RecordingReader;
 
 /** Returns the named files, and the files of the named folders: of the folder of a run only what may be a recording. */
 std::vector<fs::path> getFiles(const std::vector<std::string>& names, bool with_pictures) {
-    static const std::set<std::string> others{".idx", ".yml", ".yaml", ".json", ".csv", ".npz", ".md", ".html", ".txt"};
+    static const std::set<std::string> others{".idx", ".yml", ".yaml", ".json", ".csv", ".npz", ".md", ".html",
+                                              ".txt", ".py",  ".glb",  ".gltf", ".mp4", ".avi", ".mkv"};
     const auto isOther = [&](const fs::path& file) {
         return others.contains(file.extension()) || file.filename() == "properties.0.log" ||
                (!with_pictures && isPicture(file));
     };
     std::vector<fs::path> files;
+    fs::path picture;  // one that is left out
     for (const fs::path name : names) {
         if (!fs::is_directory(name)) {
             files.push_back(name);
             continue;
         }
         for (const auto& entry : fs::directory_iterator(name))
-            if (entry.is_regular_file() && !isOther(entry.path())) files.push_back(entry.path());
+            if (entry.is_regular_file() && !isOther(entry.path()))
+                files.push_back(entry.path());
+            else if (entry.is_regular_file() && isPicture(entry.path()))
+                picture = entry.path();
     }
+    if (files.empty() && !picture.empty()) files.push_back(picture);
     std::ranges::sort(files);
     return files;
 }

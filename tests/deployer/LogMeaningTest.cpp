@@ -64,6 +64,10 @@ TEST_F(LogMeaningTest, SettingsFromOutsideAreKnownFromThePropertyLog) {
         folder_.run({"--pings", "2", "--set", "receiver.tvg.log_coefficient=30", "--set", "receiver.gain_db=7"}).code,
         0);
     EXPECT_EQ(exported("receiver.ping", "print(meta['tvg']['log_coefficient'], meta['gain_db'])"), "30 7\n");
+    writeFile(folder_ / "out/properties.0.log", "damaged");
+    EXPECT_THAT(callInsonify(folder_, {"log", "info", "out/wall.0.log", "--metadata"}).err,
+                HasSubstr("what was set from outside is unknown"));
+    EXPECT_EQ(exported("receiver.ping", "print(meta['tvg'], meta['gain_db'])"), "{'log_coefficient': 40} None\n");
     fs::remove(folder_ / "out/properties.0.log");
     EXPECT_EQ(exported("receiver.ping", "print(meta['tvg'], meta['gain_db'])"), "{'log_coefficient': 40} None\n");
 }

@@ -170,7 +170,12 @@ TEST_F(ReplayLiveTest, CutAndRepairCopyThePropertyLog) {
     EXPECT_THAT(call({"log", "cut", "out/wall.0.log", "--to", "cut/again.0.log"}).err,
                 testing::Not(HasSubstr("properties.0.log")))
         << "it is there";
-    EXPECT_FALSE(fs::exists(folder_ / "cut/properties.0.log.new"));
+    fs::create_directory(folder_ / "own");
+    fs::copy_file(folder_ / "out/properties.0.log", folder_ / "own/properties.0.log");
+    EXPECT_EQ(call({"log", "cut", "out/wall.0.log", "--to", "own/y.0.log"}).err, "") << "copied by hand";
+    for (const char* cut : {"cut", "own"})
+        for (const auto& entry : fs::directory_iterator(folder_ / cut))
+            EXPECT_EQ(entry.path().filename().string().find("new"), std::string::npos) << entry.path();
     ASSERT_EQ(call({"run", "wall.yml", "--out", "again", "--pings", "1", "--seed", "3"}).code, 0);
     const Outcome other = call({"log", "cut", "out/wall.0.log", "--to", "again/y.0.log"});
     EXPECT_THAT(other.err, HasSubstr("again/properties.0.log is of another run"));

@@ -16,8 +16,8 @@ namespace insonify::deployer {
  *  unreadable. */
 framework::DeploymentSpec getDeployment(const log::Reader& log);
 
-/** Returns what the numbers of a stream mean, by the deployment in its metadata, with the properties at the log's start
- *  where the property log is next to it (those of `--set`).
+/** Returns what the numbers of a stream mean, by the deployment in its metadata, with the properties at the log's first
+ * sample where the property log is next to it (those of `--set`).
  *
  *  Pings: {stream, bins, output, model, reference, tvg, gain_db, code, noise, frequency_khz, speed_of_sound_m_s or
  *  null, range_m, bin_duration, frame, mount: {position [m], roll_deg, pitch_deg, yaw_deg}, quaternion_order, seed};

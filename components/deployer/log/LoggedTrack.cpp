@@ -2,15 +2,22 @@
 
 #include <algorithm>
 
+#include "components/console/Console.hpp"
+
 namespace insonify::deployer {
+
+void dropDamaged(log::Reader& log, const std::string& stream) {
+    for (const std::string& lost : log.dropDamaged(log.findIndex(stream))) console::printDiagnostic("lost: {}\n", lost);
+}
 
 LoggedAltitudes::LoggedAltitudes(log::Reader& log) {
     const auto holds = [](const log::Stream& stream) { return stream.holds<types::Range>(); };
     if (std::ranges::count_if(log.streams(), holds) != 1) return;
-    log.forEach<types::Range>(std::ranges::find_if(log.streams(), holds)->name,
-                              [&](const types::Range& range, const log::SampleRef&) {
-                                  all_[range.time] = range.isKnown() ? range.range : 0;
-                              });
+    const std::string name = std::ranges::find_if(log.streams(), holds)->name;
+    dropDamaged(log, name);
+    log.forEach<types::Range>(name, [&](const types::Range& range, const log::SampleRef&) {
+        all_[range.time] = range.isKnown() ? range.range : 0;
+    });
 }
 
 double LoggedAltitudes::nearestTo(types::Time time) const {
@@ -48,6 +55,7 @@ types::Mount findMount(const Json& meaning) {
 
 LoggedTrack::LoggedTrack(log::Reader& log, const log::Stream* poses, const types::Mount& mount) {
     if (!poses) return;
+    dropDamaged(log, poses->name);
     log.forEach<types::Pose>(poses->name, [&](const types::Pose& body, const log::SampleRef&) {
         types::Pose& sonar = all_.emplace_back(body);
         if (body.source_frame != "sonar" && isUsable(body)) place(body, mount, sonar);

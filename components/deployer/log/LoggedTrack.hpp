@@ -8,6 +8,9 @@
 
 namespace insonify::deployer {
 
+/** Removes the damaged samples of a stream, and prints which; throws as log::Reader::dropDamaged. */
+void dropDamaged(log::Reader& log, const std::string& stream);
+
 /** Altitudes above the bottom over time, from the only stream of ranges of a log. */
 class LoggedAltitudes {
 public:

@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "components/console/Console.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
@@ -280,20 +281,27 @@ std::optional<uint64_t> recordedSeed(const log::Reader& log) {
     return std::strtoull(seed.c_str(), nullptr, 10);
 }
 
-void setRecorded(const log::Reader& log, framework::DeploymentSpec& spec) {
+void setRecorded(const log::Reader& log, framework::DeploymentSpec& spec) try {
     const auto file = log::propertyLog(log);
-    if (!file) return;
+    if (!file || log.samples().empty()) return;
+    const types::Time begin = log.samples().front().received;
     std::set<std::string> tasks;
     for (const framework::TaskSpec& task : spec.tasks) tasks.insert(task.name);
     for (const auto& [property, values] : readHistories(*log::openLog(*file), tasks)) {
         const auto [task, name] = splitPort(property);
         YAML::Node properties = spec.task(task)->properties;
-        const std::string& value = values.front().second;
+        std::string value = values.front().second;
+        for (const auto& [received, later] : values)
+            if (received <= begin) value = later;
         if (value == absent_value)
             properties.remove(name);
         else
             properties[name] = YAML::Load(value);
     }
+} catch (const types::ConfigError& error) {
+    static std::set<std::string> told;  // the commands that read meanings have one thread
+    if (told.insert(error.what()).second)
+        console::printDiagnostic("notice: {}; what was set from outside is unknown\n", error.what());
 }
 
 RecordedSettings recordedSettings(const log::Reader& log, const framework::DeploymentSpec& spec,

@@ -13,7 +13,8 @@ namespace insonify::deployer {
 /** Returns the seed that a log was recorded with; none: unknown. */
 std::optional<uint64_t> recordedSeed(const log::Reader& log);
 
-/** Sets the properties of a log's deployment to those at the log's start, by the property log next to it. */
+/** Sets the properties of a log's deployment to those at the log's first sample, by the property log next to it. A
+ *  damaged one is reported, and sets nothing. */
 void setRecorded(const log::Reader& log, framework::DeploymentSpec& spec);
 
 /** A property of a task that contributes to pings, with its values while the log was recorded. */

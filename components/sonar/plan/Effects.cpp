@@ -102,23 +102,26 @@ void checkNumbers(const std::string& path, const std::vector<types::Field>& fiel
     }
 }
 
-/** Calls a part of an effect; its exceptions get the effect's name. */
-void calling(const Effect& effect, auto&& part) {
-    try {
-        part();
-    } catch (const types::CheckFailure&) {  // names its place
-        throw;
-    } catch (const std::exception& failure) {
-        if (effect.key().empty()) throw;
-        throw std::runtime_error(fmt::format("effects.{}: {}", effect.key(), types::getReason(failure)));
-    }
-}
-
 }  // namespace
 
 std::span<const Effect* const> effects() { return list().all(); }
 
 void addEffect(std::unique_ptr<const Effect> effect) { list().add(std::move(effect)); }
+
+void failIn(const Effect& effect) {
+    std::string why;
+    try {
+        throw;
+    } catch (const types::CheckFailure&) {  // names its place
+        throw;
+    } catch (const std::exception& failure) {
+        if (effect.key().empty()) throw;
+        why = types::getReason(failure);
+    } catch (...) {
+        why = "an exception without a reason";
+    }
+    throw std::runtime_error(fmt::format("effects.{}: {}", effect.key(), why));
+}
 
 void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics) {
     for (const auto& [key, numbers] : config.effects) {
@@ -175,10 +178,11 @@ void PingEffects::begin(const PingStart& start) {
 }
 
 void PingEffects::giveRules(EchoRules& rules) const {
-    for (const auto& effect : all_) {
-        effect->giveRules(rules);
-        if (effect->hasSums()) rules.own.push_back(effect.get());
-    }
+    for (size_t i = 0; i < all_.size(); ++i)
+        calling(*kinds_[i], [&] {
+            all_[i]->giveRules(rules);
+            if (all_[i]->hasSums()) rules.own.push_back(all_[i].get());
+        });
 }
 
 std::string PingEffects::whyNotOnDevice() const {
@@ -220,9 +224,10 @@ void PingEffects::addToBins(types::Sonar& ping) {
     for (size_t i = 0; i < all_.size(); ++i)
         calling(*kinds_[i], [&] {
             all_[i]->addToBins(ping);
+            if (kinds_[i]->key().empty()) return;
             const auto wrong =
                 std::ranges::find_if_not(ping.bins, [](float bin) { return bin >= 0 && std::isfinite(bin); });
-            if (wrong != ping.bins.end() && !kinds_[i]->key().empty())
+            if (wrong != ping.bins.end())
                 throw std::runtime_error(fmt::format("leaves a bin of {}; must be finite and not negative", *wrong));
         });
 }
@@ -239,8 +244,10 @@ size_t PingEffects::received() const {
 
 std::vector<Omitted> PingEffects::omissions() const {
     std::vector<Omitted> all;
-    for (const auto& effect : all_)
-        if (const auto what = effect->omissions()) all.push_back(*what);
+    for (size_t i = 0; i < all_.size(); ++i)
+        calling(*kinds_[i], [&] {
+            if (const auto what = all_[i]->omissions()) all.push_back(*what);
+        });
     return all;
 }
 

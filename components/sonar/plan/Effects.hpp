@@ -17,6 +17,18 @@ std::span<const Effect* const> effects();
  *  with the same key. Throws std::length_error above 256 effects. */
 void addEffect(std::unique_ptr<const Effect> effect);
 
+/** Throws the exception that is being handled again, with the name of an effect that has a key. */
+[[noreturn]] void failIn(const Effect& effect);
+
+/** Calls a part of an effect; see failIn(). Allocates nothing. */
+void calling(const Effect& effect, auto&& part) {
+    try {
+        part();
+    } catch (...) {
+        failIn(effect);
+    }
+}
+
 /** Adds diagnostics of SonarConfig::effects: unknown keys and numbers, numbers out of bounds. Adds those of each
  *  effect, Effect::check(). */
 void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics);

@@ -71,7 +71,9 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     if (config.beam_pattern) plan.directivity.emplace(config);
     plan.setQuality(config.rows(), config.columnsPerBeam());
     for (const Effect* effect : effects())
-        if (effect->plan(geometry, plan)) plan.effects.push_back(effect);
+        calling(*effect, [&] {
+            if (effect->plan(geometry, plan)) plan.effects.push_back(effect);
+        });
     const int parts = fieldSampling(plan).parts;
     plan.summed = plan.grid;
     plan.summed.bin_count *= parts;

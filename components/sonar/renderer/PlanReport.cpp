@@ -248,7 +248,7 @@ types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {
         reported.passes.emplace_back(types::EnumNames<Pass>::names[static_cast<size_t>(pass)]);
     for (const Omitted& what : plan.omitted) reported.omitted.push_back(describe(what, plan.grid));
     reported.notices = configNotices(plan.config);
-    for (const Effect* effect : effects()) effect->note(plan, geometry, reported.notices);
+    for (const Effect* effect : effects()) calling(*effect, [&] { effect->note(plan, geometry, reported.notices); });
     return reported;
 }
 

@@ -174,14 +174,21 @@ private:
         progress_(words.name);
         OmissionRow row{words.name, words.reason, {}, {}, "", false};
         Setup without = planned_;
-        if (what.effect == std::string_view("absorption inside a bin")) {  // whose bins no other effect may join
+        const bool splits_bins = what.effect == "absorption inside a bin";
+        if (splits_bins) {  // other effects change with the bins
             without.config.pulse.reset();
             without.config.imperfections.reset();
             without.config.speckle.reset();
             without.snapshot.targets.clear();
         }
         Setup with = without;
-        if (putBack(what, with, row)) row.measured = compared(without, with, pings_);
+        if (!putBack(what, with, row)) return row;
+        row.measured = compared(without, with, pings_);
+        if (splits_bins) {  // sampling changes with the bins as well
+            without.config.absorption.reset();
+            with.config.absorption.reset();
+            *row.bound += compared(without, with, 1).rel_l2_tvg;
+        }
         return row;
     }
 
@@ -281,8 +288,8 @@ private:
         with.config.range = grid.range_max;
         with.config.range_rounding = sonar::RangeRounding::Exact;
         with.bins_in_one = parts;
-        row.bound = std::expm1(sonar::makeAbsorption(config).intensityPerMetre() * grid.bin_width / 2) + quality_;
-        row.bound_of = "rel_l2_tvg: an echo at the edge of its bin, and what twice the rows and columns change";
+        row.bound = std::expm1(sonar::makeAbsorption(config).intensityPerMetre() * grid.bin_width / 2);
+        row.bound_of = "rel_l2_tvg: an echo at the edge of its bin, and what finer bins change without absorption";
         return true;
     }
 
@@ -291,7 +298,7 @@ private:
         for (const sonar::Effect* effect : sonar::effects()) {
             Setup without = planned_;
             const std::string name = effect->removeFrom(without.config);
-            if (!name.empty() && std::ranges::count(omitted_, name, &sonar::Omitted::effect) == 0) keep(name, without);
+            if (!name.empty() && !omits(name == "pulse" ? "range point-spread" : name)) keep(name, without);
         }
         Setup without = planned_;
         if (config.model == sonar::Model::Physical && !planned_.snapshot.targets.empty()) {

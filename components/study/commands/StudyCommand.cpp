@@ -81,6 +81,7 @@ std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
     for (size_t i = 0; i < log->streams().size(); ++i) {
         const log::Stream& stream = log->streams()[i];
         if (!stream.holds<types::Sonar>()) continue;
+        dropDamaged(*log, stream.name);
         CodedLog coded{.pings = readCodes(*log, i)};
         if (coded.pings.empty()) continue;
         readLaw(*log, stream, coded);
